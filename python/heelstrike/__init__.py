@@ -13,11 +13,14 @@
 from __future__ import annotations
 
 import enum
+from typing import TYPE_CHECKING, Any
 
-from ._convert import Layout, from_drake, from_mujoco, from_pinocchio
 from ._core import Answers, Refused, Robot, solve
 from ._plot import Plot, plot
 from ._values import Result
+
+if TYPE_CHECKING:
+    from ._convert import Layout, from_drake, from_mujoco, from_pinocchio
 
 __all__ = [
     "Answers",
@@ -34,6 +37,15 @@ __all__ = [
     "plot",
     "solve",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    # NumPy is loaded by what needs it: the command starts without.
+    if name not in ("Layout", "from_drake", "from_mujoco", "from_pinocchio"):
+        raise AttributeError(f"module 'heelstrike' has no attribute '{name}'")
+    from . import _convert
+
+    return getattr(_convert, name)
 
 
 class Verdict(enum.IntEnum):

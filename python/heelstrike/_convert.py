@@ -66,12 +66,15 @@ class Layout:
         `q` is (n, nq) or (nq,), `v` (n, nv) or (nv,), both as the other package has them. Returns q and v, each
         (n, len(robot.coordinates)), x z pitch first [m, rad, m/s, rad/s].
 
-        Raises ValueError if the motion leaves the robot's plane by more than `tolerance` [rad, m/s, rad/s], or a joint
-        that the planar robot does not have moves; the message says by how much.
+        Raises ValueError if the motion leaves the robot's plane by more than `tolerance` [rad, m/s, rad/s], a joint
+        that the planar robot does not have moves, or one does not follow the joint that it mimics; the message says by
+        how much. A row with a number that is not finite becomes NaN, which `Robot.impacts` refuses.
         """
         given_q, given_v = self._rows("q", q, self.nq), self._rows("v", v, self.nv)
         if len(given_q) != len(given_v):
             raise ValueError(f"q has {len(given_q)} rows and v {len(given_v)}")
+        finite = np.isfinite(np.hstack([given_q, given_v])).all(axis=1, keepdims=True)
+        given_q, given_v = np.where(finite, given_q, np.nan), np.where(finite, given_v, np.nan)
         names = robot.coordinates
         joints = names[3:] if names[:3] == ["x", "z", "pitch"] and self._is_floating(robot) else names
         missing = [name for name in joints if name not in self.joints]
@@ -113,7 +116,7 @@ class Layout:
         quaternion = q[:, base.quaternion]
         length = np.linalg.norm(quaternion, axis=1)
         if np.any(np.abs(length - 1) > 1e-3):
-            raise ValueError(f"a quaternion of the base has the length {length[np.argmax(np.abs(length - 1))]}, not 1")
+            raise ValueError(f"a quaternion of the base has the length {length[np.nanargmax(np.abs(length - 1))]}, not 1")
         w, vector = quaternion[:, 0], quaternion[:, 1:]
         across = np.linalg.norm(vector - np.outer(vector @ normal, normal), axis=1)
         _refuse("the base is turned out of the plane", 2 * across, "rad", tolerance)
@@ -137,16 +140,28 @@ class Layout:
 
     def _refuse_others(self, robot: Robot, q: Array, v: Array, tolerance: float) -> None:
         inspection = robot.inspect()
-        kept = {*robot.coordinates, *(joint["name"] for joint in inspection["followers"])}
+        followers = {follower["name"]: follower for follower in inspection["followers"]}
         held = robot.held
-        for name in sorted(self.joints.keys() - kept):
+        for name in sorted(self.joints.keys() - set(robot.coordinates)):
             joint = self.joints[name]
-            off, rate = self._angle(q, joint) - held.get(name, 0.0), v[:, joint.v]
-            _refuse(f"joint {name}, which is held in the planar robot, is off", np.abs(off), "rad or m", tolerance)
-            _refuse(f"joint {name}, which is held in the planar robot, moves", np.abs(rate), "rad/s or m/s", tolerance)
+            position, rate = self._angle(q, joint), v[:, joint.v]
+            if follower := followers.get(name):
+                leader, multiplier = self.joints[follower["leader"]], follower["multiplier"]
+                what, moves = f"joint {name}, which mimics {follower['leader']} in the planar robot,", "is off in its rate"
+                off = position - (multiplier * self._angle(q, leader) + follower["offset"])
+                rate = rate - multiplier * v[:, leader.v]
+            else:
+                what, moves = f"joint {name}, which is held in the planar robot,", "moves"
+                off = position - held.get(name, 0.0)
+            if joint.unit_circle:
+                off = np.remainder(off + np.pi, 2 * np.pi) - np.pi
+            _refuse(f"{what} is off", np.abs(off), "rad or m", tolerance)
+            _refuse(f"{what} {moves}", np.abs(rate), "rad/s or m/s", tolerance)
 
 
 def _refuse(what: str, sizes: Array, unit: str, tolerance: float) -> None:
+    # Rows of NaN are for `Robot.impacts` to refuse.
+    sizes = np.nan_to_num(sizes, nan=0.0)
     worst = int(np.argmax(sizes)) if len(sizes) else 0
     if len(sizes) and not sizes[worst] <= tolerance:
         size = f"{sizes[worst]:.3e} {unit} in row {worst}"

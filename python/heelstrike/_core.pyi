@@ -9,7 +9,7 @@ from ._values import Result
 
 __all__ = ["Answers", "Refused", "Robot", "main", "solve"]
 
-_Friction: TypeAlias = float | Literal["infinite"]
+_Friction: TypeAlias = float | Literal["infinite", "inf"]
 
 @type_check_only
 class _Reading(TypedDict, total=False):
@@ -22,7 +22,7 @@ class _Reading(TypedDict, total=False):
     contact_tolerance: float | None
     resting_speed: float | None
     strict_limits: bool
-    budget: float | None
+    budget: float | Literal["infinite"] | None
 
 @type_check_only
 class _Scene(TypedDict, total=False):
@@ -42,6 +42,8 @@ class Refused(ValueError):
 
     place: str | None
     hint: str | None
+    file: PathLike[str] | str
+    """Of a robot that was read from a file."""
 
 @final
 class Robot:
@@ -99,7 +101,7 @@ class Robot:
         *,
         friction: _Friction | None = None,
         threads: int | None = None,
-        budget: float | None = ...,
+        budget: float | Literal["infinite"] | None = ...,
     ) -> Result: ...
     def touchdowns(
         self,
@@ -111,6 +113,8 @@ class Robot:
         touching: str | None = None,
         simulated: bool = False,
     ) -> list[dict[str, Any]]: ...
+    @staticmethod
+    def _again(text: str, path: str | PathLike[str], options: dict[str, Any] | None) -> Robot: ...
     def _drawn(self) -> tuple[str | None, str]: ...
     def _picture(self, kind: str, question: str, friction: str | None) -> tuple[str | None, str]: ...
 

@@ -35,6 +35,8 @@ def plot(result: Result | Robot) -> Plot:
     if isinstance(result, Robot):
         return Plot(*result._drawn())
     if isinstance(result, Result):
+        if result._drawn is None:
+            raise ValueError("the result was copied or comes from another process: ask its robot again to draw it")
         robot, kind, question, friction = result._drawn
         return Plot(*robot._picture(kind, question, friction))
     raise TypeError(f"a {type(result).__name__} has no picture: give a Robot, or the result of one state or of a sweep")

@@ -41,6 +41,8 @@ def to_arrow(answers: Answers, id: Any = None) -> Any:
     proven = of_outcome(answers.proven).fill_null(False).to_numpy(zero_copy_only=False)
     if not isinstance(id, (pa.Array, pa.ChunkedArray)):
         id = pa.array(np.arange(len(answers)) if id is None else id)
+    if len(id) != len(answers):
+        raise ValueError(f"id has {len(id)} entries for {len(answers)} states")
     columns = [
         id.take(pa.array(state)),
         pa.array(VERDICTS).take(pa.array(answers.verdict)).take(pa.array(state)),

@@ -7,18 +7,35 @@ import io
 import json
 import math
 import os
+from collections.abc import Mapping
 from typing import Any
+
+from ._core import Robot
 
 
 class Result(dict[str, Any]):
     """A result, as the JSON of the command has it, that ``heelstrike.plot`` can draw."""
 
-    _drawn: Any
+    _drawn: Any = None
+    """Its robot and question, which it does not take along into another process."""
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Result, (dict(self),)
 
 
-def read(path: str | os.PathLike[str]) -> str:
+def read(path: str | os.PathLike[str]) -> bytes:
+    with open(path, "rb") as file:
+        return file.read()
+
+
+def _text(path: str | os.PathLike[str]) -> str:
     with open(path, encoding="utf-8-sig") as file:
         return file.read()
+
+
+def robot(text: str, path: os.PathLike[str], options: dict[str, Any] | None) -> Robot:
+    """A robot of another process."""
+    return Robot._again(text, path, options)
 
 
 def _plain(value: Any) -> Any:
@@ -30,8 +47,8 @@ def _plain(value: Any) -> Any:
 def to_json(value: Any) -> str:
     """JSON of a dictionary, or of the file of a path; text that begins with a brace is JSON already."""
     if isinstance(value, str):
-        return value if value.lstrip().startswith("{") else read(value)
-    return read(value) if isinstance(value, os.PathLike) else json.dumps(value, default=_plain)
+        return value if value.lstrip().startswith("{") else _text(value)
+    return _text(value) if isinstance(value, os.PathLike) else json.dumps(value, default=_plain)
 
 
 def from_json(text: bytes, drawn: Any) -> Any:
@@ -50,6 +67,9 @@ def _friction(value: Any) -> Any:
 
 def problem(delassus: Any, velocity: Any, friction: Any, restitution: Any) -> str:
     velocity, friction = (value.tolist() if hasattr(value, "tolist") else value for value in (velocity, friction))
+    for name, value in (("G", delassus), ("c", velocity)):
+        if not isinstance(value, (list, tuple)) and not hasattr(value, "shape"):
+            raise TypeError(f"{name} is an array or a list, not a {type(value).__name__}")
     if velocity and not isinstance(velocity[0], (list, tuple)):
         velocity = [velocity[at : at + 2] for at in range(0, len(velocity), 2)]
     fields = {"delassus": delassus, "velocity_before": velocity, "friction": _friction(friction)}
@@ -65,6 +85,9 @@ def to_csv(table: Any) -> bytes:
         return str(table.to_csv(index=False)).encode()
     if hasattr(table, "to_pydict"):
         table = table.to_pydict()
+    if not isinstance(table, Mapping):
+        what = type(table).__name__
+        raise TypeError(f"a table is a path, a data frame, an Arrow table or a dictionary of columns, not a {what}")
     text = io.StringIO()
     writer = csv.writer(text)
     writer.writerow(table)

@@ -16,6 +16,12 @@ struct Column<T> {
     array: PyOnceLock<Py<PyAny>>,
 }
 
+/// Texts that become a list.
+struct TextColumn {
+    texts: Texts,
+    list: PyOnceLock<Py<PyAny>>,
+}
+
 impl<T: Element> Column<T> {
     fn new(list: Vec<T>) -> Self {
         Self { list: list.into(), array: PyOnceLock::new() }
@@ -49,7 +55,7 @@ pub struct Answers {
     index: Column<i8>,
     proven: Column<bool>,
     family: Column<bool>,
-    texts: [Texts; 4],
+    texts: [TextColumn; 4],
 }
 
 /// What the answers to all states have in common.
@@ -92,7 +98,8 @@ impl Answers {
             index: Column::new(arrays.index),
             proven: Column::new(arrays.proven),
             family: Column::new(arrays.family),
-            texts: [arrays.error, arrays.notes, arrays.border, arrays.families],
+            texts: [arrays.error, arrays.notes, arrays.border, arrays.families]
+                .map(|texts| TextColumn { texts, list: PyOnceLock::new() }),
         }
     }
 
@@ -105,13 +112,16 @@ impl Answers {
 
     /// A list with a text or `None` for each of `count` entries.
     fn texts<'py>(&self, py: Python<'py>, which: usize, count: usize) -> PyResult<Bound<'py, PyAny>> {
-        let Texts { at, known, .. } = &self.texts[which];
-        let known: Vec<_> = known.iter().map(|text| text.into_pyobject(py)).collect::<Result<_, _>>()?;
-        let list = PyList::new(py, std::iter::repeat_n(None::<&str>, count))?;
-        for &(entry, text) in at {
-            list.set_item(entry, &known[text])?;
-        }
-        Ok(list.into_any())
+        let TextColumn { texts: Texts { at, known, .. }, list } = &self.texts[which];
+        let made = || {
+            let known: Vec<_> = known.iter().map(|text| text.into_pyobject(py)).collect::<Result<_, _>>()?;
+            let list = PyList::new(py, std::iter::repeat_n(None::<&str>, count))?;
+            for &(entry, text) in at {
+                list.set_item(entry, &known[text])?;
+            }
+            Ok(list.into_any().unbind())
+        };
+        list.get_or_try_init(py, made).map(|list| list.bind(py).clone())
     }
 }
 

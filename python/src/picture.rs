@@ -28,10 +28,11 @@ pub fn answer(py: Python<'_>, model: &Model, kind: &str, question: &str, frictio
     let made = || {
         if kind == "sweep" {
             let work = Work { friction, threads: threads(None), budget: None };
-            return studied(model, question, work, |study, findings, workers| {
+            let drawn = studied(model, question, work, |study, findings, workers| {
                 let text = Regions::new(study.study, findings).text(&robot.name, &Palette::default());
                 (sweep::of(study, findings, workers).svg(), text)
             });
+            return Ok(drawn?.0);
         }
         let aspect = if kind == "forces" { Aspect::Forces } else { Aspect::Impact };
         let asked = Asked { aspect, friction, detail: Detail::default(), next: false };

@@ -2,11 +2,13 @@
 
 use crate::answers::{Answers, Table};
 use crate::rows::{Asker, Rows, rough};
+use crate::study::limit;
 use crate::values::{from_json, refused, to_json};
 use crate::watch::{budget, without_python};
 use crate::{picture, study};
-use heelstrike::cli::Meshes;
+use heelstrike::cli::{Meshes, Seconds, from_zero};
 use heelstrike::pipeline::{Aspect, Options};
+use heelstrike::read::documents::utf8;
 use heelstrike::reductions::Reductions;
 use heelstrike::robot::{Base, Plane, Reduction};
 use heelstrike::state::NamedContact;
@@ -18,6 +20,7 @@ use pyo3::types::PyDict;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
+use std::time::Duration;
 
 /// A robot as its URDF file has it, and reduced to its plane.
 pub struct Model {
@@ -26,8 +29,8 @@ pub struct Model {
     pub robot: heelstrike::Robot,
     /// How contacts are found.
     pub options: Options,
-    /// How many seconds an answer may take.
-    pub budget: Option<f64>,
+    /// How long an answer may take.
+    pub budget: Seconds,
 }
 
 /// A planar robot, read from a URDF file.
@@ -41,6 +44,8 @@ pub struct Robot {
     pub model: Arc<Model>,
     impacts: Asker,
     forces: Asker,
+    /// What it was made from: text, the file that meshes are looked for from, options.
+    source: (String, PathBuf, Option<Py<PyDict>>),
 }
 
 impl Model {
@@ -48,19 +53,20 @@ impl Model {
     fn read(text: &str, path: &Path, options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
         let mut description = Description::from_urdf(text).map_err(refused)?;
         let mut reduction = Reduction { reductions: Reductions::ALL, ..Reduction::default() };
-        let (mut own, mut budget, mut package_path, mut feet) = (Options::default(), Some(10.0), Vec::new(), None);
+        let (mut own, mut budget, mut package_path, mut feet) =
+            (Options::default(), Some(Duration::from_secs(10)), Vec::new(), None);
         for (name, value) in options.into_iter().flatten() {
             match name.extract::<String>()?.as_str() {
                 "plane" => reduction.plane = plane(value.extract()?)?,
                 "hold" => reduction.hold = held(&description, value.cast()?)?,
                 "base" => reduction.base = base(value.extract()?)?,
-                "axis_tolerance" => reduction.axis_tolerance = value.extract()?,
+                "axis_tolerance" => reduction.axis_tolerance = positive("axis_tolerance", &value)?,
                 "package_path" => package_path = value.extract::<Vec<PathBuf>>()?,
                 "feet" => feet = Some(value),
-                "contact_tolerance" => own.contact_tolerance = value.extract()?,
-                "resting_speed" => own.resting_speed = value.extract()?,
+                "contact_tolerance" => own.contact_tolerance = positive("contact_tolerance", &value)?,
+                "resting_speed" => own.resting_speed = positive("resting_speed", &value)?,
                 "strict_limits" => own.strict_limits = value.extract()?,
-                "budget" => budget = value.extract()?,
+                "budget" => budget = limit(&value)?,
                 other => return Err(PyTypeError::new_err(format!("Robot has no option \"{other}\""))),
             }
         }
@@ -112,6 +118,15 @@ where
     })
 }
 
+/// A finite number from 0 on, or `None` for what is usual.
+fn positive(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
+    let check = |number: f64| {
+        from_zero(&number.to_string())
+            .map_err(|expected| PyValueError::new_err(format!("{what}: {expected}, not {number}")))
+    };
+    value.extract::<Option<f64>>()?.map(check).transpose()
+}
+
 fn plane(name: Option<String>) -> PyResult<Option<Plane>> {
     let all = Plane::ALL.map(|plane| (plane.name(), plane));
     name.map(|name| choice("plane", &name, &all)).transpose()
@@ -149,8 +164,23 @@ pub fn friction(value: &Bound<'_, PyAny>) -> PyResult<Friction> {
         Ok(number) => rough(number).map_err(refused),
         Err(_) => {
             let text = value.extract::<String>()?;
+            // As `float` reads it.
+            if text == "inf" {
+                return Ok(Friction::Infinite);
+            }
             text.parse().map_err(|expected| PyValueError::new_err(format!("friction: {expected}, not {text}")))
         }
+    }
+}
+
+/// An argument `budget`.
+struct Limit(Seconds);
+
+impl<'py> FromPyObject<'_, 'py> for Limit {
+    type Error = PyErr;
+
+    fn extract(value: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        limit(&value).map(Self)
     }
 }
 
@@ -159,20 +189,21 @@ impl Robot {
     #[new]
     #[pyo3(signature = (path, **options))]
     fn new(py: Python<'_>, path: PathBuf, options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
-        let text = py.import("heelstrike._values")?.call_method1("read", (&path,))?;
-        let model = Model::read(text.extract()?, &path, options).map_err(|error| {
+        let bytes = py.import("heelstrike._values")?.call_method1("read", (&path,))?;
+        let text = utf8(bytes.extract()?).map_err(refused);
+        let robot = text.and_then(|text| Self::of(text, &path, options));
+        robot.map_err(|error| {
             // As a message of the command has it.
             let named = error.value(py).setattr("file", &path);
             named.err().unwrap_or(error)
-        })?;
-        Ok(Self::of(model))
+        })
     }
 
     /// A robot from the text of a URDF file; meshes are looked for in the current folder.
     #[staticmethod]
     #[pyo3(signature = (text, **options))]
     fn from_string(text: &str, options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
-        Ok(Self::of(Model::read(text, Path::new(""), options)?))
+        Self::of(text, Path::new(""), options)
     }
 
     /// The robot's name in its file.
@@ -193,11 +224,20 @@ impl Robot {
         self.model.robot.reading.plane.name()
     }
 
-    /// Values of joints that `hold` fixed; all others without a coordinate are at zero.
+    /// Values of joints that `hold` fixed, and of those that mimic them; all others without a coordinate are at zero.
     #[getter]
-    fn held(&self) -> HashMap<&str, f64> {
+    fn held(&self) -> PyResult<HashMap<&str, f64>> {
         let Model { description, reduction, .. } = &*self.model;
-        reduction.hold.iter().map(|&(joint, value)| (&*description.joints[joint].name, value)).collect()
+        let ends = description.mimicked().map_err(refused)?;
+        let value = |joint: usize| reduction.hold.iter().find(|held| held.0 == joint).map(|held| held.1);
+        let held = ends.iter().enumerate().filter_map(|(joint, end)| {
+            let value = match end {
+                Some(end) => end.multiplier * value(end.joint)? + end.offset,
+                None => value(joint)?,
+            };
+            Some((&*description.joints[joint].name, value))
+        });
+        Ok(held.collect())
     }
 
     /// What was read: plane, masses [kg], links, joints, feet, what was left out; as `heelstrike inspect --format
@@ -265,6 +305,11 @@ impl Robot {
         scene: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let Some(v) = v else {
+            if contacts.is_some() || restitution.is_some() || threads.is_some() || scene.is_some() {
+                let own =
+                    "one state has contacts, restitution and its scene itself; only friction can be given besides";
+                return Err(PyTypeError::new_err(own));
+            }
             return Self::one(slf, q, Aspect::Forces, friction, Detail::default(), false);
         };
         let rows = Rows::read(slf.get(), [q, v], friction, restitution, contacts, scene)?;
@@ -276,15 +321,15 @@ impl Robot {
     /// `study` is a dictionary, a JSON text or a path of a JSON file, as `heelstrike sweep` reads it. Returns the
     /// result as the command writes it. The work may take `budget` seconds of processor time; None for no end. Raises
     /// Refused.
-    #[pyo3(signature = (study, *, friction = None, threads = None, budget = Some(60.0)))]
+    #[pyo3(signature = (study, *, friction = None, threads = None, budget = Limit(Some(Duration::from_secs(60)))))]
     fn sweep<'py>(
         slf: &Bound<'py, Self>,
         study: &Bound<'py, PyAny>,
         friction: Option<&Bound<'py, PyAny>>,
         threads: Option<usize>,
-        budget: Option<f64>,
+        budget: Limit,
     ) -> PyResult<Bound<'py, PyAny>> {
-        study::sweep(slf, study, friction, threads, budget)
+        study::sweep(slf, study, friction, threads, budget.0)
     }
 
     /// The impacts at the touchdowns of a recording, as `heelstrike batch --touchdowns` writes them.
@@ -325,18 +370,36 @@ impl Robot {
         picture::answer(py, &self.model, kind, question, friction)
     }
 
+    #[staticmethod]
+    #[pyo3(signature = (text, path, options))]
+    fn _again(text: &str, path: PathBuf, options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
+        Self::of(text, &path, options)
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let (text, path, options) = &slf.get().source;
+        let again = slf.py().import("heelstrike._values")?.getattr("robot")?;
+        let source = (text, path, options.as_ref().map(|options| options.bind(slf.py())));
+        Ok((again, source).into_pyobject(slf.py())?.into_any())
+    }
+
     fn __repr__(&self) -> String {
         format!("Robot({:?}, coordinates={:?})", self.model.robot.name, self.coordinates())
     }
 }
 
 impl Robot {
-    fn of(model: Model) -> Self {
+    fn of(text: &str, path: &Path, options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
+        let model = Model::read(text, path, options)?;
         let asker = |aspect| {
             let table = Arc::new(Table::new(aspect, &model.robot, &model.options.feet, &[]));
             Asker { table, kept: Mutex::default() }
         };
-        Self { impacts: asker(Aspect::Impact), forces: asker(Aspect::Forces), model: Arc::new(model) }
+        let options = options.map(|options| options.copy().map(Bound::unbind)).transpose()?;
+        // Another process may run in another folder.
+        let folder = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        let source = (text.to_owned(), folder, options);
+        Ok(Self { impacts: asker(Aspect::Impact), forces: asker(Aspect::Forces), model: Arc::new(model), source })
     }
 
     fn one<'py>(

@@ -14,7 +14,7 @@ use heelstrike::{Defaults, Error, Friction, Pipeline, Reason, State};
 use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyList, PyTuple};
 use self_cell::self_cell;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -61,20 +61,20 @@ struct Numbers<'a> {
 /// The array as f64 in C order, with this many numbers in each of its rows; it is copied only if it is something else.
 fn array<'py>(what: &str, value: &Bound<'py, PyAny>, columns: Option<usize>) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
     let py = value.py();
-    let own = value.cast::<PyArrayDyn<f64>>().ok().filter(|own| own.is_c_contiguous()).cloned();
+    let own = value.cast::<PyArrayDyn<f64>>().ok().filter(|own| own.is_c_contiguous() && own.is_aligned()).cloned();
     let own = match own {
         Some(own) => own,
         None => {
             let numpy = py.import("numpy")?;
             let keywords = PyDict::new(py);
             keywords.set_item("dtype", "float64")?;
-            keywords.set_item("order", "C")?;
+            keywords.set_item("requirements", ["C", "A"])?;
             let kind: String = numpy.call_method1("asarray", (value,))?.getattr("dtype")?.getattr("kind")?.extract()?;
             if !["f", "i", "u"].contains(&&*kind) {
                 let hint = "numbers are needed: give float64, as by numpy.ascontiguousarray(..., dtype=float)";
                 return Err(PyTypeError::new_err(format!("{what} has the dtype kind '{kind}'; {hint}")));
             }
-            numpy.call_method("asarray", (value,), Some(&keywords))?.cast_into::<PyArrayDyn<f64>>()?
+            numpy.call_method("require", (value,), Some(&keywords))?.cast_into::<PyArrayDyn<f64>>()?
         }
     };
     let fits = match columns {
@@ -99,7 +99,8 @@ enum Argument<'py> {
 
 impl<'py> Argument<'py> {
     fn read(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Self> {
-        let is_array = || Ok::<_, PyErr>(value.hasattr("shape")? && !value.getattr("shape")?.is_empty()?);
+        let is_list = value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>();
+        let is_array = || Ok::<_, PyErr>(is_list || value.hasattr("shape")? && !value.getattr("shape")?.is_empty()?);
         let number = value.extract::<f64>().is_ok();
         if !number && is_array()? { Ok(Self::Rows(array(what, value, None)?)) } else { Ok(Self::Value(value.clone())) }
     }

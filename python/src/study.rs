@@ -1,39 +1,40 @@
 //! Sweeps, touchdowns and contact problems, as the command answers them.
 
 use crate::robot::{Robot, friction};
-use crate::values::{from_json, refused, to_json};
-use crate::watch::{budget, raised, shared, without_python};
+use crate::values::{from_json, refused, to_json, warn};
+use crate::watch::{budget, interrupted, raised, shared, without_python};
 use heelstrike::batch::{Batch, Chunks, Question, Recording, RowOrigin, TaskSource, samples};
 use heelstrike::budget::TotalBudget;
+use heelstrike::cli::{Seconds, seconds};
 use heelstrike::error::Location;
 use heelstrike::gait::{self, At, Difference, Heights, Sampled, Touching};
 use heelstrike::impact::{AnalysisOptions, Scratch};
 use heelstrike::read::Problem;
 use heelstrike::read::table::{Header, Rates};
 use heelstrike::sweep::{Findings, RobotStudy, Solver, Workers};
-use heelstrike::write::append_line;
 use heelstrike::write::sweep::{Regions, SampleRecord};
+use heelstrike::write::{append_line, notes};
 use heelstrike::{Defaults, Detail, Error, Friction, Reason, Report, Study};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::sync::Mutex;
+use std::time::Duration;
 
 /// How a study is worked on.
 #[derive(Clone, Copy)]
 pub struct Work {
     pub friction: Option<Friction>,
     pub threads: usize,
-    /// In seconds.
-    pub budget: Option<f64>,
+    pub budget: Seconds,
 }
 
-/// Does the work on a study.
+/// Does the work on a study; also what a reader should know of it.
 pub fn studied<T>(
     robot: &crate::robot::Model,
     text: &str,
     work: Work,
     then: impl FnOnce(&RobotStudy, &Findings, Workers) -> T,
-) -> heelstrike::Result<T> {
+) -> heelstrike::Result<(T, Vec<String>)> {
     let study = Study::from_json(text)?;
     Findings::check_memory(&study)?;
     let model = RobotStudy {
@@ -44,10 +45,21 @@ pub fn studied<T>(
         options: robot.options.clone(),
         defaults: Defaults { friction: work.friction, ..Defaults::default() },
     };
-    model.has_own_friction()?;
+    let own_friction = notes::own_friction(model.has_own_friction()?.into(), "study");
+    let notes = own_friction.into_iter().chain(notes::unused(&study)).collect();
     let workers = Workers { threads: work.threads, done: &|| {} };
     let done = || then(&model, &Findings::of(&model, workers), workers);
-    shared(work.budget).within(done).map_err(|spent| study.beyond(spent))
+    let made = shared(work.budget).within(done).map_err(|spent| study.beyond(spent))?;
+    Ok((made, notes))
+}
+
+/// A number of seconds, which a budget may be, or `None` or "infinite".
+pub fn limit(value: &Bound<'_, PyAny>) -> PyResult<Seconds> {
+    if value.is_none() {
+        return Ok(None);
+    }
+    let text = value.extract::<f64>().map_or_else(|_| value.extract::<String>(), |number| Ok(number.to_string()))?;
+    seconds(&text).map_err(|expected| PyValueError::new_err(format!("budget: {expected} or None, not {text}")))
 }
 
 pub fn threads(threads: Option<usize>) -> usize {
@@ -60,11 +72,11 @@ pub fn sweep<'py>(
     study: &Bound<'py, PyAny>,
     mu: Option<&Bound<'py, PyAny>>,
     count: Option<usize>,
-    seconds: Option<f64>,
+    budget: Seconds,
 ) -> PyResult<Bound<'py, PyAny>> {
     let py = robot.py();
     let text = to_json(study)?;
-    let work = Work { friction: mu.map(friction).transpose()?, threads: threads(count), budget: seconds };
+    let work = Work { friction: mu.map(friction).transpose()?, threads: threads(count), budget };
     let made = |model: &RobotStudy, findings: &Findings, workers: Workers| {
         let mut out = Vec::new();
         if raised() {
@@ -84,7 +96,8 @@ pub fn sweep<'py>(
         out
     };
     let model = &robot.get().model;
-    let out = without_python(py, || studied(model, &text, work, made))?.map_err(refused)?;
+    let (out, notes) = without_python(py, || studied(model, &text, work, made))?.map_err(refused)?;
+    warn(py, notes)?;
     let mu = work.friction.map(|own| own.to_string());
     from_json(py, &out, Some((robot, "sweep", text, mu).into_pyobject(py)?.into_any()))
 }
@@ -127,17 +140,18 @@ pub fn touchdowns<'py>(
     let text: Vec<u8> = py.import("heelstrike._values")?.call_method1("to_csv", (table,))?.extract()?;
     let defaults = Defaults { friction: mu.map(friction).transpose()?, ..Defaults::default() };
     let model = &robot.get().model;
-    let out = without_python(py, || found(model, &text, defaults, &recorded))?.map_err(refused)?;
+    let (out, notes) = without_python(py, || found(model, &text, defaults, &recorded))?.map_err(refused)?;
+    warn(py, notes)?;
     from_json(py, &out, None)
 }
 
-/// The answers to the touchdowns of a table, as a JSON list.
+/// The answers to the touchdowns of a table, as a JSON list, and what a reader should know of them.
 fn found(
     model: &crate::robot::Model,
     text: &[u8],
     defaults: Defaults,
     recorded: &Recorded,
-) -> heelstrike::Result<Vec<u8>> {
+) -> heelstrike::Result<(Vec<u8>, Vec<String>)> {
     let Recorded { velocity, at, touching, heights } = recorded;
     let robot = &model.robot;
     let mut chunks = Chunks::of_table(text);
@@ -164,7 +178,7 @@ fn found(
     };
     let dropped = Mutex::default();
     let mut rows: Box<dyn Iterator<Item = Sampled<RowOrigin>> + Send> =
-        Box::new(samples(chunks, &header, robot, &defaults));
+        Box::new(samples(chunks, &header, robot, &defaults).take_while(|_| !interrupted()));
     if header.is_spatial() {
         rows = Box::new(gait::sagittal(rows, &dropped));
     }
@@ -173,11 +187,21 @@ fn found(
     }
     let rows = gait::find(rows, robot, &model.options.feet, *at, *touching)?.meaning(*heights);
     let (mut source, mut batch, mut lines) = (Recording::new(rows), Batch::new(&question), Vec::new());
+    let mut own_friction = 0;
     while let Some(states) = source.next()? {
-        lines.extend(batch.samples(states).out);
+        let block = batch.samples(states);
+        lines.extend(block.out);
+        own_friction += block.summary.own_friction;
+        if interrupted() {
+            break;
+        }
     }
+    drop(source);
+    let dropped = dropped.into_inner().unwrap_or_default();
+    let of_table = notes::missing(&header).into_iter().chain(notes::left_out(&header, &dropped));
+    let notes = of_table.chain(notes::own_friction(own_friction, "state")).collect();
     let lines: Vec<&[u8]> = lines.trim_ascii_end().split(|&byte| byte == b'\n').collect();
-    Ok([b"[", &*lines.join(&b','), b"]"].concat())
+    Ok(([b"[", &*lines.join(&b','), b"]"].concat(), notes))
 }
 
 /// Every outcome of a contact problem that is given as matrices, as `heelstrike solve` writes it.
@@ -202,7 +226,8 @@ pub fn solve<'py>(
     let solved = || {
         let problem = Problem::from_json(&text, &Defaults::default())?;
         let asked = AnalysisOptions { rejections: explain.into(), ..AnalysisOptions::default() };
-        let analysis = budget(Some(10.0)).within(|| Scratch::default().analyze(&problem.contact, &problem, asked))?;
+        let analysis = budget(Some(Duration::from_secs(10)))
+            .within(|| Scratch::default().analyze(&problem.contact, &problem, asked))?;
         let mut out = Vec::new();
         Report::of_problem(&problem, &analysis, detail).append_json(detail, &mut out);
         Ok(out)

@@ -28,6 +28,12 @@ pub fn refused(error: Error) -> PyErr {
     refused
 }
 
+/// Warns with each of these notes.
+pub fn warn(py: Python<'_>, notes: impl IntoIterator<Item = String>) -> PyResult<()> {
+    let warnings = py.import("warnings")?;
+    notes.into_iter().try_for_each(|note| warnings.call_method1("warn", (note,)).map(drop))
+}
+
 /// A JSON text of a value, in which NumPy's numbers and arrays count as Python's.
 pub fn to_json(value: &Bound<'_, PyAny>) -> PyResult<String> {
     value.py().import("heelstrike._values")?.call_method1("to_json", (value,))?.extract()

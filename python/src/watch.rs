@@ -5,7 +5,7 @@
 
 use heelstrike::Budget;
 use heelstrike::budget::SharedBudget;
-use heelstrike::cli::work_time;
+use heelstrike::cli::{Seconds, work_time};
 use pyo3::prelude::*;
 use std::cell::{Cell, RefCell};
 use std::time::{Duration, Instant};
@@ -22,26 +22,30 @@ thread_local! {
     static AGES: Cell<u32> = const { Cell::new(0) };
 }
 
-/// The budget of work that may take so many seconds; `None` for work without an end.
-pub fn budget(seconds: Option<f64>) -> Budget {
-    let time = seconds.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+/// The budget of work that may take so long; `None` for work without an end.
+pub fn budget(time: Seconds) -> Budget {
     Budget { time: time.unwrap_or(Duration::MAX), clock }
 }
 
 /// A budget that several threads spend together.
-pub fn shared(seconds: Option<f64>) -> SharedBudget {
-    SharedBudget::new(budget(seconds))
+pub fn shared(time: Seconds) -> SharedBudget {
+    SharedBudget::new(budget(time))
 }
 
 fn clock() -> Duration {
+    match interrupted() {
+        true => AGE.saturating_mul(AGES.replace(AGES.get().saturating_add(1))),
+        false => work_time(),
+    }
+}
+
+/// Whether a signal handler raised, which is asked anew after a while.
+pub fn interrupted() -> bool {
     if LAST.get().is_none_or(|last| last.elapsed() > OFTEN) {
         LAST.set(Some(Instant::now()));
         look();
     }
-    match raised() {
-        true => AGE.saturating_mul(AGES.replace(AGES.get().saturating_add(1))),
-        false => work_time(),
-    }
+    raised()
 }
 
 /// Whether a signal handler raised during the work of this thread.

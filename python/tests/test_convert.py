@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from conftest import peer
 
 import heelstrike
 
@@ -32,7 +33,7 @@ CONTACTS = [{"link": "right_shank", "offset": FOOT}, {"link": "left_shank", "off
 
 class Pinocchio:
     def __init__(self):
-        self.pin = pytest.importorskip("pinocchio")
+        self.pin = peer("pinocchio")
         self.model = self.pin.buildModelFromXML(URDF, self.pin.JointModelFreeFlyer())
         self.layout = heelstrike.from_pinocchio(self.model)
 
@@ -60,7 +61,7 @@ class Pinocchio:
 
 class MuJoCo:
     def __init__(self):
-        self.mujoco = pytest.importorskip("mujoco")
+        self.mujoco = peer("mujoco")
         spec = self.mujoco.MjSpec.from_string(URDF)
         spec.compiler.fusestatic = False
         root = spec.body("torso")
@@ -95,8 +96,8 @@ class MuJoCo:
 
 class Drake:
     def __init__(self):
-        plant_module = pytest.importorskip("pydrake.multibody.plant")
-        parsing = pytest.importorskip("pydrake.multibody.parsing")
+        plant_module = peer("pydrake.multibody.plant")
+        parsing = peer("pydrake.multibody.parsing")
         self.plant = plant_module.MultibodyPlant(0.0)
         parsing.Parser(self.plant).AddModelsFromString(URDF, "urdf")
         self.plant.Finalize()
@@ -191,6 +192,53 @@ def test_motion_out_of_the_plane_is_refused_with_its_size(package, robot, change
     state, _ = planar(package, np.random.default_rng(4), **change)
     with pytest.raises(ValueError, match=message):
         package.layout(robot, *state)
+
+
+# The left knee is turned by twice the right one's angle and 0.1 rad.
+MIMIC = URDF.replace(
+    '<joint name="left_knee" type="continuous">',
+    '<joint name="left_knee" type="continuous"><mimic joint="right_knee" multiplier="2" offset="0.1"/>',
+)
+
+
+def test_joints_that_mimic_others_must_follow_them(package):
+    robot = heelstrike.Robot.from_string(MIMIC)
+    assert "left_knee" not in robot.coordinates
+
+    def layout(off=0.0, rate_off=0.0):
+        joints = dict(zip(NAMES, [0.2, 1.7, 0.1, 2 * 1.7 + 0.1 + off]))
+        rates = dict(zip(NAMES, [0.2, -0.5, 0.1, 2 * -0.5 + rate_off]))
+        state, _ = planar(package, np.random.default_rng(6), joints=joints, rates=rates)
+        return package.layout(robot, *state)
+
+    assert layout()[0].shape == (1, 6)
+    with pytest.raises(ValueError, match="left_knee, which mimics right_knee .* is off by 2.000e-01 rad"):
+        layout(off=0.2)
+    with pytest.raises(ValueError, match="left_knee, which mimics right_knee .* off in its rate by 3.000e-01 rad/s"):
+        layout(rate_off=0.3)
+
+
+def test_joint_is_held_beyond_a_half_turn(package):
+    robot = heelstrike.Robot.from_string(URDF, hold={"left_knee": 4.0})
+    joints, rates = dict(zip(NAMES, [0.2, 1.7, 0.1, 4.0])), dict(zip(NAMES, [0.0, 1.0, 0.0, 0.0]))
+    state, _ = planar(package, np.random.default_rng(6), joints=joints, rates=rates)
+    assert package.layout(robot, *state)[0].shape == (1, 6)
+    followed = heelstrike.Robot.from_string(MIMIC, hold={"right_knee": 0.3})
+    assert followed.held == {"right_knee": 0.3, "left_knee": 0.7}
+
+
+def test_row_that_is_not_finite_is_a_refused_row(package, robot):
+    states = [planar(package, np.random.default_rng(8))[0] for _ in range(60)]
+    clean, broken = (np.array(part) for part in zip(*states)), [np.array(part) for part in zip(*states)]
+    for part in broken:
+        for at in range(part.shape[1]):
+            part[at + (20 if part is broken[1] else 0), at] = np.inf if at % 2 else np.nan
+    answers = robot.impacts(*package.layout(robot, *broken), friction=0.5, contacts=CONTACTS)
+    columns = [part.shape[1] for part in broken]
+    assert set(np.flatnonzero(answers.verdict == heelstrike.Verdict.REFUSED)) == {
+        *range(columns[0]), *range(20, 20 + columns[1])
+    }
+    assert robot.impacts(*package.layout(robot, *clean), friction=0.5).error == [None] * 60
 
 
 def test_other_models_are_refused_by_name(package, robot):

@@ -168,3 +168,27 @@ def test_any_number_of_threads_and_rows_gives_the_same(ramone, walk):
     none = ramone.impacts(q[:0], v[:0], friction=0.3)
     assert len(none) == 0 and none.offsets.tolist() == [0] and none.impulse.shape == (0, 2, 2)
     assert none.to_arrow().num_rows == 0
+
+
+def test_lists_and_unaligned_arrays_are_converted(ramone, walk):
+    q, v = walk(5)
+    mu, e = np.linspace(0.1, 0.9, 5), np.full(5, 0.5)
+    expected = ramone.impacts(q, v, friction=mu, restitution=e, place="lowest")
+    packed = np.zeros(5, dtype=[("byte", "u1"), ("q", "f8", (7,))])
+    packed["q"] = q
+    for own_q, own_mu, own_e in [(q, mu.tolist(), tuple(e)), (packed["q"], mu, e)]:
+        found = ramone.impacts(own_q, v, friction=own_mu, restitution=own_e, place="lowest")
+        assert found.velocity_after.tobytes() == expected.velocity_after.tobytes()
+    unaligned = np.frombuffer(b"0" + q.tobytes(), dtype="u1")[1:].view("f8").reshape(q.shape)
+    found = ramone.impacts(unaligned, v, friction=mu, restitution=e, place="lowest")
+    assert not unaligned.flags.aligned and found.velocity_after.tobytes() == expected.velocity_after.tobytes()
+    rough = [ramone.impacts(q, v, friction=mu, place="lowest").impulse.tobytes() for mu in ("inf", "infinite", np.inf)]
+    assert len(set(rough)) == 1
+
+
+def test_texts_are_made_once(ramone, walk):
+    answers = ramone.impacts(*walk(5), friction=0.5)
+    for name in ("error", "notes", "border", "families"):
+        assert getattr(answers, name) is getattr(answers, name)
+    with pytest.raises(ValueError, match="id has 3 entries for 5 states"):
+        answers.to_arrow([1, 2, 3])

@@ -2,6 +2,7 @@
 
 import json
 import math
+import pickle
 import subprocess
 
 import numpy as np
@@ -52,6 +53,68 @@ def test_refusal_names_place_and_remedy(ramone):
         heelstrike.Robot(URDF, plane="zx")
 
 
+@pytest.mark.parametrize("option", ["resting_speed", "axis_tolerance", "contact_tolerance", "budget"])
+@pytest.mark.parametrize("value", [-1.0, math.nan, math.inf])
+def test_options_are_checked_as_those_of_the_command(option, value):
+    with pytest.raises(ValueError, match=f"{option}: expected a number .*from 0 on"):
+        heelstrike.Robot(URDF, **{option: value})
+    flag = f"--{option.replace('_', '-')}={value}"
+    refused = subprocess.run([*COMMAND, "impact", URDF, STATE, flag], capture_output=True, text=True)
+    assert refused.returncode == 2 and "from 0 on" in refused.stderr
+
+
+def test_budget_of_a_sweep_is_checked(ramone):
+    with pytest.raises(ValueError, match="budget: expected a number of seconds from 0 on"):
+        ramone.sweep({}, budget=-1)
+    assert heelstrike.Robot(URDF, budget=None) and heelstrike.Robot(URDF, budget="infinite")
+
+
+def test_one_state_of_forces_takes_no_other_arguments(ramone):
+    standing = ROOT / "examples/ramone_stands.json"
+    for other in ({"contacts": []}, {"restitution": 0.5}, {"threads": 1}, {"place": "lowest"}):
+        with pytest.raises(TypeError, match="one state has contacts, restitution and its scene itself"):
+            ramone.forces(standing, **other)
+
+
+def test_file_that_is_not_utf_8_is_refused_with_a_remedy(tmp_path):
+    file = tmp_path / "latin.urdf"
+    file.write_bytes('<robot name="h\xfcpfer"/>'.encode("latin-1"))
+    with pytest.raises(heelstrike.Refused, match="not UTF-8.*iconv") as error:
+        heelstrike.Robot(file)
+    assert error.value.file == file
+
+
+def test_robots_and_results_go_into_other_processes(ramone):
+    robot = heelstrike.Robot(URDF, hold={"left_knee": -0.5}, contact_tolerance=1e-3)
+    again = pickle.loads(pickle.dumps(robot))
+    assert (again.coordinates, again.held) == (robot.coordinates, robot.held)
+    state = {"place": "lowest", "friction": 1}
+    assert again.impact(state) == robot.impact(state)
+    result = ramone.impact(STATE)
+    other = pickle.loads(pickle.dumps(result))
+    assert type(other) is heelstrike.Result and other == result
+    with pytest.raises(ValueError, match="ask its robot again"):
+        heelstrike.plot(other)
+
+
+def test_notes_of_the_command_are_warnings(ramone, tmp_path):
+    rows = (ROOT / "examples/gait/ramone_walk.csv").read_text().splitlines()
+    own = [f"{row},{'friction' if at == 0 else 0.5}" for at, row in enumerate(rows)]
+    own[0] = own[0].replace("v_right_knee", "remark")
+    table = tmp_path / "walk.csv"
+    table.write_text("\n".join(own))
+    arguments = ["batch", URDF, table, "--touchdowns", "--friction", "0.8"]
+    said = " ".join(subprocess.run([*COMMAND, *arguments], capture_output=True, text=True).stderr.split())
+    with pytest.warns(UserWarning) as warned:
+        ramone.touchdowns(table, friction=0.8)
+    notes = [str(warning.message).replace("`friction`", "--friction") for warning in warned]
+    assert any("taken as 0: v_right_knee" in note for note in notes) and any("has its own" in note for note in notes)
+    assert all(note in said for note in notes), said
+    study = {"parameters": {"a": {"from": -1, "to": 1, "steps": 3}}, "state": {"friction": 1, "place": "lowest"}}
+    with pytest.warns(UserWarning, match="depends on a"):
+        ramone.sweep(study)
+
+
 def test_robot_is_read_as_asked():
     text = URDF.read_text()
     held = heelstrike.Robot.from_string(text, hold={"left_knee": -0.5}, base="floating", feet=[{"link": "torso"}])
@@ -77,6 +140,8 @@ def test_touchdowns_are_those_of_the_command(ramone):
     frame = pandas.read_csv(table)
     assert ramone.touchdowns(frame, friction=0.8) == found
     assert ramone.touchdowns({name: frame[name].to_numpy() for name in frame}, friction=0.8) == found
+    with pytest.raises(TypeError, match="a table is a path.*not a list"):
+        ramone.touchdowns([[0.0]])
     with pytest.raises(heelstrike.Refused, match="time"):
         ramone.touchdowns({"q_left_hip": [0.0], "v_left_hip": [0.0]}, friction=0.8)
 
@@ -88,6 +153,8 @@ def test_problem_is_that_of_the_command():
     assert heelstrike.solve(matrix, velocity, 0.5) == expected
     assert heelstrike.solve(matrix, velocity.ravel(), [0.5], 0.0) == expected
     assert heelstrike.solve(matrix, velocity, math.inf)["verdict"] == "unique"
+    with pytest.raises(TypeError, match="c is an array or a list, not a float"):
+        heelstrike.solve(matrix, 0.5, 0.5)
     with pytest.raises(heelstrike.Refused, match="friction"):
         heelstrike.solve(matrix, velocity, -1.0)
 

@@ -1,6 +1,6 @@
 //! `heelstrike batch`: the answers to many states, in order.
 
-use super::diagnostic::{is_quiet, note, note_own_friction, with_flags};
+use super::diagnostic::{is_quiet, note, note_all, with_flags};
 use super::options::{
     BudgetOptions, Choices, ContactOptions, CsvOptions, DetailOptions, LoopOptions, NextOption, SceneOptions, Seconds,
     ThreadOptions, choice, pipeline_options, seconds,
@@ -21,7 +21,7 @@ use crate::gait::{Dropped, Thresholds};
 use crate::pipeline::{Aspect, Options};
 use crate::read::table::Header;
 use crate::state::NamedContact;
-use crate::write::{self, Columns, RowKind};
+use crate::write::{self, Columns, RowKind, notes};
 use crate::{Detail, Error, Reason, Robot};
 use clap::ValueEnum;
 use std::io::{self, Read, Write};
@@ -137,9 +137,7 @@ pub(super) fn run(args: &Args) -> Completion {
         let hint = if header.is_some() { "the table has a header and no rows" } else { "the input is empty" };
         return Err(in_input(Error::new(Reason::Missing("a state".into()))).hint(hint).into());
     }
-    if let Some(header) = &header {
-        note_missing(header);
-    }
+    note_all(header.as_ref().and_then(notes::missing));
     let format = args.results_format()?;
     // Before any file is replaced: does this robot have feet to look for?
     let thresholds = args.recording.thresholds(&robot, &feet);
@@ -173,8 +171,8 @@ pub(super) fn run(args: &Args) -> Completion {
     counts.missing_columns = header.as_ref().map_or(Vec::new(), |header| header.missing().to_vec());
     progress.finish_and_clear();
 
-    if let Some(header) = &header {
-        note_columns(header, &dropped);
+    if let (Some(header), Ok(dropped)) = (&header, dropped.lock()) {
+        note_all(notes::left_out(header, &dropped));
     }
     args.report(&question, &counts, answered, thresholds)?;
     if args.plot.path().is_some() {
@@ -308,7 +306,7 @@ impl Args {
         answered: usize,
         thresholds: Thresholds,
     ) -> io::Result<()> {
-        note_own_friction(counts.own_friction, "state");
+        note_all(notes::own_friction(counts.own_friction, "state"));
         if let Some(least) = question.total.as_ref().and_then(TotalBudget::least) {
             let least = least.as_secs_f64();
             note(&format!(
@@ -357,29 +355,5 @@ impl Args {
             return Err(missing.in_file(name).hint("touchdowns need the time of each row").into());
         }
         Ok(Some(header))
-    }
-}
-
-/// Notes which coordinates have no column.
-fn note_missing(header: &Header) {
-    match header.missing() {
-        [] => {}
-        [only] => note(&format!("a column is missing, and taken as 0: {only}")),
-        missing => note(&format!("{} columns are missing, and taken as 0: {}", missing.len(), missing.join(", "))),
-    }
-}
-
-/// Notes which columns did not enter the analysis.
-fn note_columns(header: &Header, dropped: &Mutex<Dropped>) {
-    let ignored: Vec<&str> = header.ignored().collect();
-    if !ignored.is_empty() {
-        let (count, names) = (ignored.len(), ignored.join(", "));
-        note(&format!(
-            "{count} column{} not read, because their joints have no coordinate (see `heelstrike inspect`): {names}",
-            if count == 1 { "" } else { "s" },
-        ));
-    }
-    if let (true, Ok(dropped)) = (header.is_spatial(), dropped.lock()) {
-        note(&format!("the base is projected into its plane along the mean heading of each clip; left out: {dropped}"));
     }
 }

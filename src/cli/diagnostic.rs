@@ -96,6 +96,11 @@ pub(super) fn note(text: &str) {
     write(&[Group::with_title(Level::NOTE.primary_title(visible(&with_flags(text))))]);
 }
 
+/// Writes each of these notes.
+pub(super) fn note_all(notes: impl IntoIterator<Item = String>) {
+    notes.into_iter().for_each(|text| note(&text));
+}
+
 fn hint(error: &Error) -> Option<Group<'_>> {
     let hint = normalize_untrusted_str(&with_flags(error.remedy()?));
     Some(Group::with_title(Level::HELP.with_name("hint").secondary_title(hint)))
@@ -105,15 +110,6 @@ fn write(groups: &[Group<'_>]) {
     let text = Renderer::styled().render(groups);
     // A failure to write to standard error cannot be reported anywhere.
     let _ = writeln!(anstream::stderr().lock(), "{text}");
-}
-
-/// Notes how many inputs have friction of their own, so that the one of the command line is not theirs.
-pub(super) fn note_own_friction(count: u64, what: &str) {
-    match count {
-        0 => {}
-        1 => note(&format!("`friction` is not used where a {what} has its own, as one does here")),
-        _ => note(&format!("`friction` is not used where a {what} has its own, as {count} do here")),
-    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! `heelstrike impact`: every outcome of one state, or of a few.
 
-use super::diagnostic::{note, note_own_friction};
+use super::diagnostic::{note, note_all};
 use super::options::{
     BudgetOptions, ContactOptions, DetailOptions, LoopOptions, NextOption, SceneOptions, pipeline_options,
 };
@@ -12,7 +12,7 @@ use super::{Completion, Failure, input};
 use crate::draw::robot::picture;
 use crate::pipeline::{Aspect, Pipeline};
 use crate::state::State;
-use crate::write::{Report, Subject};
+use crate::write::{Report, Subject, notes};
 use crate::{Error, Reason};
 use std::path::PathBuf;
 
@@ -94,7 +94,7 @@ impl StateArgs {
             append(&report, &Subject::of_state(&robot, &state, &impact), detail, palette, out);
             Ok(impact.analyzed().err())
         })?;
-        note_own_friction(own_friction, "state");
+        note_all(notes::own_friction(own_friction, "state"));
         match &drawn {
             Some(picture) => self.plot.draw(picture, "the state has no place in the plane")?,
             None if plotted => note("no picture is drawn of a state that is refused"),

@@ -28,6 +28,7 @@ mod reference;
 
 pub use clock::work_time;
 pub use meshes::Meshes;
+pub use options::{Seconds, from_zero, seconds};
 
 use crate::error::excerpt::Excerpt;
 use crate::error::visible;

@@ -235,9 +235,13 @@ pub(super) struct BudgetOptions<const STUDY: bool> {
 }
 
 /// A duration; `None` without an end.
-pub(super) type Seconds = Option<Duration>;
+pub type Seconds = Option<Duration>;
 
-pub(super) fn seconds(text: &str) -> Result<Seconds, String> {
+/// A number of seconds from 0 on, or "infinite".
+///
+/// # Errors
+/// What was expected, in words.
+pub fn seconds(text: &str) -> Result<Seconds, String> {
     if text == "infinite" {
         return Ok(None);
     }
@@ -294,7 +298,10 @@ pub(super) fn pipeline_options(
 }
 
 /// A finite number from 0 on.
-pub(super) fn from_zero(text: &str) -> Result<f64, String> {
+///
+/// # Errors
+/// What was expected, in words.
+pub fn from_zero(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(number) if f64::is_finite(number) && number >= 0.0 => Ok(number),
         _ => Err("expected a number from 0 on".to_owned()),

@@ -1,6 +1,6 @@
 //! `heelstrike solve`: every outcome of a contact problem that is given as matrices.
 
-use super::diagnostic::note_own_friction;
+use super::diagnostic::note_all;
 use super::options::{BudgetOptions, DetailOptions, ReductionOptions, SceneOptions};
 use super::output::{Format, OutputOptions, spare};
 use super::stream::{SUMMED_UP, answer_all, append};
@@ -8,7 +8,7 @@ use super::{Completion, input};
 use crate::budget::within;
 use crate::impact::{AnalysisOptions, Scratch};
 use crate::read::Problem;
-use crate::write::{Report, Subject};
+use crate::write::{Report, Subject, notes};
 use std::path::PathBuf;
 
 /// Find every outcome of a contact problem given as matrices, without a robot
@@ -57,6 +57,6 @@ pub(super) fn run(args: &Args) -> Completion {
         append(&report, &Subject::of_problem(&problem, &analysis), detail, palette, out);
         Ok(None)
     })?;
-    note_own_friction(own_friction, "problem");
+    note_all(notes::own_friction(own_friction, "problem"));
     Ok(answered)
 }

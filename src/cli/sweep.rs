@@ -1,6 +1,6 @@
 //! `heelstrike sweep`: outcomes against one or two parameters.
 
-use super::diagnostic::{note, note_own_friction, report};
+use super::diagnostic::{note_all, report};
 use super::input::InputFile;
 use super::options::{
     BudgetOptions, ContactOptions, CsvOptions, DetailOptions, LoopOptions, SceneOptions, ThreadOptions,
@@ -15,8 +15,8 @@ use crate::budget::SharedBudget;
 use crate::draw::page::{Page, Stops};
 use crate::draw::sweep as picture;
 use crate::sweep::{Findings, Regime, RobotStudy, Solver, Study, Workers, letter};
-use crate::write::append_line;
 use crate::write::sweep::{Regions, SampleRecord, columns};
+use crate::write::{append_line, notes};
 use crate::{Error, Reason};
 use clap::ValueEnum;
 use std::io::Write;
@@ -25,7 +25,7 @@ use std::path::{Path, PathBuf};
 /// Find all regions of equal outcomes against one or two parameters, and the borders between them
 ///
 /// Numbers in the study's state and robot may be expressions of its parameters and constants, as "alpha + pi/2".
-/// Borders are bisected to 1e-12 of the range, and thin regions between samples are searched for.
+/// Borders are found to 1e-12 of the range, and thin regions between samples are searched for.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -116,10 +116,8 @@ pub(super) fn run(args: &Args) -> Completion {
         options: pipeline_options(&args.contacts, feet.clone(), args.detail, &args.robot.reductions, None),
         defaults: args.loops.defaults(&args.scene, &args.contacts, &robot)?,
     };
-    note_own_friction(model.has_own_friction().map_err(refuse)?.into(), "study");
-    for name in study.unused() {
-        note(&format!("nothing in the state or the robot depends on {name}"));
-    }
+    note_all(notes::own_friction(model.has_own_friction().map_err(refuse)?.into(), "study"));
+    note_all(notes::unused(&study));
     let pieces = Findings::work(&model) + if format == SweepFormat::Text { 0 } else { SampleRecord::count(&model) };
     let progress = progress::of(pieces);
     let done = || progress.inc(1);

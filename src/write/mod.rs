@@ -7,6 +7,7 @@
 //!     Impact ───────────────────────> Arrays                            arrays.rs
 //!     Impact (sustained contact) ───> Report ──> the same under other names   forces.rs
 //!     Robot ──> Inspection ──> JSON, text                               inspection.rs
+//!     Header, Study ──> sentences                                       notes.rs
 //!     Survey, Map ──> Regions, samples ──> JSON, CSV, text              sweep
 //!     CaseStudy, Comparison ──> Accuracy ──> JSON, text                 accuracy
 //! ```
@@ -20,6 +21,7 @@ mod text;
 mod csv;
 mod arrays;
 mod inspection;
+pub mod notes;
 pub mod sweep;
 #[cfg(feature = "accuracy")]
 pub mod accuracy;

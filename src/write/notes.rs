@@ -1,0 +1,46 @@
+//! What a reader should know of an input, in sentences: the tool writes them to standard error, Python warns with them.
+
+use crate::gait::Dropped;
+use crate::read::Study;
+use crate::read::table::Header;
+
+/// That `count` inputs, each of them a `what`, have friction of their own, so that the one given for all is not theirs.
+pub fn own_friction(count: u64, what: &str) -> Option<String> {
+    let some = match count {
+        0 => return None,
+        1 => "one does".to_owned(),
+        _ => format!("{count} do"),
+    };
+    Some(format!("`friction` is not used where a {what} has its own, as {some} here"))
+}
+
+/// Which coordinates have no column.
+pub fn missing(header: &Header) -> Option<String> {
+    match header.missing() {
+        [] => None,
+        [only] => Some(format!("a column is missing, and taken as 0: {only}")),
+        missing => Some(format!("{} columns are missing, and taken as 0: {}", missing.len(), missing.join(", "))),
+    }
+}
+
+/// Which columns did not enter the analysis, and how much of the motion.
+pub fn left_out(header: &Header, dropped: &Dropped) -> impl Iterator<Item = String> {
+    let ignored: Vec<&str> = header.ignored().collect();
+    let not_read = (!ignored.is_empty()).then(|| {
+        let (count, names) = (ignored.len(), ignored.join(", "));
+        let plural = if count == 1 { "" } else { "s" };
+        format!(
+            "{count} column{plural} not read, because their joints have no coordinate (see `heelstrike inspect`): \
+             {names}"
+        )
+    });
+    let projected = header.is_spatial().then(|| {
+        format!("the base is projected into its plane along the mean heading of each clip; left out: {dropped}")
+    });
+    not_read.into_iter().chain(projected)
+}
+
+/// Which parameters change nothing.
+pub fn unused(study: &Study) -> impl Iterator<Item = String> {
+    study.unused().into_iter().map(|name| format!("nothing in the state or the robot depends on {name}"))
+}
