@@ -147,7 +147,8 @@ class Layout:
             position, rate = self._angle(q, joint), v[:, joint.v]
             if follower := followers.get(name):
                 leader, multiplier = self.joints[follower["leader"]], follower["multiplier"]
-                what, moves = f"joint {name}, which mimics {follower['leader']} in the planar robot,", "is off in its rate"
+                what = f"joint {name}, which mimics {follower['leader']} in the planar robot,"
+                moves = "is off in its rate"
                 off = position - (multiplier * self._angle(q, leader) + follower["offset"])
                 rate = rate - multiplier * v[:, leader.v]
             else:

@@ -27,7 +27,8 @@ CALLS = {
         "position": {"joints": {"left_hip": "a"}}, "velocity": {"base": {"z": -1}}, "friction": 0.5, "place": "lowest"}},
         budget=None)""",
     "touchdowns": f"""heelstrike.Robot({str(ROOT / "tests/data/robots/h1/h1.urdf")!r}).touchdowns(dict(
-        time=numpy.arange(2e5) / 100, q_base_z=1 + numpy.sin(numpy.arange(2e5) / 5) / 10), velocity="central", friction=1)""",
+        time=numpy.arange(2e5) / 100, q_base_z=1 + numpy.sin(numpy.arange(2e5) / 5) / 10),
+        velocity="central", friction=1)""",
 }
 
 
