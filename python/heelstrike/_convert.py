@@ -116,7 +116,8 @@ class Layout:
         quaternion = q[:, base.quaternion]
         length = np.linalg.norm(quaternion, axis=1)
         if np.any(np.abs(length - 1) > 1e-3):
-            raise ValueError(f"a quaternion of the base has the length {length[np.nanargmax(np.abs(length - 1))]}, not 1")
+            worst = length[np.nanargmax(np.abs(length - 1))]
+            raise ValueError(f"a quaternion of the base has the length {worst}, not 1")
         w, vector = quaternion[:, 0], quaternion[:, 1:]
         across = np.linalg.norm(vector - np.outer(vector @ normal, normal), axis=1)
         _refuse("the base is turned out of the plane", 2 * across, "rad", tolerance)
