@@ -9,7 +9,7 @@ use std::sync::Arc;
 const QUARTERINGS: usize = 9;
 const MOST_CELLS: usize = 400;
 
-/// How far a curve may be from its chord, as part of the ranges, and to what its points between crossings are bisected.
+/// How far a curve may be from its chord, as part of the ranges, and to what its points between crossings are found.
 const STRAIGHT: f64 = 5e-5;
 const FOUND: f64 = 1e-9;
 
@@ -29,7 +29,7 @@ pub struct GridCell {
 /// Traces borders through cells.
 pub struct Trace<'s, 'm> {
     pub solver: &'s mut Solver<'m>,
-    /// To which borders are bisected along each parameter.
+    /// To which borders are found along each parameter.
     pub resolution: [f64; 2],
     /// So far.
     pub cells: usize,

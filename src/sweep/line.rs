@@ -1,7 +1,7 @@
 //! The regions of one parameter and the borders between them.
 //!
 //! ```text
-//!     samples --regimes differ: bisect; the same: search--> brackets of width 1e-12 --> regions, borders
+//!     samples --regimes differ: narrowed; the same: searched--> brackets of width 1e-12 --> regions, borders
 //! ```
 
 use super::border_search::{decisive_zero, suspects};
@@ -10,7 +10,7 @@ use super::regime::Regime;
 use crate::budget::is_spent;
 use std::sync::Arc;
 
-/// Borders are bisected to this part of the parameter's range.
+/// Borders are found to this part of the parameter's range.
 pub const RESOLUTION: f64 = 1e-12;
 
 /// How often a stretch is searched, each time between the borders that were found the time before.
@@ -74,8 +74,8 @@ pub struct Stretch {
 
 /// The brackets of all borders between two places, ascending, to the `resolution`.
 ///
-/// If the regimes of two places differ, the border between them is bisected, and so is that of every other regime on
-/// the way. If they are the same, the stretch between them is searched for hidden ones (see `border_search`). So in the
+/// If the regimes of two places differ, the border between them is narrowed down, and so is that of every other regime
+/// on the way. If they are the same, the stretch between them is searched for hidden ones (see `border_search`). So in the
 /// end every neighboring pair of places that were asked agrees, or brackets a border. Nothing is found once a budget is
 /// spent.
 pub fn brackets(line: &mut impl Landscape, a: &Probe, b: &Probe, resolution: f64) -> Vec<Bracket> {

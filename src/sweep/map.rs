@@ -6,8 +6,8 @@
 //!
 //! A curve that crosses an edge of a cell leaves it through another: crossings of the same two regions, at which the
 //! same inequalities turn, are two ends of one piece. A cell whose crossings do not pair so is quartered, and where
-//! three regions meet, at the last, its crossings meet in its middle. Every crossing is bisected, and points between
-//! two of them until a curve is straight to 5e-5 of the ranges.
+//! three regions meet, at the last, its crossings meet in its middle. Every crossing is found as a zero of what decides
+//! it or by bisection, and points between two of them until a curve is straight to 5e-5 of the ranges.
 
 use super::cell::{GridCell, Trace};
 use super::edge::{Edge, GridLine, Segment};
