@@ -30,6 +30,9 @@ use std::collections::BTreeMap;
 /// The most contacts of a problem (4^16 combinations are four billions).
 pub const CONTACT_LIMIT: usize = 16;
 
+// The bits of rows that are exactly zero (`Scale::still`).
+const _: () = assert!(2 * CONTACT_LIMIT <= u32::BITS as usize);
+
 pub fn too_many_contacts(contacts: usize) -> Error {
     Error::new(Reason::TooManyContacts { contacts, limit: CONTACT_LIMIT })
         .hint("name the contacts that matter by hand, or lower the contact tolerance")
