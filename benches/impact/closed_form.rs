@@ -1,8 +1,8 @@
 //! RAMone's impact with both feet, written by hand for this robot alone: M, J and G, then the signs of all 16
 //! combinations. Code for any tree takes longer; by how much is what [`super::ratios`] prints.
 //!
-//! Everything hangs on the vertical axis of its body. With u the body's turn `(sin, cos)`, a point at -l is -l u from the
-//! origin, and a positive rate moves it by -l (cos, -sin). Joints turn the other way.
+//! All masses and feet lie on the vertical axes of their bodies. With u the body's turn `(sin, cos)`, a point at -l is
+//! -l u from the origin, and a positive rate moves it by -l (cos, -sin). Joints turn the other way.
 
 use heelstrike::ContactProblem;
 use std::array::from_fn;
