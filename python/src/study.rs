@@ -10,7 +10,7 @@ use heelstrike::error::Location;
 use heelstrike::gait::{self, At, Difference, Heights, Sampled, Touching};
 use heelstrike::impact::{AnalysisOptions, Scratch};
 use heelstrike::read::Problem;
-use heelstrike::read::table::{Header, Rates};
+use heelstrike::read::table::{Form, Header, Rates};
 use heelstrike::sweep::{Findings, RobotStudy, Solver, Workers};
 use heelstrike::write::sweep::{Regions, SampleRecord};
 use heelstrike::write::{append_line, notes};
@@ -154,10 +154,10 @@ fn found(
 ) -> heelstrike::Result<(Vec<u8>, Vec<String>)> {
     let Recorded { velocity, at, touching, heights } = recorded;
     let robot = &model.robot;
-    let mut chunks = Chunks::of_table(text);
+    let mut chunks = Chunks::of_table(text, Form::Csv);
     let (line, record) = chunks.first()?.ok_or_else(|| Error::new(Reason::Missing("a header".into())))?;
     let rates = if velocity.is_some() { Rates::Time } else { Rates::Columns };
-    let header = Header::read(&record, robot, rates, &[]).map_err(|error| match error.location() {
+    let header = Header::read(&record, Form::Csv, robot, rates, &[]).map_err(|error| match error.location() {
         Some(Location { line: own, column }) => error.on(line + own - 1, column),
         None => error,
     })?;

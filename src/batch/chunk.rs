@@ -2,7 +2,7 @@
 
 use super::run::TaskSource;
 use crate::read::documents::refuse_foreign;
-use crate::read::table::{Quotes, Quoting, swallows_rows};
+use crate::read::table::{Form, Quotes, Quoting};
 use crate::{Error, Reason, Result};
 use memchr::{memchr, memchr_iter};
 use std::io::{BufRead, BufReader, ErrorKind, Read};
@@ -53,19 +53,14 @@ impl<R: Read + Send> Chunks<R> {
         Self { input, again: (Vec::new(), 0), quotes: None, columns: None, hopeless: 0, line: 1, fresh: true }
     }
 
-    /// An input as CSV.
-    pub fn of_table(input: R) -> Self {
-        Self { quotes: Some(Quotes::default()), ..Self::of_lines(input) }
+    /// An input as a table of this form.
+    pub fn of_table(input: R, form: Form) -> Self {
+        Self { quotes: (form != Form::Ndjson).then(|| form.quotes()), ..Self::of_lines(input) }
     }
 
     /// Says how many columns the table has, so that a quote around several rows is seen.
     pub fn expect_columns(&mut self, columns: usize) {
         self.columns = Some(columns);
-    }
-
-    /// Whether it is read as CSV.
-    pub fn is_table(&self) -> bool {
-        self.quotes.is_some()
     }
 
     /// Refuses an input whose first bytes show that it is compressed, a spreadsheet or the like.
@@ -82,7 +77,7 @@ impl<R: Read + Send> Chunks<R> {
             if let Some(line) = chunk.too_long {
                 return Err(too_long().on(line, 1));
             }
-            let found = chunk.records().find(|(_, record)| !record.trim_ascii().is_empty());
+            let found = chunk.records().find(|(_, record)| !self.is_blank(record));
             if let Some((line, record)) = found {
                 return Ok(Some((line, record.to_vec())));
             }
@@ -90,11 +85,37 @@ impl<R: Read + Send> Chunks<R> {
         Ok(None)
     }
 
+    /// What `decide` says of the first line of which it says something, and the line's number; all lines are read again.
+    pub fn peek<T>(&mut self, decide: impl Fn(&[u8]) -> Option<T>) -> Result<Option<(usize, T)>> {
+        let (mut seen, mut start, mut line) = (Vec::new(), 0, self.line);
+        let decided = loop {
+            let ready = self.fill()?;
+            let (count, at_end) = (ready.len(), ready.is_empty());
+            seen.extend_from_slice(ready);
+            self.consume(count);
+            let ends = memchr_iter(b'\n', &seen[start..]).map(|newline| newline + 1);
+            let lines = ends
+                .chain(at_end.then_some(seen.len() - start))
+                .scan(start, |from, end| Some(&seen[std::mem::replace(from, start + end)..start + end]));
+            let lines: Vec<&[u8]> = lines.collect();
+            if let Some((at, decided)) = lines.iter().enumerate().find_map(|(at, line)| Some((at, decide(line)?))) {
+                break Some((line + at, decided));
+            }
+            (start, line) = (start + lines.iter().map(|line| line.len()).sum::<usize>(), line + lines.len());
+            if at_end || seen.len() > RECORD_LIMIT {
+                break None;
+            }
+        };
+        self.again = (seen, 0);
+        Ok(decided)
+    }
+
     /// Whether nothing but blank lines is left.
     pub fn is_empty(&mut self) -> Result<bool> {
+        let quotes = self.quotes.unwrap_or(Form::Ndjson.quotes());
         loop {
             let ready = self.fill()?;
-            let blank = ready.iter().take_while(|byte| byte.is_ascii_whitespace()).count();
+            let blank = ready.iter().take_while(|&&byte| quotes.is_blank(byte)).count();
             if blank < ready.len() || ready.is_empty() {
                 return Ok(ready.is_empty());
             }
@@ -112,10 +133,16 @@ impl<R: Read + Send> Chunks<R> {
     pub fn skip(&mut self, mut count: usize) -> Result<()> {
         while count > 0 {
             let Some(chunk) = self.record()? else { break };
-            let blank = |(_, record): (usize, &[u8])| record.trim_ascii().is_empty();
+            let blank = |(_, record): (usize, &[u8])| self.is_blank(record);
             count -= usize::from(chunk.too_long.is_some() || !chunk.records().all(blank));
         }
         Ok(())
+    }
+
+    /// Whether a record has no answer.
+    fn is_blank(&self, record: &[u8]) -> bool {
+        let quotes = self.quotes.unwrap_or(Form::Ndjson.quotes());
+        record.iter().all(|&byte| quotes.is_blank(byte))
     }
 
     /// Takes up to `most` lines of those that are whole in the buffer, in one piece.
@@ -174,10 +201,7 @@ impl<R: Read + Send> Chunks<R> {
                 }
                 Quoting::Open => self.end_with_line(&mut chunk, (start, first), self.line),
                 Quoting::Misplaced => self.end_with_line(&mut chunk, (start, first), self.line - 1),
-                Quoting::Closed
-                    if line_start > start
-                        && self.columns.is_some_and(|columns| swallows_rows(&chunk.bytes[start..], columns)) =>
-                {
+                Quoting::Closed if line_start > start && self.swallows_rows(&chunk.bytes[start..]) => {
                     self.end_with_line(&mut chunk, (start, first), self.line - 1);
                 }
                 Quoting::Closed if chunk.bytes.len() > start => chunk.ends.push((first, chunk.bytes.len())),
@@ -190,12 +214,17 @@ impl<R: Read + Send> Chunks<R> {
         }
     }
 
+    /// Whether the quotes of a record of several lines hold other rows.
+    fn swallows_rows(&self, record: &[u8]) -> bool {
+        self.quotes.zip(self.columns).is_some_and(|(quotes, columns)| quotes.swallow_rows(record, columns))
+    }
+
     /// Ends the record that begins at `start` on line `first` behind that line; the lines behind it are read again.
     /// Before line `hopeless` no quote that is open at the end of a line is closed as it should be, so none of these
     /// lines is read a third time.
     fn end_with_line(&mut self, chunk: &mut Chunk, (start, first): (usize, usize), hopeless: usize) {
         self.hopeless = self.hopeless.max(hopeless);
-        self.quotes = Some(Quotes::default());
+        self.quotes = self.quotes.map(Quotes::fresh);
         let lines = &chunk.bytes[start..];
         let end = start + memchr(b'\n', lines).map_or(lines.len(), |newline| newline + 1);
         let mut rest = chunk.bytes.split_off(end);
@@ -309,7 +338,7 @@ mod tests {
 
     #[test]
     fn a_record_of_a_table_may_have_line_breaks() {
-        let table = chunks(Chunks::of_table(Parts(vec![b"a\n\"b", b"\nc\"\n", b"d\n\"e\n"])));
+        let table = chunks(Chunks::of_table(Parts(vec![b"a\n\"b", b"\nc\"\n", b"d\n\"e\n"]), Form::Csv));
         assert_eq!(table, [r"1:a\n", r#"2:\"b\nc\"\n"#, r#"4:d\n 5:\"e\n"#]);
     }
 
@@ -326,7 +355,7 @@ mod tests {
         ] {
             for size in [1, 3, 100] {
                 let parts = text.as_bytes().chunks(size).collect();
-                let found = chunks(Chunks::of_table(Parts(parts))).join(" ");
+                let found = chunks(Chunks::of_table(Parts(parts), Form::Csv)).join(" ");
                 assert_eq!(
                     found.replace(r"\n ", " ").trim_end_matches(r"\n").replace(r"\n", ";").replace('\\', ""),
                     expected
@@ -341,7 +370,7 @@ mod tests {
         let line = "a\",\"b\n";
         let count = RECORD_LIMIT / line.len() + 100_000;
         let text = line.repeat(count);
-        let mut chunks = Chunks::of_table(text.as_bytes());
+        let mut chunks = Chunks::of_table(text.as_bytes(), Form::Csv);
         let records = std::iter::from_fn(|| chunks.records(RECORDS).unwrap());
         assert_eq!(records.map(|chunk| chunk.ends.len()).sum::<usize>(), count);
     }
@@ -353,7 +382,7 @@ mod tests {
             let long = std::iter::repeat_n(part, RECORD_LIMIT / part.len() + 1);
             Parts(std::iter::once(first).chain(long).chain([&b"\nend"[..]]).collect())
         };
-        for mut chunks in [Chunks::of_lines(parts(b"a\n")), Chunks::of_table(parts(b"a\n\""))] {
+        for mut chunks in [Chunks::of_lines(parts(b"a\n")), Chunks::of_table(parts(b"a\n\""), Form::Csv)] {
             let chunks = std::iter::from_fn(move || chunks.records(RECORDS).unwrap());
             let found: Vec<_> = chunks.map(|chunk| (chunk.bytes.len(), chunk.too_long)).collect();
             assert_eq!(found, [(2, None), (0, Some(2)), (3, None)]);

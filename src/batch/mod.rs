@@ -94,16 +94,16 @@ impl Around<'_> {
     /// The time of the state, if its input gives one \[s\].
     fn time(&self, header: Option<&Header>) -> Option<f64> {
         self.time.or_else(|| {
-            let (_, text) = self.carried?.by_name(header?).find(|(name, _)| *name == "time")?;
-            text.trim().parse().ok().filter(|time: &f64| time.is_finite())
+            let (_, value) = self.carried?.by_name(header?).find(|(name, _)| *name == "time")?;
+            value.number().filter(|time| time.is_finite())
         })
     }
 }
 
 impl<'q> Batch<'q> {
     pub fn new(question: &'q Question<'q>) -> Self {
-        // Tables and keyframes show all.
-        let brief = question.detail.brief && question.columns.is_none() && !question.keyframes;
+        // Keyframes show all.
+        let brief = question.detail.brief && !question.keyframes;
         let options = Options { brief, friction_needed: true, ..question.options.clone() };
         let pipeline = Pipeline::new(question.robot, options);
         let lines = || Reader::Lines(Box::new(StateLines::new(question.robot, &question.defaults)));
@@ -167,7 +167,7 @@ impl Answerer<'_> {
 
     /// Answers a row of a table; a blank one has no answer.
     fn row(&mut self, rows: &mut Rows, around: Around<'_>, block: &mut Block) {
-        let Question { robot, defaults, .. } = self.question;
+        let Question { robot, defaults, header, .. } = self.question;
         match rows.row(around.record, around.line) {
             Ok(None) => {}
             Ok(Some(row)) => {
@@ -176,7 +176,7 @@ impl Answerer<'_> {
                 let state = row.state(robot, defaults);
                 self.answer(state.as_ref().map_err(Error::clone), || row.id(), around, block);
             }
-            Err(error) => self.refuse(error, None, around, block),
+            Err(error) => self.refuse(error, header.and_then(|header| header.id_in(around.record)), around, block),
         }
     }
 
@@ -221,7 +221,7 @@ impl Answerer<'_> {
             columns.append_result(&report, around.carried, &mut block.out)?;
         } else {
             let fields = header.zip(around.carried).into_iter().flat_map(|(header, carried)| carried.by_name(header));
-            let fields: Vec<_> = fields.map(|(name, text)| (name.into(), text)).collect();
+            let fields: Vec<_> = fields.map(|(name, value)| (name.into(), value)).collect();
             report.carried = (!fields.is_empty()).then_some(CarriedFields(fields));
             report.append_json(detail, &mut block.out);
         }

@@ -46,6 +46,7 @@ pub fn samples<'h, R: Read + Send>(
                 Some(Ok(Sample { time, state, rate_over: [time; 2], spatial, landing: None, source }))
             }
             Err(error) => {
+                source.id = source.id.or_else(|| header.id_in(record));
                 source.excerpt = error.location().and_then(|place| Excerpt::around(record, line, place));
                 Some(Err((source, error)))
             }

@@ -19,7 +19,7 @@ use crate::error::Location;
 use crate::error::excerpt::Excerpt;
 use crate::gait::{Dropped, Thresholds};
 use crate::pipeline::{Aspect, Options};
-use crate::read::table::Header;
+use crate::read::table::{Form, Header, is_flat};
 use crate::state::NamedContact;
 use crate::write::{self, Columns, RowKind, notes};
 use crate::{Detail, Error, Reason, Robot};
@@ -44,7 +44,7 @@ pub struct Args {
     /// States, one JSON object per line or as CSV; "-" reads standard input
     #[arg(value_name = "KEYFRAMES")]
     states: PathBuf,
-    /// The format of the input [default: csv if its name ends in .csv, else ndjson]
+    /// The format of the input [default: by its ending, else ndjson]
     #[arg(long, value_name = "FORMAT", value_enum)]
     input_format: Option<RecordFormat>,
     /// Copy this column of a table to the results although its name resembles that of a coordinate [repeatable]
@@ -75,7 +75,7 @@ pub struct Args {
     /// this is an ordinary run.
     #[arg(long, requires = "output", help_heading = "Output")]
     resume: bool,
-    /// The format of the results [default: csv if the output's name ends in .csv, else ndjson]
+    /// The format of the results [default: by the output's ending, else ndjson]
     #[arg(long, alias = "format", value_name = "FORMAT", value_enum, help_heading = "Output")]
     output_format: Option<RecordFormat>,
     #[command(flatten)]
@@ -104,8 +104,10 @@ enum RecordFormat {
     /// One JSON object per line
     #[value(alias = "json", alias = "jsonl")]
     Ndjson,
-    /// A table with a header
+    /// A table with a header and commas between columns
     Csv,
+    /// A table with a header and tabs between columns
+    Tsv,
 }
 
 const ON_REFUSED: Choices<Answered> =
@@ -113,7 +115,17 @@ const ON_REFUSED: Choices<Answered> =
 
 impl RecordFormat {
     fn of(path: &Path) -> Self {
-        if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv")) { Self::Csv } else { Self::Ndjson }
+        let is = |known: &str| path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(known));
+        let known = [("csv", Self::Csv), ("tsv", Self::Tsv)];
+        known.into_iter().find(|(ending, _)| is(ending)).map_or(Self::Ndjson, |(_, format)| format)
+    }
+
+    fn form(self) -> Form {
+        match self {
+            Self::Ndjson => Form::Ndjson,
+            Self::Csv => Form::Csv,
+            Self::Tsv => Form::Tsv,
+        }
     }
 }
 
@@ -126,12 +138,10 @@ pub(super) fn run(args: &Args) -> Completion {
     let progress = progress::over(&args.states, args.output.is_some());
     let origin = Origin::of(args.output.as_deref(), args.resume);
     let states: Box<dyn Read + Send> = Box::new(origin.watch(progress.wrap_read(input::stream(&args.states)?)));
-    let mut chunks = match args.input_format.unwrap_or_else(|| RecordFormat::of(&args.states)) {
-        RecordFormat::Ndjson => Chunks::of_lines(states),
-        RecordFormat::Csv => Chunks::of_table(states),
-    };
+    let form = args.input_format.unwrap_or_else(|| RecordFormat::of(&args.states)).form();
+    let mut chunks = Chunks::of_table(states, form);
     chunks.check_format().map_err(in_input)?;
-    let header = args.header(&robot, &mut chunks)?;
+    let header = args.header(&robot, &mut chunks, form)?;
     // An engine may have an empty part.
     if args.refused == Answered::NotAll && chunks.is_empty().map_err(in_input)? {
         let hint = if header.is_some() { "the table has a header and no rows" } else { "the input is empty" };
@@ -144,10 +154,11 @@ pub(super) fn run(args: &Args) -> Completion {
     let thresholds = thresholds.map_err(|error| error.in_file(input::name(&args.robot.robot)))?;
     let kind = if args.forces { RowKind::Forces } else { args.recording.kind() };
     let columns = || {
-        let columns = args.csv.columns(Columns::new(&robot, &feet, header.as_ref(), kind));
-        if args.next.next { columns.with_next() } else { columns }
+        let columns = args.csv.columns(Columns::new(&robot, &feet, header.as_ref(), kind)).written_as(format.form());
+        let columns = if args.next.next { columns.with_next() } else { columns };
+        if args.detail.brief { columns.in_brief() } else { columns }
     };
-    let columns = (format == RecordFormat::Csv).then(columns);
+    let columns = (format != RecordFormat::Ndjson).then(columns);
     let question = args.question(&robot, feet, header.as_ref(), columns.as_ref())?;
     // Tried before the work, which would otherwise be lost.
     writable(args.summary.as_deref())?;
@@ -187,10 +198,11 @@ impl Args {
     fn check_files(&self) -> Result<(), Failure> {
         let output = self.output.as_deref();
         if self.output_format.is_none() {
-            check_ending(output, &["csv"], "results are written as .ndjson or .csv", "--output-format")?;
+            check_ending(output, &["csv", "tsv"], "results are written as .ndjson, .csv or .tsv", "--output-format")?;
         }
         if self.input_format.is_none() {
-            check_ending(Some(&self.states), &["csv"], "states are read as .ndjson or .csv", "--input-format")?;
+            let known = "states are read as .ndjson, .csv or .tsv";
+            check_ending(Some(&self.states), &["csv", "tsv"], known, "--input-format")?;
         }
         let inputs = [Some(&self.robot.robot), Some(&self.states), self.loops.loops.as_ref()];
         self.plot.claim(&inputs, output)?;
@@ -209,10 +221,10 @@ impl Args {
     fn results_format(&self) -> Result<RecordFormat, Failure> {
         let by_name = || self.output.as_deref().map_or(RecordFormat::Ndjson, RecordFormat::of);
         let format = self.output_format.unwrap_or_else(by_name);
-        self.csv.check(format == RecordFormat::Csv)?;
-        let Detail { explain, matrices, brief } = self.detail.detail();
-        if format == RecordFormat::Csv && (explain || matrices || brief) {
-            let reason = "a table has a row per outcome and no room for --explain, --matrices or --brief".to_owned();
+        self.csv.check(format != RecordFormat::Ndjson)?;
+        let Detail { explain, matrices, .. } = self.detail.detail();
+        if format != RecordFormat::Ndjson && (explain || matrices) {
+            let reason = "a table has a row per outcome and no room for --explain or --matrices".to_owned();
             let hint = "write JSON: --output-format ndjson, or -o with that ending";
             return Err(Failure::Usage(Error::new(Reason::Inconsistent(reason)).hint(hint)));
         }
@@ -329,21 +341,31 @@ impl Args {
         NewFile::write(path, &line)
     }
 
-    /// The columns of a table; `None` for lines of JSON and for an empty table.
-    fn header(&self, robot: &Robot, chunks: &mut Chunks<impl Read + Send>) -> Result<Option<Header>, Failure> {
+    /// The columns of a table; `None` for lines of JSON that are not flat and for an empty table.
+    fn header(
+        &self,
+        robot: &Robot,
+        chunks: &mut Chunks<impl Read + Send>,
+        form: Form,
+    ) -> Result<Option<Header>, Failure> {
         let in_order = self.recording.is_in_order();
-        if !chunks.is_table() {
-            if in_order || !self.foreign.is_empty() {
+        let name = input::name(&self.states);
+        let first = if form == Form::Ndjson {
+            let flat = chunks.peek(|line| is_flat(line).map(|flat| flat.then(|| line.to_vec())));
+            flat.map(|first| first.and_then(|(line, record)| Some((line, record?))))
+        } else {
+            chunks.first()
+        };
+        // A table without any line has no states, like lines of JSON.
+        let Some((line, record)) = first.map_err(|error| error.in_file(&name))? else {
+            if form == Form::Ndjson && (in_order || !self.foreign.is_empty()) {
                 let what = if in_order { "touchdowns and velocities over time need" } else { "--foreign needs" };
                 let error = Error::new(Reason::Inconsistent(format!("{what} a table")));
                 return Err(Failure::Usage(error.hint("give CSV with a header, or say --input-format csv")));
             }
             return Ok(None);
-        }
-        let name = input::name(&self.states);
-        // A table without any line has no states, like lines of JSON.
-        let Some((line, record)) = chunks.first().map_err(|error| error.in_file(&name))? else { return Ok(None) };
-        let header = Header::read(&record, robot, self.recording.rates(), &self.foreign).map_err(|error| {
+        };
+        let header = Header::read(&record, form, robot, self.recording.rates(), &self.foreign).map_err(|error| {
             let place = error.location().unwrap_or(Location { line: 1, column: 1 });
             let place = Location { line: line + place.line - 1, ..place };
             let excerpt = Excerpt::around(&record, line, place);

@@ -132,7 +132,10 @@ const OTHER_ANSWERS: &str = "with other answers";
 impl Continued {
     /// Of a table that begins with `header`. With `all`, every state is answered again and compared.
     fn open(file: NewFile, header: &[u8], all: bool, asked: Asked) -> io::Result<Self> {
-        let Answers { before, refused, last } = if header.is_empty() { lines(&file.file) } else { rows(&file.file) }?;
+        let Answers { before, refused, last } = match header.get("id".len()) {
+            None => lines(&file.file),
+            Some(&delimiter) => rows(&file.file, delimiter),
+        }?;
         let end = last.back().map_or(0, |&(start, _)| start);
         let mut continued = Self { file, known: end, answered: 0, refused: 0, asked: Some(asked), waiting: Vec::new() };
         continued.file.file.rewind()?;
@@ -225,8 +228,8 @@ fn lines(file: &File) -> io::Result<Answers> {
 }
 
 /// The answers in a table, whose states have a row for each outcome.
-fn rows(file: &File) -> io::Result<Answers> {
-    let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(file);
+fn rows(file: &File, delimiter: u8) -> io::Result<Answers> {
+    let mut reader = csv::ReaderBuilder::new().flexible(true).delimiter(delimiter).from_reader(file);
     let header = reader.byte_headers()?.clone();
     let place = |name: &[u8]| header.iter().position(|column| column == name);
     let (outcome, error) = (place(b"outcome"), place(b"error"));

@@ -14,6 +14,7 @@ use super::{Answered, Completion, Failure};
 use crate::budget::SharedBudget;
 use crate::draw::page::{Page, Stops};
 use crate::draw::sweep as picture;
+use crate::read::table::Form;
 use crate::sweep::{Findings, Regime, RobotStudy, Solver, Study, Workers, letter};
 use crate::write::sweep::{Regions, SampleRecord, columns};
 use crate::write::{append_line, notes};
@@ -51,7 +52,7 @@ pub struct Args {
     output: Option<PathBuf>,
     #[command(flatten)]
     plot: PlotOptions<true>,
-    /// Text lists regions, JSON regions and samples, CSV samples [default: by the output's ending, else text]
+    /// Text lists regions, JSON regions and samples, tables samples [default: by the output's ending, else text]
     #[arg(long, value_enum, help_heading = "Output")]
     format: Option<SweepFormat>,
     #[command(flatten)]
@@ -72,6 +73,8 @@ enum SweepFormat {
     Json,
     /// A table of samples, one row per outcome
     Csv,
+    /// The same with tabs between columns
+    Tsv,
 }
 
 impl SweepFormat {
@@ -80,12 +83,13 @@ impl SweepFormat {
         let ending = args.output.as_deref().and_then(Path::extension).and_then(|ending| ending.to_str());
         let by_ending = match ending.map(str::to_ascii_lowercase).as_deref() {
             Some("csv") => Some(Self::Csv),
+            Some("tsv") => Some(Self::Tsv),
             Some("json" | "ndjson" | "jsonl") => Some(Self::Json),
             None | Some("" | "txt") => Some(Self::Text),
             Some(_) => None,
         };
         args.format.or(by_ending).ok_or_else(|| {
-            let reason = Reason::Unsupported("a study is written as .json, .csv or .txt".into());
+            let reason = Reason::Unsupported("a study is written as .json, .csv, .tsv or .txt".into());
             let hint = "name a file with one of these endings, or say --format; pictures and pages go to --plot";
             Failure::Usage(Error::new(reason).at("--output").hint(hint))
         })
@@ -100,7 +104,7 @@ pub(super) fn run(args: &Args) -> Completion {
     args.plot.claim(&inputs, args.output.as_deref())?;
     writable(args.output.as_deref())?;
     let format = SweepFormat::of(args)?;
-    args.csv.check(format == SweepFormat::Csv)?;
+    args.csv.check(matches!(format, SweepFormat::Csv | SweepFormat::Tsv))?;
     let (description, reduction, robot) = args.robot.described()?;
     caution(&robot);
     let feet = args.robot.feet(&robot)?;
@@ -154,9 +158,13 @@ pub(super) fn run(args: &Args) -> Completion {
             writer.write_all(b"]}\n")?;
             refused
         }
-        SweepFormat::Csv => {
+        SweepFormat::Csv | SweepFormat::Tsv => {
             let contacts = regimes.iter().flat_map(|(regime, ..)| regime.contacts()).map(String::as_str);
-            let columns = args.csv.columns(columns(&model, &feet, contacts));
+            let columns = args.csv.columns(columns(&model, &feet, contacts)).written_as(match format {
+                SweepFormat::Tsv => Form::Tsv,
+                _ => Form::Csv,
+            });
+            let columns = if args.detail.brief { columns.in_brief() } else { columns };
             columns.append_header(&mut head);
             writer.write_all(&head)?;
             let kind = |regime: &Regime| regimes.iter().find(|(known, ..)| ***known == *regime);

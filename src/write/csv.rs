@@ -1,13 +1,14 @@
-//! Results as CSV: one row per outcome.
+//! Results as tables: one row per outcome.
 
 use crate::contact::Feet;
 use crate::impact::{Family, Next};
 use crate::pipeline::{AT_REST, Aspect};
-use crate::read::table::{Carried, Header, prefixed};
+use crate::read::table::{Carried, Form, Header, prefixed};
 use crate::state::NamedContact;
 use crate::write::{Refused, Report, words};
 use crate::{Error, Mode, Outcome, Reason, Result, Robot};
 use serde_json::Value;
+use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 
 /// The columns between those that name the state and those of the contacts.
@@ -19,7 +20,8 @@ const NEXT: [&str; 2] = ["next_verdict", "next_modes"];
 /// The columns of a touchdown, behind `touchdown_`; q and v before the impact follow, named as in a table of states.
 const TOUCHDOWN: [&str; 6] = ["row", "time", "striking", "shift_z", "at", "touching"];
 
-/// The last columns, behind all that the contract orders and the carried ones.
+/// The last columns, behind all that the contract orders and the carried ones. In brief the first and the last are left
+/// out.
 const LAST: [&str; 5] = ["border", "family", "families", "error", "notes"];
 
 /// The columns of a table of results, fixed before its first row.
@@ -32,10 +34,12 @@ const LAST: [&str; 5] = ["border", "family", "families", "error", "notes"];
 /// touch at several points has columns of its own name and of link/0, link/1, ... A refused state has a row with the
 /// verdict `refused`, its id and copied columns if they can be read, and its line and reason in `error`. A copied
 /// column whose name the output already has gets the prefix `in_`. Forces have `f_<contact>_t, f_<contact>_n` for the
-/// impulses and `a_<coordinate>` for the velocities after.
+/// impulses and `a_<coordinate>` for the velocities after. In brief there are no impulses, velocities after, `border` and
+/// `notes`.
 #[derive(Debug, Clone)]
 pub struct Columns {
     names: Vec<String>,
+    kinds: Vec<Kind>,
     /// How many columns name the state.
     named: usize,
     /// Which contact has which three columns.
@@ -45,8 +49,64 @@ pub struct Columns {
     carried: usize,
     /// Whether it has columns for what follows an impact.
     next: bool,
+    brief: bool,
     /// Whether cells of text are kept from being formulas.
     guarded: bool,
+    form: Form,
+}
+
+/// What the cells of a column hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Text.
+    Text,
+    /// Numbers with a fraction.
+    Number,
+    /// Whole numbers from 0 on.
+    Integer,
+    /// True or false.
+    Boolean,
+}
+
+/// What is in a cell.
+#[derive(Debug, Clone)]
+pub enum Cell<'c> {
+    /// Nothing.
+    Empty,
+    /// Text that is not empty.
+    Text(Cow<'c, str>),
+    /// A number.
+    Number(f64),
+    /// A whole number.
+    Integer(usize),
+    /// True or false.
+    Boolean(bool),
+    /// A cell of the input that is carried through, and which of these it is.
+    Carried(&'c Carried, usize),
+}
+
+/// Takes the rows of a table of results.
+pub trait RowSink {
+    /// Takes the next row, with a cell for each of the columns.
+    fn row(&mut self, columns: &Columns, cells: &[Cell]);
+}
+
+/// Rows as text.
+impl RowSink for Vec<u8> {
+    fn row(&mut self, columns: &Columns, cells: &[Cell]) {
+        let text = |cell: &Cell| -> Vec<u8> {
+            match cell {
+                Cell::Empty => Vec::new(),
+                Cell::Text(text) => text.as_bytes().to_vec(),
+                // The shortest digits that read back as the same number.
+                Cell::Number(number) => format!("{number:?}").into_bytes(),
+                Cell::Integer(number) => number.to_string().into_bytes(),
+                Cell::Boolean(holds) => holds.to_string().into_bytes(),
+                Cell::Carried(carried, which) => carried.text(*which).into_owned(),
+            }
+        };
+        columns.append(cells.iter().map(text), self);
+    }
 }
 
 /// What a row of results is about.
@@ -71,24 +131,26 @@ impl RowKind {
 }
 
 /// A row in the making; cells that are not set stay empty.
-struct Cells(Vec<Vec<u8>>);
+struct Cells<'c>(Vec<Cell<'c>>);
 
-impl Cells {
-    fn text(&mut self, at: usize, text: impl AsRef<[u8]>) {
-        self.0[at] = text.as_ref().to_vec();
+impl<'c> Cells<'c> {
+    /// Sets a cell to text; an empty one stays empty.
+    fn text(&mut self, at: usize, text: impl Into<Cow<'c, str>>) {
+        let text = text.into();
+        self.0[at] = if text.is_empty() { Cell::Empty } else { Cell::Text(text) };
     }
 
     fn number(&mut self, at: usize, number: f64) {
-        // The shortest digits that read back as the same number.
-        self.text(at, format!("{number:?}"));
+        self.0[at] = Cell::Number(number);
     }
 }
 
 impl Columns {
     /// The columns for states of `robot` with these `feet`, read from the table `input` or found in it.
     pub fn new(robot: &Robot, feet: &[NamedContact], input: Option<&Header>, kind: RowKind) -> Self {
-        let through: Vec<&str> = input.into_iter().flat_map(Header::carried).collect();
-        Self::with(robot, &["id", "line"], contacts(robot, feet, kind), &through, kind)
+        let through: Vec<_> = input.into_iter().flat_map(Header::carried).map(|name| (name, Kind::Text)).collect();
+        let named = [("id", Kind::Text), ("line", Kind::Integer)];
+        Self::with(robot, &named, contacts(robot, feet, kind), &through, kind)
     }
 
     /// The columns for states that have no line, with columns of these names that are carried through, and for contacts
@@ -97,7 +159,7 @@ impl Columns {
         robot: &Robot,
         feet: &[NamedContact],
         named: &[&str],
-        through: &[&str],
+        through: &[(&str, Kind)],
         kind: RowKind,
     ) -> Self {
         let mut contacts = contacts(robot, feet, kind);
@@ -106,35 +168,60 @@ impl Columns {
                 contacts.push((*name).to_owned());
             }
         }
-        Self::with(robot, &["id"], contacts, through, kind)
+        Self::with(robot, &[("id", Kind::Text)], contacts, through, kind)
     }
 
-    fn with(robot: &Robot, named: &[&str], contacts: Vec<String>, through: &[&str], kind: RowKind) -> Self {
-        let mut names: Vec<String> = named.iter().chain(&FIRST).map(|name| (*name).to_owned()).collect();
+    fn with(
+        robot: &Robot,
+        named: &[(&str, Kind)],
+        contacts: Vec<String>,
+        through: &[(&str, Kind)],
+        kind: RowKind,
+    ) -> Self {
+        use Kind::{Boolean, Integer, Number, Text};
+        let columns = named.iter().copied().chain(FIRST.into_iter().zip([Text, Integer, Number, Boolean]));
+        let mut columns: Vec<(String, Kind)> = columns.map(|(name, kind)| (name.to_owned(), kind)).collect();
         let [given, taken] = if kind == RowKind::Forces { ["f", "a"] } else { ["p", "v_after"] };
         for contact in &contacts {
-            names.extend([format!("mode_{contact}"), format!("{given}_{contact}_t"), format!("{given}_{contact}_n")]);
+            columns.push((format!("mode_{contact}"), Text));
+            columns.extend(["t", "n"].map(|entry| (format!("{given}_{contact}_{entry}"), Number)));
         }
-        names.extend(robot.coordinates().map(|name| format!("{taken}_{}", prefixed(robot, name))));
+        let coordinates = |part: &'static str| {
+            robot.coordinates().map(move |name| (format!("{part}_{}", prefixed(robot, name)), Number))
+        };
+        columns.extend(coordinates(taken));
         if kind == RowKind::Touchdown {
-            names.extend(TOUCHDOWN.map(|name| format!("touchdown_{name}")));
-            let coordinates =
-                |part: &'static str| robot.coordinates().map(move |name| format!("{part}_{}", prefixed(robot, name)));
-            names.extend(coordinates("q").chain(coordinates("v")));
+            let kinds = [Integer, Number, Text, Number, Text, Text];
+            columns.extend(TOUCHDOWN.into_iter().zip(kinds).map(|(name, kind)| (format!("touchdown_{name}"), kind)));
+            columns.extend(coordinates("q").chain(coordinates("v")));
         }
-        let own: HashSet<String> = names.iter().cloned().chain(LAST.map(str::to_owned)).collect();
-        let taken: HashSet<&str> = through.iter().copied().collect();
-        for column in through {
-            let mut name = (*column).to_owned();
-            while own.contains(&name) || (name != *column && taken.contains(name.as_str())) {
+        let own: HashSet<String> =
+            columns.iter().map(|(name, _)| name.clone()).chain(LAST.map(str::to_owned)).collect();
+        let taken: HashSet<&str> = through.iter().map(|(name, _)| *name).collect();
+        for &(column, kind) in through {
+            let mut name = column.to_owned();
+            while own.contains(&name) || (name != column && taken.contains(name.as_str())) {
                 name.insert_str(0, "in_");
             }
-            names.push(name);
+            columns.push((name, kind));
         }
-        names.extend(LAST.map(str::to_owned));
+        let last = LAST.into_iter().zip([Text, Boolean, Text, Text, Text]);
+        columns.extend(last.map(|(name, kind)| (name.to_owned(), kind)));
         let contacts = contacts.into_iter().zip(0..).collect();
-        let (named, carried) = (named.len(), through.len());
-        Self { names, named, contacts, coordinates: robot.dofs(), kind, carried, next: false, guarded: false }
+        let (names, kinds) = columns.into_iter().unzip();
+        Self {
+            names,
+            kinds,
+            named: named.len(),
+            contacts,
+            coordinates: robot.dofs(),
+            kind,
+            carried: through.len(),
+            next: false,
+            brief: false,
+            guarded: false,
+            form: Form::Csv,
+        }
     }
 
     /// The same with columns `next_verdict` and `next_modes`, behind `proven`: the forces just after each outcome, in
@@ -142,7 +229,32 @@ impl Columns {
     pub fn with_next(mut self) -> Self {
         let at = self.contacts_start();
         self.names.splice(at..at, NEXT.map(str::to_owned));
+        self.kinds.splice(at..at, NEXT.map(|_| Kind::Text));
         Self { next: true, ..self }
+    }
+
+    /// The same in brief.
+    pub fn in_brief(self) -> Self {
+        let (contacts, velocities, last) = (self.contacts_start(), self.velocities(), self.last());
+        let is_kept = |at: usize| match at {
+            _ if (contacts..velocities).contains(&at) => (at - contacts).is_multiple_of(3),
+            _ if (velocities..velocities + self.coordinates).contains(&at) => false,
+            _ => at != last && at != last + LAST.len() - 1,
+        };
+        let (names, kinds) = self
+            .names
+            .into_iter()
+            .zip(self.kinds)
+            .zip(0..)
+            .filter(|&(_, at)| is_kept(at))
+            .map(|(column, _)| column)
+            .unzip();
+        Self { names, kinds, coordinates: 0, brief: true, ..self }
+    }
+
+    /// The same, written in this form.
+    pub fn written_as(self, form: Form) -> Self {
+        Self { form, ..self }
     }
 
     /// The same with an apostrophe before every cell of text that a spreadsheet would take as a formula: one that
@@ -156,9 +268,14 @@ impl Columns {
         &self.names
     }
 
+    /// What the cells of each column hold.
+    pub fn kinds(&self) -> &[Kind] {
+        &self.kinds
+    }
+
     /// The contacts that have columns, in their order.
     pub fn contacts(&self) -> impl Iterator<Item = &str> {
-        let modes = self.names[self.contacts_start()..self.velocities()].iter().step_by(3);
+        let modes = self.names[self.contacts_start()..self.velocities()].iter().step_by(self.of_contact());
         modes.filter_map(|name| name.strip_prefix("mode_"))
     }
 
@@ -168,13 +285,13 @@ impl Columns {
 
     /// Appends the rows of a result, one per outcome; nothing and an error if a contact has no column, because
     /// the state names it and the robot has no such foot.
-    pub fn append_result(&self, report: &Report, carried: Option<&Carried>, out: &mut Vec<u8>) -> Result<()> {
+    pub fn append_result(&self, report: &Report, carried: Option<&Carried>, out: &mut dyn RowSink) -> Result<()> {
         let mut cells = self.cells(report.id.as_deref(), report.line, carried);
-        cells.text(self.named, report.verdict.map_or(String::new(), |verdict| verdict.to_string()));
-        cells.text(self.named + 3, report.proven.map_or(String::new(), |proven| proven.to_string()));
+        cells.0[self.named] = report.verdict.map_or(Cell::Empty, |verdict| Cell::Text(verdict.to_string().into()));
+        cells.0[self.named + 3] = report.proven.map_or(Cell::Empty, Cell::Boolean);
         if let Some(touchdown) = report.touchdown.as_ref().filter(|_| self.kind == RowKind::Touchdown) {
             let start = self.velocities() + self.coordinates;
-            cells.text(start, touchdown.row.to_string());
+            cells.0[start] = Cell::Integer(touchdown.row);
             cells.number(start + 1, touchdown.time);
             cells.text(start + 2, &*touchdown.striking);
             cells.number(start + 3, touchdown.shift_z);
@@ -183,58 +300,64 @@ impl Columns {
             let coordinates = (start + TOUCHDOWN.len()..).zip(&touchdown.coordinates);
             coordinates.for_each(|(at, &number)| cells.number(at, number));
         }
-        cells.text(self.last() + 3, report.error.as_ref().map_or(String::new(), ToString::to_string));
-        cells.text(self.last() + 4, notes(&report.notes));
+        cells.text(self.family() + 2, report.error.as_ref().map_or(String::new(), ToString::to_string));
+        if !self.brief {
+            cells.text(self.family() + 3, notes(&report.notes));
+        }
         let places = report.contacts.iter().map(|contact| self.place(&contact.name));
         let places: Vec<usize> = places.collect::<Result<_>>()?;
         let outcomes = report.outcomes.as_deref().unwrap_or_default();
         if outcomes.is_empty() {
-            self.append(&cells.0, out);
+            out.row(self, &cells.0);
         }
         for (at, outcome) in outcomes.iter().enumerate() {
             // Every outcome sets the same cells.
             self.outcome(at + 1, outcome, &places, &mut cells);
-            cells.text(self.last() + 2, families(&report.families, at));
-            self.append(&cells.0, out);
+            cells.text(self.family() + 1, families(&report.families, at));
+            out.row(self, &cells.0);
         }
         Ok(())
     }
 
-    pub fn append_refused(&self, refused: &Refused, carried: Option<&Carried>, out: &mut Vec<u8>) {
+    pub fn append_refused(&self, refused: &Refused, carried: Option<&Carried>, out: &mut dyn RowSink) {
         let error = format!("line {}: {}", refused.line, refused.error);
-        self.append_error(self.cells(refused.id.as_ref(), Some(refused.line), carried), &error, out);
+        self.append_error(self.cells(refused.id.as_ref(), Some(refused.line), carried), error, out);
     }
 
     /// Appends the row of a state without an id that has an error in place of outcomes.
-    pub fn append_unnamed(&self, error: &str, carried: &Carried, out: &mut Vec<u8>) {
+    pub fn append_unnamed(&self, error: String, carried: &Carried, out: &mut dyn RowSink) {
         self.append_error(self.cells(None, None, Some(carried)), error, out);
     }
 
-    fn append_error(&self, mut cells: Cells, error: &str, out: &mut Vec<u8>) {
+    fn append_error(&self, mut cells: Cells, error: String, out: &mut dyn RowSink) {
         cells.text(self.named, "refused");
-        cells.text(self.last() + 3, error);
-        self.append(&cells.0, out);
+        cells.text(self.family() + 2, error);
+        out.row(self, &cells.0);
     }
 
     /// A row with the id, the line and what is carried through.
-    fn cells(&self, id: Option<&Value>, line: Option<usize>, carried: Option<&Carried>) -> Cells {
-        let mut cells = Cells(vec![Vec::new(); self.names.len()]);
+    fn cells<'c>(&self, id: Option<&Value>, line: Option<usize>, carried: Option<&'c Carried>) -> Cells<'c> {
+        let mut cells = Cells(vec![Cell::Empty; self.names.len()]);
         cells.text(0, id.map_or(String::new(), words::id));
         if let Some(line) = line {
-            cells.text(1, line.to_string());
+            cells.0[1] = Cell::Integer(line);
         }
-        let carried = carried.into_iter().flat_map(Carried::fields).take(self.carried);
-        carried.zip(self.last() - self.carried..).for_each(|(field, at)| cells.text(at, field));
+        if let Some(carried) = carried {
+            let places = self.last() - self.carried..self.last();
+            places.zip(0..carried.len()).for_each(|(at, which)| cells.0[at] = Cell::Carried(carried, which));
+        }
         cells
     }
 
     fn outcome(&self, number: usize, outcome: &Outcome, places: &[usize], cells: &mut Cells) {
-        cells.text(self.named + 1, number.to_string());
-        cells.text(self.named + 2, outcome.margin.map_or(String::new(), |margin| format!("{margin:?}")));
-        cells.text(self.named + 3, outcome.proven.to_string());
+        cells.0[self.named + 1] = Cell::Integer(number);
+        cells.0[self.named + 2] = outcome.margin.map_or(Cell::Empty, Cell::Number);
+        cells.0[self.named + 3] = Cell::Boolean(outcome.proven);
         for ((&place, mode), impulse) in places.iter().zip(&outcome.modes).zip(&outcome.impulse) {
             cells.text(place, mode.to_string());
-            impulse.iter().zip(place + 1..).for_each(|(&entry, at)| cells.number(at, entry));
+            if !self.brief {
+                impulse.iter().zip(place + 1..).for_each(|(&entry, at)| cells.number(at, entry));
+            }
         }
         if let Some(Next { verdict, modes, .. }) = outcome.next.as_ref().filter(|_| self.next) {
             let name = |mode: &Option<Mode>| mode.map_or_else(|| "open".to_owned(), |mode| mode.to_string());
@@ -244,12 +367,15 @@ impl Columns {
         }
         let velocities = outcome.velocity().take(self.coordinates);
         velocities.zip(self.velocities()..).for_each(|(velocity, at)| cells.number(at, velocity));
-        cells.text(self.last(), border(outcome));
-        cells.text(self.last() + 1, outcome.family.to_string());
+        if !self.brief {
+            cells.text(self.last(), border(outcome));
+        }
+        cells.0[self.family()] = Cell::Boolean(outcome.family);
     }
 
-    fn append<F: AsRef<[u8]>>(&self, fields: &[F], out: &mut Vec<u8>) {
-        let mut writer = csv::WriterBuilder::new().buffer_capacity(1 << 10).from_writer(out);
+    fn append<F: AsRef<[u8]>>(&self, fields: impl IntoIterator<Item = F>, out: &mut Vec<u8>) {
+        let mut builder = csv::WriterBuilder::new();
+        let mut writer = builder.delimiter(self.form.delimiter()).buffer_capacity(1 << 10).from_writer(out);
         // Writing into memory cannot fail.
         for field in fields {
             let text = field.as_ref();
@@ -264,12 +390,17 @@ impl Columns {
 
     /// The first of the last columns.
     fn last(&self) -> usize {
-        self.names.len() - LAST.len()
+        self.names.len() - LAST.len() + if self.brief { 2 } else { 0 }
+    }
+
+    /// Among the last columns the one that says whether the outcome is of a family.
+    fn family(&self) -> usize {
+        self.last() + usize::from(!self.brief)
     }
 
     /// The first column of a velocity.
     fn velocities(&self) -> usize {
-        self.contacts_start() + 3 * self.contacts.len()
+        self.contacts_start() + self.of_contact() * self.contacts.len()
     }
 
     /// The first column of a contact.
@@ -277,9 +408,17 @@ impl Columns {
         self.named + FIRST.len() + if self.next { NEXT.len() } else { 0 }
     }
 
+    /// How many columns a contact has.
+    fn of_contact(&self) -> usize {
+        if self.brief { 1 } else { 3 }
+    }
+
     /// The first of a contact's columns.
     fn place(&self, contact: &str) -> Result<usize> {
-        self.contacts.get(contact).map(|at| self.contacts_start() + 3 * at).ok_or_else(|| no_column(contact))
+        self.contacts
+            .get(contact)
+            .map(|at| self.contacts_start() + self.of_contact() * at)
+            .ok_or_else(|| no_column(contact))
     }
 }
 

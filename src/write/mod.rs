@@ -31,7 +31,7 @@ pub mod schema;
 #[cfg(feature = "accuracy")]
 pub use accuracy::{Accuracy, Compliant};
 pub use arrays::{Arrays, Texts};
-pub use csv::{Columns, RowKind};
+pub use csv::{Cell, Columns, Kind, RowKind, RowSink};
 pub use forces::{ForceOutcome, ForcesRecord, RejectedForces, SustainedContact};
 pub use inspection::Inspection;
 pub(crate) use result::short_id;

@@ -3,7 +3,7 @@
 use crate::support::impact::{outcomes, reduced, robot, velocities_after};
 use crate::support::urdf::{self, Axis, HINGE, POINT, collision, joint, link};
 use heelstrike::pipeline::{Impact, Options, Pipeline};
-use heelstrike::read::table::{Header, Rates};
+use heelstrike::read::table::{Form, Header, Rates};
 use heelstrike::robot::{Base, Reduction};
 use heelstrike::state::NamedContact;
 use heelstrike::write::{Columns, Detail, Refused, Report, RowKind};
@@ -27,7 +27,7 @@ fn leg() -> Robot {
 /// The states of a table whose every row is on a line of its own.
 fn states(table: &[u8], robot: &Robot) -> Vec<Result<State, Error>> {
     let mut lines = table.split_inclusive(|&byte| byte == b'\n');
-    let header = Header::read(lines.next().unwrap(), robot, Rates::Columns, &[]).unwrap();
+    let header = Header::read(lines.next().unwrap(), Form::Csv, robot, Rates::Columns, &[]).unwrap();
     let mut rows = header.rows();
     let mut states = Vec::new();
     for (line, record) in (2..).zip(lines) {
@@ -122,7 +122,7 @@ fn headers_that_do_not_fit_are_refused() {
         (&hip(), Rates::Columns, &[b"q_knee,v_rise"]),
     ] {
         for record in records {
-            let error = Header::read(record, robot, rates, &[]).map(|_| ()).unwrap_err();
+            let error = Header::read(record, Form::Csv, robot, rates, &[]).map(|_| ()).unwrap_err();
             writeln!(refusals, "{}\n    {}", record.escape_ascii(), shown(&error)).unwrap();
         }
     }
@@ -146,7 +146,8 @@ fn hip() -> Robot {
 
 #[test]
 fn missing_columns_are_listed_by_name() {
-    let missing = |record: &[u8], rates| Header::read(record, &leg(), rates, &[]).unwrap().missing().join(" ");
+    let missing =
+        |record: &[u8], rates| Header::read(record, Form::Csv, &leg(), rates, &[]).unwrap().missing().join(" ");
     let all = "q_base_x q_base_pitch q_knee v_base_x v_base_z v_base_pitch";
     assert_eq!(missing(b"v_knee,q_base_z,tau_base_x", Rates::Columns), all);
     // A stance gives the base's x and z, a quaternion its pitch, and the time the velocities.
@@ -159,7 +160,8 @@ fn missing_columns_are_listed_by_name() {
 fn columns_of_frozen_joints_are_listed_and_not_read() {
     let robot = hip();
     let header =
-        Header::read(b"q_splay,q_knee,v_spin,q_spin,v_knee,v_splay,note", &robot, Rates::Columns, &[]).unwrap();
+        Header::read(b"q_splay,q_knee,v_spin,q_spin,v_knee,v_splay,note", Form::Csv, &robot, Rates::Columns, &[])
+            .unwrap();
     assert_eq!(header.ignored().collect::<Vec<_>>(), ["q_splay", "v_spin", "q_spin", "v_splay"]);
     assert_eq!(header.carried().collect::<Vec<_>>(), ["note"]);
     let mut rows = header.rows();
@@ -322,7 +324,8 @@ fn a_contact_without_columns_is_refused() {
 fn foreign_columns_are_carried_beside_a_refusal() {
     let robot = leg();
     let header =
-        Header::read(b"time,id,verdict,v_knee,error,note,in_error,family", &robot, Rates::Columns, &[]).unwrap();
+        Header::read(b"time,id,verdict,v_knee,error,note,in_error,family", Form::Csv, &robot, Rates::Columns, &[])
+            .unwrap();
     let columns = Columns::new(&robot, &[], Some(&header), RowKind::State);
     let mut rows = header.rows();
     let row = rows.row(b" 0.10 ,\"k,1\",mine,oops,none,\"a \"\"b\"\"\nc\",other,ours", 7).unwrap().unwrap();

@@ -10,8 +10,7 @@
 
 mod value;
 
-use value::id_of;
-pub(crate) use value::{Value, id_in};
+pub(crate) use value::{RawFields, Value, id_in, id_of};
 
 use crate::read::expression::{FUNCTIONS, Fault, Names};
 use crate::{Error, Reason, Result};

@@ -109,6 +109,39 @@ impl<'de> Visitor<'de> for AnyValue {
     }
 }
 
+/// The fields of an object, with their values as they are written.
+pub(crate) struct RawFields<'t>(pub Vec<(Cow<'t, str>, &'t RawValue)>);
+
+impl<'t> RawFields<'t> {
+    /// Reads the one object of `text`.
+    pub(crate) fn parse(text: &'t str) -> crate::Result<Self> {
+        serde_json::from_str(text).map_err(|error| refusal(text, &error))
+    }
+}
+
+impl<'de> Deserialize<'de> for RawFields<'de> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(RawFieldsVisitor)
+    }
+}
+
+struct RawFieldsVisitor;
+
+impl<'de> Visitor<'de> for RawFieldsVisitor {
+    type Value = RawFields<'de>;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("an object")
+    }
+    fn visit_map<A: MapAccess<'de>>(self, mut object: A) -> Result<Self::Value, A::Error> {
+        let mut fields = Vec::new();
+        while let Some((Key(key), value)) = object.next_entry()? {
+            fields.push((key, value));
+        }
+        Ok(RawFields(fields))
+    }
+}
+
 /// The `id` of an object that may be malformed after it; `None` if none can be read.
 pub(crate) fn id_in(text: &str) -> Option<serde_json::Value> {
     struct IdVisitor<'a>(&'a mut Option<serde_json::Value>);
@@ -138,7 +171,7 @@ pub(crate) fn id_in(text: &str) -> Option<serde_json::Value> {
 }
 
 /// The id at the beginning of `text`, a string or a number; an integer of more than 64 bits becomes a string.
-pub(super) fn id_of(text: &str) -> Option<serde_json::Value> {
+pub(crate) fn id_of(text: &str) -> Option<serde_json::Value> {
     let end = text.find(|c: char| !matches!(c, '-' | '+' | '.' | 'e' | 'E' | '0'..='9')).unwrap_or(text.len());
     let digits = &text[..end];
     let is_integer = !digits.is_empty() && digits.bytes().all(|byte| matches!(byte, b'-' | b'0'..=b'9'));

@@ -1,6 +1,7 @@
 //! Reads the header of a table: the meaning of each column, resolved once against the robot.
 
-use super::records::{place_of, quoting_fault};
+use super::flat;
+use super::records::{Form, Record};
 use crate::read::json::line_and_column;
 use crate::robot::{Base, FreezeReason, Plane};
 use crate::{Error, Reason, Result, Robot};
@@ -46,6 +47,7 @@ pub struct Header {
     pub(crate) names: Vec<String>,
     pub(crate) columns: Vec<TableColumn>,
     missing: Vec<String>,
+    pub(crate) form: Form,
     pub(crate) time: Option<usize>,
     pub(crate) spatial: Option<SpatialColumns>,
 }
@@ -80,16 +82,21 @@ pub(crate) enum TableColumn {
 }
 
 impl Header {
-    /// Reads the first record of a table; the columns named in `foreign` are carried through, whatever they resemble.
+    /// Reads the first record of a table, or of lines of JSON their first line; the columns named in `foreign` are
+    /// carried through, whatever they resemble.
     ///
     /// # Errors
     /// A record that is not UTF-8 or names no coordinate, a column that stands twice, a column of a coordinate that the
     /// robot does not have, a column that is not read but resembles one that is missing, a base in three dimensions
     /// that is incomplete or has a pitch as well, velocities that are missing or superfluous (see [`Rates`]). The error
     /// gives the column's place in `record`, on line 1.
-    pub fn read(record: &[u8], robot: &Robot, rates: Rates, foreign: &[String]) -> Result<Self> {
-        let record = record.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(record);
-        let names = names(record)?;
+    pub fn read(record: &[u8], form: Form, robot: &Robot, rates: Rates, foreign: &[String]) -> Result<Self> {
+        let bytes = record.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(record);
+        let record = Record { bytes, form };
+        let names = if form == Form::Ndjson { flat::keys(bytes)? } else { names(record)? };
+        if names.len() > COLUMN_LIMIT {
+            return Err(Error::new(Reason::TooMany { what: "columns", limit: COLUMN_LIMIT }).on(1, 1));
+        }
         if let Some(absent) = foreign.iter().find(|name| !names.contains(name)) {
             let error = in_table(Reason::Missing(format!("column \"{}\", given as foreign,", short(absent))), "");
             return Err(error.did_you_mean(absent, names.iter().map(String::as_str)));
@@ -102,10 +109,10 @@ impl Header {
                 true => column(name, robot),
                 false => Err(Reason::Duplicate { what: "column", name: short(name) }.into()),
             };
-            columns.push(column.map_err(|error| in_column(error, record, at))?);
+            columns.push(column.map_err(|error| in_column(error, record, at, name))?);
         }
         let time = names.iter().position(|name| name == "time");
-        let mut header = Self { names, columns, missing: Vec::new(), time, spatial: None };
+        let mut header = Self { names, columns, missing: Vec::new(), form, time, spatial: None };
         header.spatial = header.spatial(record, robot)?;
         header.missing = header.absent(robot, rates);
         header.check_foreign(record, foreign)?;
@@ -136,7 +143,7 @@ impl Header {
     }
 
     /// Refuses a column that is carried through and resembles one that is missing, unless it is said to be foreign.
-    fn check_foreign(&self, record: &[u8], foreign: &[String]) -> Result<()> {
+    fn check_foreign(&self, record: Record, foreign: &[String]) -> Result<()> {
         let others = OTHERS.iter().map(|(name, _)| *name).filter(|name| !self.names.iter().any(|given| given == name));
         let missing: Vec<&str> = self.missing.iter().map(String::as_str).chain(others).collect();
         let carried = self.places(TableColumn::Carried).filter(|&at| !foreign.contains(&self.names[at]));
@@ -153,7 +160,7 @@ impl Header {
         let also = if others.is_empty() { String::new() } else { format!(" also {others};") };
         let hint = format!("did you mean {}?{also} if not, give `foreign: {name}`", near.join("? or "));
         let error = Error::new(Reason::Inconsistent(reason)).hint(hint);
-        Err(in_column(error, record, *at))
+        Err(self.in_column(error, record, *at))
     }
 
     /// How many columns there are.
@@ -194,7 +201,7 @@ impl Header {
     }
 
     /// The columns of a base in three dimensions, if it is given so.
-    fn spatial(&self, record: &[u8], robot: &Robot) -> Result<Option<SpatialColumns>> {
+    fn spatial(&self, record: Record, robot: &Robot) -> Result<Option<SpatialColumns>> {
         let components = [0, 1, 2, 3].map(|component| self.place(TableColumn::Quaternion(component)));
         let sideways = self.place(TableColumn::Sideways);
         let Some(first) = components.into_iter().flatten().chain(sideways).min() else { return Ok(None) };
@@ -202,19 +209,23 @@ impl Header {
             let missing = Error::new(Reason::Missing(format!("column q_{}", QUATERNION[missing])));
             let hint = "a base in three dimensions has all of q_base_qw, q_base_qx, q_base_qy, q_base_qz; one in the plane \
                         q_base_x, q_base_z, q_base_pitch alone";
-            return Err(in_column(missing.hint(hint), record, first));
+            return Err(self.in_column(missing.hint(hint), record, first));
         }
         if let Some(pitch) = self.place(TableColumn::Position(2)) {
             let reason = Reason::Inconsistent("the base is turned by a quaternion, and by a pitch besides".into());
-            return Err(in_column(Error::new(reason).hint("leave out the one or the other"), record, pitch));
+            return Err(self.in_column(Error::new(reason).hint("leave out the one or the other"), record, pitch));
         }
         let quaternion = components.map(Option::unwrap_or_default);
         let origin = [self.place(TableColumn::Position(0)), sideways];
         Ok(Some(SpatialColumns { origin, quaternion, plane: robot.reading.plane }))
     }
 
+    fn in_column(&self, error: Error, record: Record, at: usize) -> Error {
+        in_column(error, record, at, &self.names[at])
+    }
+
     /// Refuses a table that lacks what a state needs.
-    fn check(&self, record: &[u8], robot: &Robot, rates: Rates) -> Result<()> {
+    fn check(&self, record: Record, robot: &Robot, rates: Rates) -> Result<()> {
         let first = |wanted: fn(&TableColumn) -> bool| self.columns.iter().position(wanted);
         let velocity = first(|column| matches!(column, TableColumn::Velocity(_)));
         let position = first(|column| matches!(column, TableColumn::Position(_) | TableColumn::Quaternion(_)));
@@ -228,7 +239,7 @@ impl Header {
                 let known = few(self.missing.clone());
                 missing("positions", "q_", &format!("the first line must name the columns, of {known}"))
             }
-            (_, Some(at)) if self.is_spatial() => Err(in_column(spatial_velocity(), record, at)),
+            (_, Some(at)) if self.is_spatial() => Err(self.in_column(spatial_velocity(), record, at)),
             (Rates::Columns, None) if self.is_spatial() && has_time => Err(in_table(
                 Reason::Missing("a source of velocities".into()),
                 "give `velocity: central` or backward: those of a base in three dimensions are taken from the time",
@@ -243,7 +254,7 @@ impl Header {
             (Rates::Time, Some(at)) => {
                 let reason = "the table has velocities, and they were to be computed from the time".to_owned();
                 let error = Error::new(Reason::Inconsistent(reason));
-                Err(in_column(error.hint("leave out `velocity`, or the columns v_..."), record, at))
+                Err(self.in_column(error.hint("leave out `velocity`, or the columns v_..."), record, at))
             }
             (Rates::Time, None) if !has_time => Err(in_table(
                 Reason::Missing("a column \"time\"".into()),
@@ -254,9 +265,9 @@ impl Header {
     }
 }
 
-/// Puts an error where column `at` begins in the first record.
-fn in_column(error: Error, record: &[u8], at: usize) -> Error {
-    let (lines, column) = place_of(record, at);
+/// Puts an error where column `at` of this name begins in the first record.
+fn in_column(error: Error, record: Record, at: usize, name: &str) -> Error {
+    let (lines, column) = record.place_of(at, name);
     error.at(format!("column {}", at + 1)).on(1 + lines, column)
 }
 
@@ -270,14 +281,12 @@ fn spatial_velocity() -> Error {
 }
 
 /// The names in the first record, without the space around them.
-fn names(record: &[u8]) -> Result<Vec<String>> {
-    if record.iter().filter(|&&byte| byte == b',').count() >= COLUMN_LIMIT {
-        return Err(Error::new(Reason::TooMany { what: "columns", limit: COLUMN_LIMIT }).on(1, 1));
+fn names(record: Record) -> Result<Vec<String>> {
+    let Record { bytes, form } = record;
+    if let Some((at, fault)) = record.quoting_fault() {
+        return Err(in_column(Error::new(Reason::Syntax(fault.into())), record, at, ""));
     }
-    if let Some((at, fault)) = quoting_fault(record) {
-        return Err(in_column(Error::new(Reason::Syntax(fault.into())), record, at));
-    }
-    let mut reader = csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(record);
+    let mut reader = form.csv().from_reader(bytes);
     let mut fields = csv::ByteRecord::new();
     let read =
         reader.read_byte_record(&mut fields).map_err(|error| Error::new(Reason::Syntax(error.to_string())).on(1, 1))?;
@@ -285,8 +294,8 @@ fn names(record: &[u8]) -> Result<Vec<String>> {
         return Err(in_table(Reason::Missing("the line that names the columns".into()), "the table is empty"));
     }
     let end = usize::try_from(reader.position().byte()).unwrap_or(usize::MAX);
-    if end < record.trim_ascii_end().len() {
-        let (line, column) = line_and_column(record, end);
+    if end < bytes.trim_ascii_end().len() {
+        let (line, column) = line_and_column(bytes, end);
         let error = Error::new(Reason::Syntax("a line break that is not one of this table".into())).on(line, column);
         return Err(error.hint("save the table with line ends \\n or \\r\\n"));
     }
@@ -294,15 +303,18 @@ fn names(record: &[u8]) -> Result<Vec<String>> {
         Ok(name) => Ok(name.trim().to_owned()),
         Err(_) => {
             let error = Error::new(Reason::Syntax("the column's name is not UTF-8".into()));
-            Err(in_column(error.hint("save the table as UTF-8"), record, at))
+            Err(in_column(error.hint("save the table as UTF-8"), record, at, ""))
         }
     };
     let names: Vec<String> = fields.iter().enumerate().map(name).collect::<Result<_>>()?;
     match names.as_slice() {
-        [only] if only.contains([';', '\t']) => {
-            let by = if only.contains(';') { "semicolons" } else { "tabs" };
-            let reason = Reason::Syntax(format!("the columns are parted by {by}, not by commas"));
-            Err(in_table(reason, "save the table with commas between columns and points in numbers"))
+        [only] if only.contains([';', if form == Form::Tsv { ',' } else { '\t' }]) => {
+            let (by, remedy) = match form {
+                Form::Tsv => ("other characters, not by tabs", "if these are commas, say `input_format: csv`"),
+                _ if only.contains('\t') => ("tabs, not by commas", "say `input_format: tsv`"),
+                _ => ("semicolons, not by commas", "save the table with commas between columns and points in numbers"),
+            };
+            Err(in_table(Reason::Syntax(format!("the columns are separated by {by}")), remedy))
         }
         [first, ..] if first.starts_with('{') => Err(in_table(
             Reason::Syntax("expected the names of the columns, found JSON".into()),

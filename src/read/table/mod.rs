@@ -1,4 +1,4 @@
-//! Reads states from CSV.
+//! Reads states from tables: CSV, TSV, and lines of JSON that are flat.
 //!
 //! ```text
 //!     first record + Robot --[header]--> Header: what each column is, resolved once
@@ -16,12 +16,13 @@
 //! A quote that is not closed, is closed and followed by text, or has whole rows before its end refuses the row of its
 //! line, and the next line begins the next row.
 
+mod flat;
 mod records;
 mod header;
 mod rows;
 
+pub use flat::is_flat;
 pub(crate) use header::prefixed;
 pub use header::{Header, Rates};
-pub(crate) use records::swallows_rows;
-pub use records::{Quotes, Quoting};
-pub use rows::{Carried, Row, Rows};
+pub use records::{Form, Quotes, Quoting};
+pub use rows::{Carried, CarriedValue, Row, Rows};

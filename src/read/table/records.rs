@@ -6,9 +6,33 @@
 //!       └--any other--> Plain      └--blank--> Closed --any other--> Misplaced
 //! ```
 
+use super::flat;
+
+/// How the records of a table are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Form {
+    /// Fields with commas between them.
+    #[default]
+    Csv,
+    /// Fields with tabs between them.
+    Tsv,
+    /// An object of JSON on each line, whose keys are the names of the columns.
+    Ndjson,
+}
+
+/// The bytes of a record, and how it is written.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Record<'r> {
+    pub bytes: &'r [u8],
+    pub form: Form,
+}
+
 /// Tracks quotes through the bytes of a table, because a line break inside them does not end a record.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Quotes(Inside);
+#[derive(Debug, Clone, Copy)]
+pub struct Quotes {
+    inside: Inside,
+    delimiter: u8,
+}
 
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 enum Inside {
@@ -21,7 +45,7 @@ enum Inside {
     Quoted,
     /// Behind a quote that closes the field unless another follows.
     Closing,
-    /// Behind the closed field, before the next comma.
+    /// Behind the closed field, before the next delimiter.
     Closed,
     /// Behind text that follows a closing quote.
     Misplaced,
@@ -38,88 +62,124 @@ pub enum Quoting {
     Misplaced,
 }
 
+impl Form {
+    /// What separates the fields of a record of text.
+    pub fn delimiter(self) -> u8 {
+        if self == Self::Tsv { b'\t' } else { b',' }
+    }
+
+    /// A reader of fields, as many as each record has.
+    pub(super) fn csv(self) -> csv::ReaderBuilder {
+        let mut builder = csv::ReaderBuilder::new();
+        builder.has_headers(false).flexible(true).delimiter(self.delimiter());
+        builder
+    }
+
+    /// The quotes at the beginning of a table.
+    pub fn quotes(self) -> Quotes {
+        Quotes { inside: Inside::Start, delimiter: self.delimiter() }
+    }
+}
+
 impl Quotes {
+    /// Those at the beginning of a record of the same table.
+    pub fn fresh(self) -> Self {
+        Self { inside: Inside::Start, ..self }
+    }
+
+    /// Whether a byte alone on a line is no record: a tab may separate empty fields.
+    pub fn is_blank(self, byte: u8) -> bool {
+        byte.is_ascii_whitespace() && byte != self.delimiter
+    }
+
     /// Consumes `line`, the next line of the table together with its line break.
     pub fn after(&mut self, line: &[u8]) -> Quoting {
         // Most tables have no quotes at all.
-        if self.0 != Inside::Quoted && !line.contains(&b'"') {
-            self.0 = Inside::Start;
+        if self.inside != Inside::Quoted && !line.contains(&b'"') {
+            self.inside = Inside::Start;
             return Quoting::Closed;
         }
         for &byte in line {
             self.step(byte);
         }
-        let quoting = match self.0 {
+        let quoting = match self.inside {
             Inside::Quoted => return Quoting::Open,
             Inside::Misplaced => Quoting::Misplaced,
             _ => Quoting::Closed,
         };
-        self.0 = Inside::Start;
+        self.inside = Inside::Start;
         quoting
     }
 
     /// Consumes one byte; true if it separates two fields.
     fn step(&mut self, byte: u8) -> bool {
-        let open = matches!(self.0, Inside::Quoted | Inside::Misplaced);
-        self.0 = match (self.0, byte) {
+        let open = matches!(self.inside, Inside::Quoted | Inside::Misplaced);
+        self.inside = match (self.inside, byte) {
             (Inside::Start | Inside::Closing, b'"') => Inside::Quoted,
             (Inside::Quoted, b'"') => Inside::Closing,
-            (Inside::Quoted | Inside::Misplaced, _) => self.0,
-            (_, b',' | b'\r' | b'\n') => Inside::Start,
+            (Inside::Quoted | Inside::Misplaced, _) => self.inside,
+            (_, b'\r' | b'\n') => Inside::Start,
+            (_, byte) if byte == self.delimiter => Inside::Start,
             (Inside::Closing | Inside::Closed, b' ' | b'\t') => Inside::Closed,
             (Inside::Closing | Inside::Closed, _) => Inside::Misplaced,
             _ => Inside::Plain,
         };
-        !open && byte == b','
+        !open && byte == self.delimiter
+    }
+
+    /// Whether the quotes of a record of several lines hold other rows: it has not as many fields as the header has
+    /// `columns`, or each of its further lines would have.
+    pub(crate) fn swallow_rows(self, record: &[u8], columns: usize) -> bool {
+        /// Text in quotes may have a delimiter by chance.
+        const FEWEST: usize = 3;
+        let fields = |bytes: &[u8]| {
+            let mut quotes = self.fresh();
+            1 + bytes.iter().filter(|&&byte| quotes.step(byte)).count()
+        };
+        let lines = record.split(|&byte| byte == b'\n').skip(1);
+        let mut further = lines.filter(|line| !line.trim_ascii().is_empty());
+        fields(record) != columns || columns >= FEWEST && further.all(|line| fields(line) == columns)
     }
 }
 
-/// Whether the quotes of a record of several lines hold other rows: it has not as many fields as the header has
-/// `columns`, or each of its further lines would have.
-pub(crate) fn swallows_rows(record: &[u8], columns: usize) -> bool {
-    /// Text in quotes may have a comma by chance.
-    const FEWEST: usize = 3;
-    let fields = |bytes: &[u8]| {
-        let mut quotes = Quotes::default();
-        1 + bytes.iter().filter(|&&byte| quotes.step(byte)).count()
-    };
-    let lines = record.split(|&byte| byte == b'\n').skip(1);
-    let mut further = lines.filter(|line| !line.trim_ascii().is_empty());
-    fields(record) != columns || columns >= FEWEST && further.all(|line| fields(line) == columns)
-}
+impl Record<'_> {
+    /// What is wrong with its quotes, and in which field.
+    pub fn quoting_fault(self) -> Option<(usize, &'static str)> {
+        if self.form == Form::Ndjson || !self.bytes.contains(&b'"') {
+            return None;
+        }
+        let (mut quotes, mut field) = (self.form.quotes(), 0);
+        for &byte in self.bytes {
+            field += usize::from(quotes.step(byte));
+            if quotes.inside == Inside::Misplaced {
+                return Some((field, "text follows a closing quote"));
+            }
+        }
+        (quotes.inside == Inside::Quoted).then_some((field, "a quote is not closed"))
+    }
 
-/// What is wrong with the quotes of a record, and in which field.
-pub(super) fn quoting_fault(record: &[u8]) -> Option<(usize, &'static str)> {
-    if !record.contains(&b'"') {
-        return None;
-    }
-    let (mut quotes, mut field) = (Quotes::default(), 0);
-    for &byte in record {
-        field += usize::from(quotes.step(byte));
-        if quotes.0 == Inside::Misplaced {
-            return Some((field, "text follows a closing quote"));
+    /// Lines above, and the column counted from 1 in characters, at which the field begins that has this index and
+    /// `name`.
+    pub fn place_of(self, index: usize, name: &str) -> (usize, usize) {
+        if self.form == Form::Ndjson {
+            return (0, flat::column_of(self.bytes, name));
         }
-    }
-    (quotes.0 == Inside::Quoted).then_some((field, "a quote is not closed"))
-}
-
-/// Lines above, and the column counted from 1 in characters, at which field `index` of a record begins.
-pub(super) fn place_of(record: &[u8], index: usize) -> (usize, usize) {
-    let mut quotes = Quotes::default();
-    let (mut field, mut lines, mut column) = (0, 0, 1);
-    for &byte in record {
-        if field == index {
-            break;
+        let mut quotes = self.form.quotes();
+        let (mut field, mut lines, mut column) = (0, 0, 1);
+        for &byte in self.bytes {
+            if field == index {
+                break;
+            }
+            field += usize::from(quotes.step(byte));
+            if byte == b'\n' {
+                (lines, column) = (lines + 1, 1);
+            } else {
+                // Bytes that continue a character do not count.
+                column += usize::from(byte & 0xC0 != 0x80);
+            }
         }
-        field += usize::from(quotes.step(byte));
-        if byte == b'\n' {
-            (lines, column) = (lines + 1, 1);
-        } else {
-            // Bytes that continue a character do not count.
-            column += usize::from(byte & 0xC0 != 0x80);
-        }
+        (lines, column)
     }
-    (lines, column)
 }
 
 #[cfg(test)]
@@ -130,7 +190,7 @@ mod tests {
     fn a_line_break_in_quotes_ends_no_record() {
         use Quoting::{Closed, Misplaced, Open};
         let after = |lines: &[&str]| {
-            let mut quotes = Quotes::default();
+            let mut quotes = Form::Csv.quotes();
             lines.iter().map(|line| quotes.after(line.as_bytes())).collect::<Vec<_>>()
         };
         assert_eq!(after(&["a,b\n", "\"a\n", "b\",c\n", "d\n"]), [Closed, Open, Closed, Closed]);
@@ -145,16 +205,19 @@ mod tests {
 
     #[test]
     fn a_quoting_fault_is_found_with_its_field() {
-        assert_eq!(quoting_fault(b"a,\"b\"\"\",\"c\" \n"), None);
-        assert_eq!(quoting_fault(b"\"a,b\",\"c\"d,\"e"), Some((1, "text follows a closing quote")));
-        assert_eq!(quoting_fault(b"a,\"b,c\n"), Some((1, "a quote is not closed")));
+        let fault = |bytes, form| Record { bytes, form }.quoting_fault();
+        assert_eq!(fault(b"a,\"b\"\"\",\"c\" \n", Form::Csv), None);
+        assert_eq!(fault(b"\"a,b\",\"c\"d,\"e", Form::Csv), Some((1, "text follows a closing quote")));
+        assert_eq!(fault(b"\"a,b\"\t\"c\"d\t\"e", Form::Tsv), Some((1, "text follows a closing quote")));
+        assert_eq!(fault(b"a,\"b,c\n", Form::Csv), Some((1, "a quote is not closed")));
     }
 
     #[test]
     fn fields_are_found_behind_wide_characters() {
-        assert_eq!(place_of(b"a,bc,d", 2), (0, 6));
-        assert_eq!(place_of(b"\"a,\"\"b\",c", 1), (0, 9));
-        assert_eq!(place_of("\u{e9}\u{e9},c".as_bytes(), 1), (0, 4));
-        assert_eq!(place_of(b"\"a\nbc\",d", 1), (1, 5));
+        let place = |bytes, index| Record { bytes, form: Form::Csv }.place_of(index, "");
+        assert_eq!(place(b"a,bc,d", 2), (0, 6));
+        assert_eq!(place(b"\"a,\"\"b\",c", 1), (0, 9));
+        assert_eq!(place("\u{e9}\u{e9},c".as_bytes(), 1), (0, 4));
+        assert_eq!(place(b"\"a\nbc\",d", 1), (1, 5));
     }
 }

@@ -1,13 +1,16 @@
 //! Reads the rows of a table as states.
 
+use super::flat;
 use super::header::{Header, SpatialColumns, TableColumn, short};
-use super::records::{place_of, quoting_fault};
+use super::records::{Form, Record};
 use crate::gait::spatial::{Spatial, project};
 use crate::law::Friction;
+use crate::read::json::{id_in, id_of};
 use crate::robot::Base;
 use crate::state::{ByLink, Defaults, Scene, State};
 use crate::{Error, Reason, Result, Robot};
 use csv::ByteRecord;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::borrow::Cow;
 use std::io::Cursor;
@@ -25,35 +28,91 @@ pub struct Rows<'h> {
 #[derive(Debug, Clone, Copy)]
 pub struct Row<'r> {
     header: &'r Header,
-    record: &'r ByteRecord,
+    cells: &'r ByteRecord,
     raw: &'r [u8],
     line: usize,
 }
 
-/// The fields of a row to copy to the result, kept longer than their chunk.
+/// What is in a cell.
+enum Cell<'r> {
+    Empty,
+    Text(Cow<'r, str>),
+    Number(f64),
+}
+
+/// The cells of a row to copy to the result, kept longer than their chunk.
 #[derive(Debug, Clone, Default)]
-pub struct Carried(ByteRecord);
+pub struct Carried {
+    cells: ByteRecord,
+    /// Whether these are values of JSON.
+    json: bool,
+}
 
 impl Carried {
     pub fn new(fields: impl Iterator<Item = String>) -> Self {
-        Self(fields.collect::<Vec<_>>().into())
+        Self { cells: fields.collect::<Vec<_>>().into(), json: false }
     }
 
-    /// The fields in the order of [`Header::carried`]; empty if the row could not be read.
-    pub fn fields(&self) -> impl Iterator<Item = &[u8]> {
-        self.0.iter()
+    /// How many there are, in the order of [`Header::carried`]; none if the row could not be read.
+    pub fn len(&self) -> usize {
+        self.cells.len()
     }
 
-    /// The fields as text by column; bytes that are no UTF-8 are replaced.
-    pub fn by_name<'c>(&'c self, header: &'c Header) -> impl Iterator<Item = (&'c str, Cow<'c, str>)> {
-        header.carried().zip(self.0.iter().map(String::from_utf8_lossy))
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// A cell as text.
+    pub fn text(&self, which: usize) -> Cow<'_, [u8]> {
+        let cell = self.cells.get(which).unwrap_or_default();
+        match (self.json, cell.first()) {
+            (true, Some(b'"')) => {
+                serde_json::from_slice(cell).map_or(cell.into(), |text: String| text.into_bytes().into())
+            }
+            _ => cell.into(),
+        }
+    }
+
+    /// The cells by column: text as text, with a replacement for bytes that are no UTF-8, values of JSON as they are.
+    pub fn by_name<'c>(&'c self, header: &'c Header) -> impl Iterator<Item = (&'c str, CarriedValue<'c>)> {
+        let value = |cell: &'c [u8]| match self.json {
+            true => CarriedValue::Json(serde_json::from_slice(cell).unwrap_or_default()),
+            false => CarriedValue::Text(String::from_utf8_lossy(cell)),
+        };
+        header.carried().zip(self.cells.iter().map(value))
+    }
+}
+
+/// A value that is copied to the result.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum CarriedValue<'c> {
+    /// Of a table of text.
+    Text(Cow<'c, str>),
+    /// Of another one.
+    Json(Value),
+}
+
+impl CarriedValue<'_> {
+    /// The number that it is or that stands in its text.
+    pub fn number(&self) -> Option<f64> {
+        match self {
+            Self::Text(text) => text.trim().parse().ok(),
+            Self::Json(value) => value.as_f64(),
+        }
     }
 }
 
 impl Header {
+    /// The id in a record that cannot be read as a row, if it is JSON.
+    pub fn id_in(&self, record: &[u8]) -> Option<Value> {
+        str::from_utf8(record).ok().filter(|_| self.form == Form::Ndjson).and_then(id_in)
+    }
+
     /// A reader of the table's rows.
     pub fn rows(&self) -> Rows<'_> {
-        Rows { header: self, reader: reader(), record: ByteRecord::new() }
+        Rows { header: self, reader: reader(self.form), record: ByteRecord::new() }
     }
 }
 
@@ -63,12 +122,19 @@ impl<'h> Rows<'h> {
     pub fn row<'r>(&'r mut self, record: &'r [u8], line: usize) -> Result<Option<Row<'r>>> {
         let raw = record.strip_suffix(b"\n").unwrap_or(record);
         let raw = raw.strip_suffix(b"\r").unwrap_or(raw);
-        if raw.trim_ascii().is_empty() {
+        let quotes = self.header.form.quotes();
+        if raw.iter().all(|&byte| quotes.is_blank(byte)) {
             return Ok(None);
         }
         let syntax = |reason: String| Error::new(Reason::Syntax(reason)).on(line, 1);
-        if let Some((at, fault)) = quoting_fault(raw) {
-            let error = refuse(self.header, raw, line, at, Reason::Syntax(fault.into()));
+        if self.header.form == Form::Ndjson {
+            let read = flat::read(raw, &self.header.names, &mut self.record);
+            read.map_err(|error| error.location().map_or(error.clone(), |place| error.on(line, place.column)))?;
+            return Ok(Some(Row { header: self.header, cells: &self.record, raw, line }));
+        }
+        let fault = Record { bytes: raw, form: self.header.form }.quoting_fault();
+        if let Some((at, fault)) = fault {
+            let error = place(Error::new(Reason::Syntax(fault.into())), self.header, raw, line, at);
             return Err(error.hint("a cell in quotes ends with its closing quote; a quote inside it is written twice"));
         }
         let bytes = self.reader.get_mut();
@@ -79,16 +145,16 @@ impl<'h> Rows<'h> {
         let start = self.reader.position().byte();
         let read = self.reader.read_byte_record(&mut self.record);
         if self.reader.position().byte() - start <= raw.len() as u64 {
-            self.reader = reader();
+            self.reader = reader(self.header.form);
             return Err(syntax("a line break of another kind stands in the row".into()));
         }
         read.map_err(|error| syntax(error.to_string()))?;
-        Ok(Some(Row { header: self.header, record: &self.record, raw, line }))
+        Ok(Some(Row { header: self.header, cells: &self.record, raw, line }))
     }
 }
 
-fn reader() -> csv::Reader<Cursor<Vec<u8>>> {
-    csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(Cursor::default())
+fn reader(form: Form) -> csv::Reader<Cursor<Vec<u8>>> {
+    form.csv().from_reader(Cursor::default())
 }
 
 impl Row<'_> {
@@ -99,16 +165,21 @@ impl Row<'_> {
 
     /// Its id, if it can be read.
     pub fn id(&self) -> Option<Value> {
-        let text = std::str::from_utf8(self.record.get(self.header.place(TableColumn::Id)?)?).ok()?;
-        (!text.is_empty()).then(|| Value::String(text.to_owned()))
+        let text = std::str::from_utf8(self.cells.get(self.header.place(TableColumn::Id)?)?).ok()?;
+        match self.header.form {
+            _ if text.is_empty() => None,
+            Form::Ndjson => id_of(text),
+            _ => Some(Value::String(text.to_owned())),
+        }
     }
 
     /// The fields to copy to the result, if the row has as many as the header.
     pub fn carried(&self) -> Carried {
-        if self.record.len() != self.header.columns.len() {
+        if self.cells.len() != self.header.columns.len() {
             return Carried::default();
         }
-        Carried(self.header.places(TableColumn::Carried).filter_map(|at| self.record.get(at)).collect())
+        let cells = self.header.places(TableColumn::Carried).filter_map(|at| self.cells.get(at)).collect();
+        Carried { cells, json: self.header.form == Form::Ndjson }
     }
 
     /// The time \[s\].
@@ -125,7 +196,7 @@ impl Row<'_> {
     /// A row with more or fewer fields than the header, a cell that does not hold what its column is for, a base that
     /// is both placed by a stance and given, an invalid quaternion. The error gives column, line and place.
     pub fn state(&self, robot: &Robot, defaults: &Defaults) -> Result<State> {
-        let (fields, columns) = (self.record.len(), self.header.columns.len());
+        let (fields, columns) = (self.cells.len(), self.header.columns.len());
         if fields != columns {
             let plural = if fields == 1 { "" } else { "s" };
             let reason = Reason::Inconsistent(format!("the row has {fields} field{plural}, the header {columns}"));
@@ -145,14 +216,17 @@ impl Row<'_> {
                 TableColumn::Sideways | TableColumn::Quaternion(_) => drop(self.number(at)?),
                 TableColumn::Position(to) => state.position[to] = self.number(at)?,
                 TableColumn::Velocity(to) => state.velocity[to] = self.number(at)?,
-                TableColumn::Friction => friction = self.given(at)?.map(|text| self.friction(at, text)).transpose()?,
+                TableColumn::Friction => friction = self.friction(at)?,
                 TableColumn::Restitution => {
-                    if self.given(at)?.is_some() {
+                    if self.is_given(at)? {
                         state.scene.restitution = ByLink::everywhere(self.restitution(at)?);
                     }
                 }
-                TableColumn::Id => drop(self.given(at)?),
-                TableColumn::Stance | TableColumn::Carried | TableColumn::Ignored => {}
+                TableColumn::Id if self.is_given(at)? && self.id().is_none() => {
+                    return Err(self
+                        .refuse(at, Reason::WrongKind { expected: "a string or a number", found: "something else" }));
+                }
+                TableColumn::Id | TableColumn::Stance | TableColumn::Carried | TableColumn::Ignored => {}
             }
         }
         if let Some((pitch, _)) = self.projected()? {
@@ -172,19 +246,24 @@ impl Row<'_> {
         let Some(SpatialColumns { origin, quaternion, plane }) = self.header.spatial else { return Ok(None) };
         // A stance leaves x and y open.
         let length = |at: Option<usize>| match at {
-            Some(at) if self.given(at)?.is_some() => self.number(at),
+            Some(at) if self.is_given(at)? => self.number(at),
             _ => Ok(0.0),
         };
         let origin = [length(origin[0])?, length(origin[1])?];
         let [w, x, y, z] = quaternion.map(|at| self.number(at));
-        let (lines, column) = place_of(self.raw, quaternion[0]);
-        let refused = |error: Error| error.at("q_base_qw").on(self.line + lines, column);
+        let refused = |error: Error| self.place(error, quaternion[0]);
         project(origin, [w?, x?, y?, z?], plane).map(Some).map_err(refused)
     }
 
     fn stance(&self, robot: &Robot) -> Result<Option<usize>> {
         let Some(at) = self.header.place(TableColumn::Stance) else { return Ok(None) };
-        let Some(name) = self.given(at)? else { return Ok(None) };
+        let name = match self.cell(at)? {
+            Cell::Empty => return Ok(None),
+            Cell::Text(name) => name,
+            Cell::Number(_) => {
+                return Err(self.refuse(at, Reason::WrongKind { expected: "a link's name", found: "a number" }));
+            }
+        };
         if robot.base == Base::Fixed {
             let reason = "the robot is bolted to the world, a stance cannot place it".to_owned();
             let error = self.refuse(at, Reason::Inconsistent(reason));
@@ -192,31 +271,33 @@ impl Row<'_> {
         }
         let unknown = || {
             let known = robot.links.iter().map(|link| link.name.as_str());
-            self.refuse(at, Reason::UnknownName { what: "link", name: short(name) }).did_you_mean(name, known)
+            self.refuse(at, Reason::UnknownName { what: "link", name: short(&name) }).did_you_mean(&name, known)
         };
-        robot.link(name).map(Some).ok_or_else(unknown)
+        robot.link(&name).map(Some).ok_or_else(unknown)
     }
 
     /// Refuses a coordinate of the base that the stance already gives.
     fn placed_base(&self, at: usize, coordinate: &str) -> Result<()> {
-        if self.given(at)?.is_none() {
+        if !self.is_given(at)? {
             return Ok(());
         }
         let reason = Reason::Inconsistent(format!("the stance already gives the base's {coordinate}"));
         Err(self.refuse(at, reason).hint("empty either the stance's cell or the base's x and z"))
     }
 
-    fn friction(&self, at: usize, text: &str) -> Result<Friction> {
-        if text == "infinite" {
-            return Ok(Friction::Infinite);
-        }
-        let value: f64 = text.parse().map_err(|_| {
-            let reason = Reason::Syntax(format!("expected a number or infinite, found \"{}\"", short(text)));
-            self.refuse(at, reason).did_you_mean(text, ["infinite"])
-        })?;
+    fn friction(&self, at: usize) -> Result<Option<Friction>> {
+        let value = match self.cell(at)? {
+            Cell::Empty => return Ok(None),
+            Cell::Text(text) if text == "infinite" => return Ok(Some(Friction::Infinite)),
+            Cell::Number(value) => value,
+            Cell::Text(text) => text.parse().map_err(|_| {
+                let reason = Reason::Syntax(format!("expected a number or infinite, found \"{}\"", short(&text)));
+                self.refuse(at, reason).did_you_mean(&text, ["infinite"])
+            })?,
+        };
         let what = "friction".to_owned();
         match value {
-            0.0..=f64::MAX => Ok(Friction::Finite(value)),
+            0.0..=f64::MAX => Ok(Some(Friction::Finite(value))),
             f64::INFINITY => Err(self.refuse(at, Reason::NotFinite { what, value }).hint("did you mean infinite?")),
             _ if value.is_nan() => Err(self.refuse(at, Reason::NotFinite { what, value })),
             _ => Err(self.refuse(at, Reason::OutOfRange { what, allowed: "0 or more", value })),
@@ -233,37 +314,60 @@ impl Row<'_> {
 
     /// The number in a cell.
     fn number(&self, at: usize) -> Result<f64> {
-        let Some(text) = self.given(at)? else {
-            let reason = Reason::WrongKind { expected: "a number", found: "an empty cell" };
-            return Err(self.refuse(at, reason).hint("write 0 where it is 0, or leave the column out"));
+        let value: f64 = match self.cell(at)? {
+            Cell::Empty => {
+                let reason = Reason::WrongKind { expected: "a number", found: "an empty cell" };
+                return Err(self.refuse(at, reason).hint("write 0 where it is 0, or leave the column out"));
+            }
+            Cell::Number(value) => value,
+            Cell::Text(text) if self.header.form == Form::Ndjson => {
+                let reason = Reason::WrongKind { expected: "a number", found: "a string" };
+                let error = self.refuse(at, reason);
+                let is_number = text.trim().parse::<f64>().is_ok();
+                return Err(if is_number { error.hint("leave out the quotes") } else { error });
+            }
+            Cell::Text(text) => text.parse().map_err(|_| {
+                let error = self.refuse(at, Reason::Syntax(format!("expected a number, found \"{}\"", short(&text))));
+                if text.contains(',') { error.hint("write decimals with a point") } else { error }
+            })?,
         };
-        let value: f64 = text.parse().map_err(|_| {
-            let error = self.refuse(at, Reason::Syntax(format!("expected a number, found \"{}\"", short(text))));
-            if text.contains(',') { error.hint("write decimals with a point") } else { error }
-        })?;
         if value.is_finite() {
             return Ok(value);
         }
         Err(self.refuse(at, Reason::NotFinite { what: "a cell".into(), value }))
     }
 
-    /// The text in a cell that is not empty.
-    fn given(&self, at: usize) -> Result<Option<&str>> {
-        let field = self.record.get(at).unwrap_or_default().trim_ascii();
-        match std::str::from_utf8(field) {
-            Ok(text) => Ok((!text.is_empty()).then_some(text)),
-            Err(_) => Err(self.refuse(at, Reason::Syntax("the cell is not UTF-8".into()))),
-        }
+    /// Whether a cell is not empty.
+    fn is_given(&self, at: usize) -> Result<bool> {
+        Ok(!matches!(self.cell(at)?, Cell::Empty))
+    }
+
+    fn cell(&self, at: usize) -> Result<Cell<'_>> {
+        let field = self.cells.get(at).unwrap_or_default().trim_ascii();
+        let Ok(text) = std::str::from_utf8(field) else {
+            return Err(self.refuse(at, Reason::Syntax("the cell is not UTF-8".into())));
+        };
+        Ok(match (self.header.form, field.first()) {
+            (_, None) => Cell::Empty,
+            (Form::Ndjson, Some(b'"')) => Cell::Text(serde_json::from_str(text).unwrap_or_default()),
+            (Form::Ndjson, Some(b'-' | b'0'..=b'9')) => Cell::Number(text.parse().unwrap_or(f64::NAN)),
+            _ => Cell::Text(text.into()),
+        })
     }
 
     fn refuse(&self, at: usize, reason: Reason) -> Error {
-        refuse(self.header, self.raw, self.line, at, reason)
+        self.place(Error::new(reason), at)
+    }
+
+    /// Puts an error where cell `at` begins.
+    fn place(&self, error: Error, at: usize) -> Error {
+        place(error, self.header, self.raw, self.line, at)
     }
 }
 
-/// Refuses cell `at` of the record `raw`, which begins on `line`.
-fn refuse(header: &Header, raw: &[u8], line: usize, at: usize, reason: Reason) -> Error {
-    let (lines, column) = place_of(raw, at);
+/// Puts an error where cell `at` of the record `raw` begins, itself on `line`.
+fn place(error: Error, header: &Header, raw: &[u8], line: usize, at: usize) -> Error {
     let name = header.names.get(at).map_or("", String::as_str);
-    Error::new(reason).at(short(name)).on(line + lines, column)
+    let (lines, column) = Record { bytes: raw, form: header.form }.place_of(at, name);
+    error.at(short(name)).on(line + lines, column)
 }

@@ -2,6 +2,7 @@
 
 use crate::Robot;
 use crate::gait::Landing;
+use crate::read::table::CarriedValue;
 use crate::state::{Named, State};
 #[cfg(feature = "schema")]
 use crate::write::state::any_object;
@@ -52,17 +53,17 @@ impl<'a> Touchdown<'a> {
 
 /// Fields of a table that are carried through, written as an object.
 #[derive(Debug, Clone)]
-pub struct CarriedFields<'a>(pub Vec<(Cow<'a, str>, Cow<'a, str>)>);
+pub struct CarriedFields<'a>(pub Vec<(Cow<'a, str>, CarriedValue<'a>)>);
 
 impl Serialize for CarriedFields<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(self.0.iter().map(|(name, text)| (name, text)))
+        serializer.collect_map(self.0.iter().map(|(name, value)| (name, value)))
     }
 }
 
 impl<'de> Deserialize<'de> for CarriedFields<'_> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let fields = Named::<String>::deserialize(deserializer)?;
-        Ok(Self(fields.iter().map(|(name, text)| (name.to_owned().into(), text.clone().into())).collect()))
+        let fields = Named::<CarriedValue>::deserialize(deserializer)?;
+        Ok(Self(fields.iter().map(|(name, value)| (name.to_owned().into(), value.clone())).collect()))
     }
 }

@@ -3,7 +3,7 @@
 use crate::read::table::Carried;
 use crate::state::NamedContact;
 use crate::sweep::{Regime, RobotStudy, Solver};
-use crate::write::{Columns, Detail, ErrorObject, Report, RowKind, append_line};
+use crate::write::{Columns, Detail, ErrorObject, Kind, Report, RowKind, RowSink, append_line};
 use crate::{Impact, Result};
 use serde::Serialize;
 use serde_json::json;
@@ -68,7 +68,7 @@ impl<'a> SampleRecord<'a> {
         solver: &mut Solver,
         columns: &Columns,
         letter: impl Fn(&Regime) -> String,
-        out: &mut Vec<u8>,
+        out: &mut dyn RowSink,
     ) -> bool {
         let values = || self.point.iter().map(|value| format!("{value:?}"));
         let carried = |impact: &Result<Impact>| Carried::new(values().chain([letter(&Regime::of(impact))]));
@@ -80,15 +80,15 @@ impl<'a> SampleRecord<'a> {
         });
         let Err(error) = answered else { return true };
         let sentence = ErrorObject::new(&error).to_string();
-        columns.append_unnamed(&sentence, &carried(&Err(error)), out);
+        columns.append_unnamed(sentence, &carried(&Err(error)), out);
         false
     }
 }
 
 /// The columns of a batch with these `contacts`, then the parameters and the letter of the region.
 pub fn columns<'c>(model: &'c RobotStudy, feet: &[NamedContact], contacts: impl Iterator<Item = &'c str>) -> Columns {
-    let parameters = model.study.parameters().iter().map(|parameter| parameter.name.as_str());
-    let through: Vec<&str> = parameters.chain(["region"]).collect();
+    let parameters = model.study.parameters().iter().map(|parameter| (parameter.name.as_str(), Kind::Number));
+    let through: Vec<_> = parameters.chain([("region", Kind::Text)]).collect();
     let kind = RowKind::of(model.study.question());
     Columns::without_lines(model.robot, feet, &contacts.collect::<Vec<_>>(), &through, kind)
 }

@@ -75,8 +75,8 @@ const FOREIGN: [(&[u8], &str, &str); 11] = [
     (b"PAR1", "ndjson", "error: <stdin>: the input is a Parquet file\n"),
     (b"\xff\xfei\0d\0,\0", "csv", "error: <stdin>: the text is UTF-16\nhint: save it as UTF-8"),
     (b"\xfe\xff\0{\0}", "ndjson", "error: <stdin>: the text is UTF-16\nhint: save it as UTF-8"),
-    (b"q_base_z;v_base_z\n", "csv", "error: the columns are parted by semicolons, not by commas\n --> <stdin>:1:1"),
-    (b"q_base_z\tv_base_z\n", "csv", "error: the columns are parted by tabs, not by commas\n --> <stdin>:1:1"),
+    (b"q_base_z;v_base_z\n", "csv", "error: the columns are separated by semicolons, not by commas\n --> <stdin>:1:1"),
+    (b"q_base_z\tv_base_z\n", "csv", "error: the columns are separated by tabs, not by commas\n --> <stdin>:1:1"),
     (b"\n{\"id\": 1}\n", "csv", "error: expected the names of the columns, found JSON\n --> <stdin>:2:1"),
     (b"\n1,2\n", "csv", "error: a column of positions, such as q_base_x, is missing\n --> <stdin>:2:1"),
 ];

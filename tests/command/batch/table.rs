@@ -138,3 +138,153 @@ fn formulas_are_text_in_safe_tables() {
     let refusal = batch(&["-", "--csv-safe"], strike(1, 0.5)).refusal(2);
     assert!(refusal.contains("--csv-safe: it is for CSV"), "{refusal}");
 }
+
+/// A recorded walk, and the same with its rows as flat lines of JSON behind a blank line, so that rows have one line.
+fn walk() -> (String, String) {
+    let table = read("examples/gait/ramone_walk.csv");
+    let mut reader = csv::Reader::from_reader(table.as_bytes());
+    let names = reader.headers().expect("a header").clone();
+    let mut lines = "\n".to_owned();
+    for row in reader.into_records() {
+        let cell = |(name, cell): (&str, &str)| match cell.parse::<f64>() {
+            Ok(_) => format!("{}:{cell}", json!(name)),
+            Err(_) => format!("{}:{}", json!(name), json!(cell)),
+        };
+        lines += &format!("{{{}}}\n", names.iter().zip(&row.expect("a row")).map(cell).collect::<Vec<_>>().join(","));
+    }
+    (table, lines)
+}
+
+/// What to ask of a walk.
+const WALK_QUESTIONS: [&[&str]; 4] = [
+    &["--output-format", "csv"],
+    &["--output-format", "csv", "--brief"],
+    &["--output-format", "csv", "--touchdowns"],
+    &["--brief", "--touchdowns"],
+];
+
+#[test]
+fn flat_lines_of_json_are_a_table() {
+    let (table, lines) = walk();
+    for question in WALK_QUESTIONS {
+        let run = |format: &str, input: &str| {
+            let always = ["batch", RAMONE, "-", "--friction", "0.6", "--input-format", format];
+            heelstrike_reads(&[&always[..], question].concat(), input).well().stdout
+        };
+        let expected = run("csv", &table);
+        assert!(expected.len() > 500 && run("ndjson", &lines) == expected, "{question:?}");
+        let reversed: String = lines
+            .lines()
+            .map(|line| {
+                let line: serde_json::Map<String, serde_json::Value> = serde_json::from_str(line).unwrap_or_default();
+                let fields =
+                    line.iter().rev().map(|(key, value)| format!("{}: {value}", json!(key))).collect::<Vec<_>>();
+                if fields.is_empty() { "\n".to_owned() } else { format!("{{{}}}\n", fields.join(", ")) }
+            })
+            .collect();
+        let brief = question.contains(&"--brief");
+        assert!(
+            !brief || run("ndjson", &reversed).replace(' ', "") == expected,
+            "{question:?} in another order of keys"
+        );
+    }
+}
+
+#[test]
+fn broken_flat_lines_are_refused_in_their_place() {
+    let lines = "{\"id\": 0, \"q_base_z\": 0.5, oops\n\
+        {\"id\":1,\"q_base_z\":0.5,\"v_base_z\":-1.0,\"note\":\"a, \\\"b\\\"\",\"n\":3,\"friction\":null}\n\n\
+        {\"id\":\"k2\",\"q_base_z\":\"0.5\",\"v_base_z\":-1.0}\n\
+        {\"id\":3,\"q_base_z\":0.5,\"v_base_z\":-1.0,\"other\":3}\n\
+        {\"id\":4,\"q_base_z\":0.5,\"v_base_z\":null}\n\
+        {\"id\":5,\"q_base_z\":0.5}\n\
+        {\"id\":[6],\"q_base_z\":0.5,\"v_base_z\":-1}\n\
+        {\"id\":7,\"q_base_z\":0.5,\"v_base_z\":-1,\"v_base_z\":2}\n\
+        {\"id\":8,\"q_base_z\":1e999,\"v_base_z\":-1}\n\
+        {\"id\":9,\"q_base_z\":0.5,\"v_base_z\":-1,\"friction\":\"infinit\"}\n\
+        []\n\
+        {\"friction\":\"infinite\",\"v_base_z\":-1,\"n\":[1],\"note\":true,\"q_base_z\":5e-1}";
+    let run = batch(&["-", "--friction", "0.5", "--refused", "ok"], lines).well();
+    insta::assert_snapshot!("flat_lines", format!("{}\n{}", run.stdout, run.stderr));
+    let nested = batch(&["-", "--touchdowns"], "{\"q_base_z\": 0, \"position\": {}}\n").refusal(2);
+    assert!(nested.contains("touchdowns and velocities over time need a table"), "{nested}");
+}
+
+/// A table of commas with tabs instead.
+fn with_tabs(table: &str) -> String {
+    let mut writer = csv::WriterBuilder::new().delimiter(b'\t').flexible(true).from_writer(Vec::new());
+    let mut reader = csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(table.as_bytes());
+    reader.records().for_each(|row| writer.write_record(&row.expect("a row")).expect("memory"));
+    String::from_utf8(writer.into_inner().expect("memory")).expect("text")
+}
+
+#[test]
+fn tabs_separate_columns_as_commas_do() {
+    let (table, _) = walk();
+    let [input, output] = ["walk.tsv", "answers.tsv"].map(|name| file(name, with_tabs(&table)));
+    for question in WALK_QUESTIONS {
+        let always = ["batch", RAMONE, "--friction", "0.6"];
+        let expected = heelstrike(&[&always, &["examples/gait/ramone_walk.csv"][..], question].concat()).well().stdout;
+        let answers = heelstrike(&[&always, &[&*input][..], question].concat()).well().stdout;
+        assert!(answers == expected, "{question:?}");
+        if question.contains(&"csv") {
+            let question = question.iter().filter(|word| !word.contains("output-format") && **word != "csv").copied();
+            let question = [&always, &[&*input, "-o", &output][..], &question.collect::<Vec<_>>()].concat();
+            heelstrike(&question).well();
+            assert!(read(&output) == with_tabs(&expected), "{question:?}");
+            assert_eq!(heelstrike(&[&question[..], &["--resume"]].concat()).status, 0);
+            assert!(read(&output) == with_tabs(&expected), "resumed {question:?}");
+        }
+    }
+    let run = batch(&["-", "--input-format", "tsv", "--friction", "0.5", "--output-format", "tsv"], with_tabs(&many()));
+    let expected = batch(&["-", "--input-format", "csv", "--friction", "0.5", "--output-format", "csv"], many());
+    assert!(run.status == 1 && run.stdout == with_tabs(&expected.stdout));
+    // Tabs alone are a row of empty cells, and blanks behind a quote are none.
+    let table = "note\tq_base_z\tv_base_z\n\t\t\n\n\"a\tb\" \t0.5\t-1\n";
+    let run = batch(&["-", "--input-format", "tsv", "--friction", "1", "--refused", "ok"], table).well();
+    let lines = run.lines();
+    assert_eq!(
+        [&lines[0]["line"], &lines[1]["line"], &lines[1]["carried"]["note"]],
+        [&json!(2), &json!(4), &json!("a\tb ")]
+    );
+    assert!(lines.len() == 2 && lines[0]["error"]["place"] == "q_base_z", "{lines:?}");
+    for (format, table, words) in [
+        ("csv", "q_base_z\tv_base_z\n0.5\t-1\n", "separated by tabs, not by commas"),
+        ("tsv", "q_base_z,v_base_z\n0.5,-1\n", "if these are commas, say --input-format csv"),
+    ] {
+        let refusal = batch(&["-", "--input-format", format], table).refusal(1);
+        assert!(refusal.contains(words), "{refusal}");
+    }
+}
+
+#[test]
+fn tables_in_brief_lack_impulses_and_velocities() {
+    let run = |brief: &[&str]| -> (Vec<String>, Vec<csv::StringRecord>) {
+        let always = ["batch", WALKER, "examples/keyframes.ndjson", "--friction", "infinite", "--output-format", "csv"];
+        let table = heelstrike(&[&always, brief].concat()).well().stdout;
+        let mut reader = csv::Reader::from_reader(table.as_bytes());
+        let names = reader.headers().expect("a header").iter().map(str::to_owned).collect();
+        (names, reader.records().map(|row| row.expect("a row")).collect())
+    };
+    for next in [&[][..], &["--next"]] {
+        let ((names, rows), (short, in_brief)) = (run(next), run(&[next, &["--brief"]].concat()));
+        let is_long =
+            |name: &str| name.starts_with("p_") || name.starts_with("v_after_") || matches!(name, "border" | "notes");
+        let kept: Vec<usize> = (0..names.len()).filter(|&at| !is_long(&names[at])).collect();
+        assert_eq!(short, kept.iter().map(|&at| names[at].clone()).collect::<Vec<_>>());
+        let expected: Vec<Vec<&str>> = rows.iter().map(|row| kept.iter().map(|&at| &row[at]).collect()).collect();
+        assert_eq!(in_brief.iter().map(|row| row.iter().collect::<Vec<_>>()).collect::<Vec<_>>(), expected);
+        assert!(expected.len() > 4);
+    }
+}
+
+#[test]
+fn samples_of_a_study_are_a_table_with_tabs_too() {
+    let study = |more: &[&str]| {
+        heelstrike(&[&["sweep", WALKER, "examples/paper/figure_7.json", "--format"], more].concat()).well().stdout
+    };
+    for brief in [&[][..], &["--brief"]] {
+        let [table, tabs] = ["csv", "tsv"].map(|format| study(&[&[format], brief].concat()));
+        assert!(table.lines().count() > 50 && tabs == with_tabs(&table), "{brief:?}");
+    }
+}

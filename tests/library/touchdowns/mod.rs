@@ -12,7 +12,7 @@ use crate::support::impact::{outcomes, robot};
 use crate::support::scaled::near;
 use heelstrike::gait::{At, Difference, Heights, Landing, Sample, Sampled, Touching, find, rates};
 use heelstrike::pipeline::{Options, Pipeline};
-use heelstrike::read::table::{Header, Rates};
+use heelstrike::read::table::{Form, Header, Rates};
 use heelstrike::state::NamedContact;
 use heelstrike::{Defaults, Friction, Robot};
 use serde_json::{Value, json};
@@ -25,7 +25,7 @@ const WALK: &str = "tests/data/gaits/rabbit_walk.csv";
 fn samples(table: &str, robot: &Robot, from: Rates) -> Vec<Sampled<usize>> {
     let mut lines = (1..).zip(table.lines());
     let (_, first) = lines.next().unwrap();
-    let header = Header::read(first.as_bytes(), robot, from, &[]).unwrap();
+    let header = Header::read(first.as_bytes(), Form::Csv, robot, from, &[]).unwrap();
     let mut rows = header.rows();
     lines
         .map(|(line, record)| {

@@ -1,0 +1,70 @@
+//! States as flat lines of JSON, as data frames are written: the keys are the names that a table's columns have.
+//!
+//! ```text
+//!     {"id":"k17","q_base_z":0.41,"v_base_z":-1.0,"phase":null}
+//! ```
+//!
+//! The first line that can be read names the columns. A key that a later line lacks, and null, are an empty cell.
+
+use crate::read::documents::utf8;
+use crate::read::json::{RawFields, line_and_column};
+use crate::{Error, Reason, Result};
+use csv::ByteRecord;
+
+/// Whether a line of JSON is a flat state; `None` if it is blank, or broken and looks like one.
+pub fn is_flat(line: &[u8]) -> Option<bool> {
+    let is_coordinate = |name: &str| name.starts_with("q_") || name.starts_with("v_");
+    match fields(line) {
+        _ if line.trim_ascii().is_empty() => None,
+        Ok(fields) => {
+            let any = |wanted: &dyn Fn(&str) -> bool| fields.0.iter().any(|(key, _)| wanted(key));
+            Some(any(&is_coordinate) && !any(&|key| matches!(key, "position" | "velocity")))
+        }
+        Err(_) => {
+            let mut words = line.split(|&byte| byte == b'"').filter_map(|word| str::from_utf8(word).ok());
+            if words.any(is_coordinate) { None } else { Some(false) }
+        }
+    }
+}
+
+/// The keys of a line.
+pub(super) fn keys(line: &[u8]) -> Result<Vec<String>> {
+    Ok(fields(line)?.0.into_iter().map(|(key, _)| key.into_owned()).collect())
+}
+
+/// Reads the values of a line into the cells of the columns, as they are written there; nothing for null.
+pub(super) fn read(line: &[u8], columns: &[String], cells: &mut ByteRecord) -> Result<()> {
+    let fields = fields(line)?;
+    let refuse = |key: &str, reason: Reason| Error::new(reason).at(key).on(1, column_of(line, key));
+    let mut values = vec![None; columns.len()];
+    // Most lines have the keys in the order of the first.
+    let mut next = 0;
+    for (key, value) in &fields.0 {
+        let is_next = columns.get(next).is_some_and(|column| column == key);
+        let at = if is_next { Some(next) } else { columns.iter().position(|column| column == key) };
+        let unknown = || refuse(key, Reason::Inconsistent("the first line has no such key".into()));
+        let at = at.ok_or_else(|| unknown().hint("it names the columns: give the key there, too, with null"))?;
+        if values[at].replace(value.get()).is_some() {
+            return Err(refuse(key, Reason::Duplicate { what: "key", name: key.to_string() }));
+        }
+        next = at + 1;
+    }
+    cells.clear();
+    values
+        .iter()
+        .for_each(|value| cells.push_field(value.filter(|text| *text != "null").unwrap_or_default().as_bytes()));
+    Ok(())
+}
+
+/// The column at which the value of a key begins; 1 if there is none.
+pub(super) fn column_of(line: &[u8], name: &str) -> usize {
+    let place = |(_, value): &(_, &serde_json::value::RawValue)| {
+        let offset = (value.get().as_ptr() as usize).checked_sub(line.as_ptr() as usize)?;
+        Some(line_and_column(line, offset).1)
+    };
+    fields(line).ok().and_then(|fields| fields.0.iter().rev().find(|(key, _)| key == name).and_then(place)).unwrap_or(1)
+}
+
+fn fields(line: &[u8]) -> Result<RawFields<'_>> {
+    RawFields::parse(utf8(line)?)
+}
