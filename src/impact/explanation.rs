@@ -29,8 +29,8 @@ pub fn explanation(problem: &ContactProblem, scale: &Scale) -> Option<Explanatio
         let (t, n) = (2 * contact, 2 * contact + 1);
         let mass_tt = inverse[(t, t)] / (mobility[t] * mobility[t]);
         let mass_nt = inverse[(n, t)] / (mobility[n] * mobility[t]);
-        let beta = (mass_nt / mass_tt).atan();
-        let gamma = (taken[n] / mobility[n]).atan2(taken[t] / mobility[t]);
+        let beta = libm::atan(mass_nt / mass_tt);
+        let gamma = libm::atan2(taken[n] / mobility[n], taken[t] / mobility[t]);
         explanation.beta.push(beta);
         explanation.gamma.push(gamma);
         explanation.region.push(region(beta, gamma));
