@@ -32,8 +32,8 @@ pub(super) struct PageFrame {
 struct PageDrawing {
     /// Of each body its part, and its frame's origin and x axis in the world.
     bodies: Vec<(usize, f64, f64, f64, f64)>,
-    /// The beginning and the end of each.
-    bones: Vec<[f64; 4]>,
+    /// The beginning and the end of each, and its body.
+    bones: Vec<(f64, f64, f64, f64, usize)>,
     joints: Vec<Vector<f64>>,
     ground: Vec<Vector<f64>>,
     contacts: Vec<PageContact>,
@@ -197,7 +197,10 @@ impl PageDrawing {
             let (origin, axis) = (at(&body.origin), vector(&body.x_axis));
             (part, origin.x, origin.z, axis.x, axis.z)
         };
-        let ends = drawing.bodies.iter().flat_map(|body| body.bones.iter().map(|end| [at(&body.origin), at(end)]));
+        let bones = |(number, body): (usize, &DrawnBody)| -> Vec<_> {
+            let from = at(&body.origin);
+            body.bones.iter().map(at).map(|to| (from.x, from.z, to.x, to.z, number)).collect()
+        };
         let contact = |contact: &DrawnContact| PageContact {
             name: texts.number(&contact.name),
             point: at(&contact.point),
@@ -208,7 +211,7 @@ impl PageDrawing {
         let Extent { low, high } = drawing.extent();
         Self {
             bodies: drawing.bodies.iter().map(body).collect(),
-            bones: ends.map(|[from, to]| [from.x, from.z, to.x, to.z]).collect(),
+            bones: drawing.bodies.iter().enumerate().flat_map(bones).collect(),
             joints: drawing.joints.iter().map(at).collect(),
             ground: drawing.ground.iter().map(at).collect(),
             contacts: drawing.contacts.iter().map(contact).collect(),

@@ -109,6 +109,16 @@ impl Page {
         Self { frames, wording, parts, texts: texts.all, scale, windows, svg, ..Self::default() }
     }
 
+    /// A page of one state, whose data is drawn by a page that asks for it.
+    pub fn of_state(title: String, keyframe: Keyframe) -> Self {
+        Self { title, ..Self::of(&[PageState { keyframe, region: None, name: None }], Rendered::default()) }
+    }
+
+    /// Its plots.
+    pub fn svg(&self) -> &str {
+        &self.svg
+    }
+
     pub fn html(&self) -> String {
         // As text of HTML.
         let title = self.title.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");

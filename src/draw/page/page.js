@@ -14,10 +14,6 @@
   const plots = new Plots(document.getElementById("plots"), data, (values) => go(axes.map(({ values: all }, axis) => nearest(all, values[axis]))));
   const sliders = axes.map((_, axis) => new Slider(document.getElementById("control"), data, axis, (stop) => go(here.with(axis, stop))));
 
-  function nearest(all, value) {
-    return all.reduce((best, at, stop) => (Math.abs(at - value) < Math.abs(all[best] - value) ? stop : best), 0);
-  }
-
   function go(stops) {
     stops.forEach((stop, axis) => { here[axis] = Math.min(axes[axis].values.length - 1, Math.max(0, stop)); });
     const outcomes = still(here).outcomes.length;
@@ -44,15 +40,18 @@
   }
 
   /** The next stop along the first axis on the other side of a border, or the last one. */
-  function border(way) {
-    const { region } = still(here);
-    const last = axes[0].values.length - 1;
-    let stop = here[0];
-    while (stop + way >= 0 && stop + way <= last) {
-      stop += way;
-      if (still(here.with(0, stop)).region !== region) break;
+  const beyond = (way) => here.with(0, border(axes[0].values.map((_, stop) => still(here.with(0, stop)).region), here[0], way));
+
+  /** The middle of the region that says most: several outcomes or none before one, the longest of each. */
+  function telling() {
+    const says = ({ verdict, outcomes }) => (verdict === "none" || outcomes.length > 1 ? 3 : verdict === "unique" ? 2 : verdict ? 1 : 0);
+    let best = { says: -1, length: 0, at: 0 };
+    for (let from = 0, to; from < frames.length; from = to) {
+      for (to = from + 1; to < frames.length && frames[to].region === frames[from].region; ) to += 1;
+      const run = { says: says(frames[from]), length: to - from, at: Math.floor((from + to - 1) / 2) };
+      if (run.says > best.says || (run.says === best.says && run.length > best.length)) best = run;
     }
-    return here.with(0, stop);
+    return axes.map((_, axis) => Math.floor(best.at / axes.slice(axis + 1).reduce((count, { values }) => count * values.length, 1)) % axes[axis].values.length);
   }
 
   const along = (axis, way) => here.with(axis, here[axis] + way);
@@ -62,8 +61,8 @@
     ArrowRight: () => go(along(0, 1)),
     ArrowDown: () => go(along(upright, -1)),
     ArrowUp: () => go(along(upright, 1)),
-    PageUp: () => go(border(1)),
-    PageDown: () => go(border(-1)),
+    PageUp: () => go(beyond(1)),
+    PageDown: () => go(beyond(-1)),
     Home: () => go(here.with(0, 0)),
     End: () => go(here.with(0, axes[0].values.length - 1)),
     Escape: () => choose(null),
@@ -76,7 +75,13 @@
     action();
   });
 
+  document.getElementById("control").append(buttons({
+    step: (way) => go(along(0, way)),
+    border: (way) => go(beyond(way)),
+    again: () => here[0] === axes[0].values.length - 1 && (go(here.with(0, 0)), true),
+  }));
+
   const signs = "t is along the ground, n away from it; slide forward is along t";
   for (const note of [signs, ...data.notes]) document.getElementById("notes").append(html("p", {}, `Note: ${note}.`));
-  show();
+  go(telling());
 }

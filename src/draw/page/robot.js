@@ -83,7 +83,7 @@ class Robot {
     const { low, high, follows } = this.data.scale;
     const center = [0, 1].map((axis) => (low[axis] + high[axis]) / 2 + (follows[axis] ? pose.middle[axis] : 0));
     this.at = ([x, z]) => [this.middle[0] + (x - center[0]) * this.zoom, this.middle[1] - (z - center[1]) * this.zoom];
-    this.element.append(...this.ground(pose.ground), ...pose.bodies.map((body) => this.part(body)), ...this.skeleton(pose), ...this.contacts(frame, chosen));
+    this.element.append(...this.ground(pose.ground), ...pose.bodies.map((body, at) => this.part(body, at)), ...this.skeleton(pose), ...this.contacts(frame, chosen));
   }
 
   /** The ground; a straight one goes on to both sides. */
@@ -102,11 +102,11 @@ class Robot {
   }
 
   /** The collision shapes and the CoG of a body. */
-  part([number, x, z, cos, sin]) {
+  part([number, x, z, cos, sin], at) {
     const { outlines, com, mass, last } = this.data.parts[number];
     const [left, top] = this.at([x, z]);
     const [c, s] = [this.zoom * cos, this.zoom * sin];
-    const group = svg("g", { class: "body", transform: `matrix(${c} ${-s} ${-s} ${-c} ${left} ${top})` });
+    const group = svg("g", { class: "body", "data-body": at, transform: `matrix(${c} ${-s} ${-s} ${-c} ${left} ${top})` });
     const kind = last ? "part last" : "part";
     for (const outline of outlines) {
       if (Array.isArray(outline)) {
@@ -125,9 +125,9 @@ class Robot {
   }
 
   skeleton({ bones, joints }) {
-    const bone = ([x, z, toX, toZ]) => {
+    const bone = ([x, z, toX, toZ, body]) => {
       const [[x1, y1], [x2, y2]] = [this.at([x, z]), this.at([toX, toZ])];
-      return svg("line", { class: "bone", x1, y1, x2, y2 });
+      return svg("line", { class: "bone", "data-body": body, x1, y1, x2, y2 });
     };
     const joint = (point) => {
       const [cx, cy] = this.at(point);

@@ -1,9 +1,47 @@
-// A slider along each axis, with the regions behind the first one where it is alone.
+// A slider along each axis, with the regions behind the first one where it is alone, and buttons that move it.
+
+/** The stop whose value is nearest. */
+function nearest(values, value) {
+  return values.reduce((best, at, stop) => (Math.abs(at - value) < Math.abs(values[best] - value) ? stop : best), 0);
+}
+
+/** The next stop on the other side of a border, or the last one; `regions` are those of the stops. */
+function border(regions, stop, way) {
+  const next = (at) => at + way >= 0 && at + way < regions.length;
+  let at = stop;
+  while (next(at)) {
+    at += way;
+    if (regions[at] !== regions[stop]) break;
+  }
+  return at;
+}
+
+/** How long a stop is shown while the page plays [ms]. */
+const STILL = 90;
+
+/** Buttons for what keys do, and one that plays: `again` starts anew at the end. */
+function buttons({ step, border, again }) {
+  let playing = null;
+  const button = (sign, words, act) => html("button", { type: "button", ariaLabel: words, title: words, onclick: act }, sign);
+  const stop = () => {
+    clearInterval(playing);
+    playing = null;
+    Object.assign(play, { textContent: "▶", ariaLabel: "Play", title: "Play" });
+  };
+  const play = button("▶", "Play", () => {
+    if (playing !== null) return stop();
+    Object.assign(play, { textContent: "II", ariaLabel: "Pause", title: "Pause" });
+    playing = setInterval(() => (play.isConnected ? again() || step(1) : stop()), STILL);
+  });
+  return html("div", { className: "buttons" }, button("«", "Border before", () => border(-1)), button("‹", "One step back", () => step(-1)),
+    play, button("›", "One step on", () => step(1)), button("»", "Next border", () => border(1)));
+}
 
 class Slider {
   /** `move` takes the number of a stop. */
   constructor(element, data, axis, move) {
     this.axis = data.axes[axis];
+    this.move = move;
     this.last = this.axis.values.length - 1;
     this.input = html("input", { type: "range", id: `axis${axis}`, min: 0, max: this.last, step: 1, value: 0 });
     this.output = html("output");
@@ -17,6 +55,10 @@ class Slider {
   /** The regions in the order of the stops; a stop stands in the middle of its part. */
   track({ frames, regions }) {
     const track = html("div", { className: "track", ariaHidden: "true" });
+    track.addEventListener("click", ({ clientX }) => {
+      const { left, width } = track.getBoundingClientRect();
+      this.move(Math.round(((clientX - left) / width) * this.last));
+    });
     const part = (stop) => Math.min(100, Math.max(0, (100 * stop) / (this.last || 1)));
     for (let from = 0, to; from < frames.length; from = to) {
       for (to = from + 1; to < frames.length && frames[to].region === frames[from].region; ) to += 1;
@@ -29,10 +71,11 @@ class Slider {
     return track;
   }
 
-  /** Shows a stop, and what it is called; `words` are for those who do not see it. */
-  show(stop, name, words) {
+  /** Shows a stop, and what it is called; `words` are for those who do not see it. A `value` may lie between stops. */
+  show(stop, name, words, value = this.axis.values[stop]) {
     this.input.value = stop;
-    this.output.value = String(this.axis.values[stop]);
+    this.output.value = digits(value);
+    this.output.dataset.value = value;
     this.name.textContent = name;
     this.input.setAttribute("aria-valuetext", `${this.output.value}, ${words}`);
   }

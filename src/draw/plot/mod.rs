@@ -54,7 +54,7 @@ pub struct Picture {
 }
 
 /// A picture as SVG, and where its data are in it.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Rendered {
     pub svg: String,
     /// The inside of each panel that is drawn, row by row.

@@ -33,6 +33,9 @@ fn keys_and_slider_move_the_robot_and_the_cursor() {
         assert_eq!(step(name, "stop"), stop, "{name}");
     }
     assert_eq!((step("home", "alpha"), step("end", "alpha")), (0.5, 0.55));
+    // It opens in the middle of the longer region, and buttons and the strip do what keys do.
+    assert_eq!((&found["opened"]["stop"], &found["opened"]["badge"]), (&json!(6), &json!("B")));
+    assert_eq!((&found["clicked"], &found["struck"]), (&json!([4, 5, 4, 3]), &json!(6)));
     let border = std::f64::consts::FRAC_PI_6;
     assert!(0.0 < step("border", "alpha") - border && step("border", "alpha") - border < 1e-12);
     assert!(0.0 < border - step("back", "alpha") && border - step("back", "alpha") < 1e-12);

@@ -1,5 +1,6 @@
-const seen = () => [Number(all("output")[0].textContent), Number(all("output")[1].textContent), text(".badge")];
+const seen = () => [...all("output").map((output) => Number(output.dataset.value)), text(".badge")];
 const dot = () => { const { left, right, top, bottom } = one("circle.cursor").getBoundingClientRect(); return [(left + right) / 2, (top + bottom) / 2]; };
+press("Home", ...Array(4).fill("ArrowDown"));
 const start = [...seen(), ...dot()];
 press("ArrowUp");
 const up = [...seen(), ...dot()];
