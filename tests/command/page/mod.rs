@@ -5,9 +5,10 @@
 
 mod browser;
 mod live;
+mod web;
 
 use super::support::urdf;
-use super::{RAMONE, WALKER, each, file, fs, heelstrike, heelstrike_reads, list, parsed, place, read, walker};
+use super::{BLOCK, RAMONE, WALKER, each, file, fs, heelstrike, heelstrike_reads, list, parsed, place, read, walker};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
