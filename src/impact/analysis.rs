@@ -1,14 +1,13 @@
 //! Every outcome of a contact problem, and the verdict.
 //!
 //! ```text
-//!     problem --enumerate--> numbers of each combination --bound, slack--> valid, rejected
+//!     problem --enumerate--> numbers of each combination --slack, reading--> valid, rejected
 //!                                                                     or undecided --escalate--> Analysis
 //! ```
 //!
 //! Each combination is first read in f64 with a bound of its error; what lies within it is decided with more digits. So
 //! every sign in an answer was shown, and nothing is guessed.
 
-use super::bound::LeafBounds;
 use super::collected::{
     AnalysisOptions, Collected, EXPLAINED, Findings, FoundFamilies, ListedRejections, OutcomeMemory,
 };
@@ -25,13 +24,11 @@ use super::survivors::{SEARCHED, Search, combinations};
 use crate::budget::is_spent;
 use crate::error::{Error, Reason, Result};
 use crate::law::{Impulse, Mode};
+use crate::scalar::Rounded;
 use std::collections::BTreeMap;
 
 /// The most contacts of a problem (4^16 combinations are four billions).
 pub const CONTACT_LIMIT: usize = 16;
-
-// The bits of rows that are exactly zero (`Scale::still`).
-const _: () = assert!(2 * CONTACT_LIMIT <= u32::BITS as usize);
 
 pub fn too_many_contacts(contacts: usize) -> Error {
     Error::new(Reason::TooManyContacts { contacts, limit: CONTACT_LIMIT })
@@ -41,9 +38,8 @@ pub fn too_many_contacts(contacts: usize) -> Error {
 /// Memory that is reused from problem to problem.
 #[derive(Debug, Clone, Default)]
 pub struct Scratch {
-    tableau: Tableau<f64>,
+    tableau: Tableau<Rounded>,
     scale: Scale,
-    bounds: LeafBounds,
     labels: Labels,
     relaxation: Relaxation,
     memory: OutcomeMemory,
@@ -139,11 +135,10 @@ impl Scratch {
         let errors = source.errors();
         self.scale.measure(problem, errors);
         self.tableau.separately = !options.reductions.frictionless;
-        self.tableau.load(problem);
-        self.bounds.load(&self.tableau, &self.scale, errors.delassus, self.scale.noise);
+        let (delassus, free) = (self.scale.delassus(problem, errors), self.scale.free(problem, errors));
+        self.tableau.load_entries(problem.laws(), delassus, free);
         let name = |contact| source.contact_name(contact);
         let mut pass = F64Pass {
-            bounds: &mut self.bounds,
             labels: &mut self.labels,
             shares: options.reductions.frictionless
                 && problem.laws().iter().any(|law| law.modes().iter().any(|group| group.len() > 1)),
@@ -175,7 +170,7 @@ impl Scratch {
         let is_shown =
             contacts < SEARCHED && problem.laws().iter().all(|law| law.impulse(Mode::Stick) == Impulse::Free);
         if is_asked && !is_shown {
-            regular = regular || shows_regular(&mut self.tableau, &mut self.bounds, contacts);
+            regular = regular || shows_regular(&mut self.tableau);
         }
         if !undecided.is_empty() {
             let first = Precision::first(regular || is_searched && self.relaxation.is_regular, problem);

@@ -1,11 +1,11 @@
 //! One combination of modes, solved in numbers that know their own signs.
 
-use super::digits::{DIGITS, Numbers};
+use super::digits::{DIGITS, Numbers, after};
 use super::enumerate::Tableau;
 use super::linear::Unsettled;
 use super::outcome::{Motion, Rejection};
 use super::problem::{ContactProblem, Errors};
-use super::reading::{CombinationReading, motion, read_signed};
+use super::reading::{CombinationReading, motion, read};
 use super::singular::{Equations, SingularCase};
 use super::slack::{Scale, slacks};
 use crate::law::Mode;
@@ -80,12 +80,13 @@ impl<'e, T: Ordered> CombinationSolver<'e, T> {
                 Err(Sign::Zero) => return Equations::of(exact, scale, modes).solve().map(Solved::Singular),
                 Err(_) => return Err(Unsettled),
             };
-            let reading = read_signed(&leaf, modes, exact.laws(), scale);
+            let reading = read(&leaf, modes, exact.laws(), scale, Vec::new());
             if reading.sign == Sign::Undecided {
                 return Err(Unsettled);
             }
             if reading.sign == Sign::Negative {
-                let motion = || motion(&leaf, modes, exact, T::to_f64, Motion::default());
+                let after = |contact, xi| after(xi, contact, modes, exact).map(T::to_f64);
+                let motion = || motion(&leaf, T::to_f64, after, Motion::default());
                 return Ok(Solved::Rejected(Rejection::read(modes, reading, motion)));
             }
             let [impulse, velocity]: [Vec<Pair<T>>; 2] = [

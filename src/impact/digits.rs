@@ -15,7 +15,6 @@
 //! with S of [`Scale`]. Each is right to 1e-10 of that; what the numbers at hand do not show to [`DIGITS`] is computed
 //! with more digits. Contacts that hardly feel a blow would else always need them.
 
-use super::bound::Bound;
 use super::enumerate::Leaf;
 use super::generators::Generators;
 use super::outcome::Motion;
@@ -23,7 +22,7 @@ use super::problem::ContactProblem;
 use super::slack::Scale;
 use crate::law::{Friction, Impulse, Law, Mode};
 use crate::planar::Pair;
-use crate::scalar::{Ordered, Real};
+use crate::scalar::{Ordered, Real, Rounded};
 use nalgebra::DMatrix;
 
 /// What a number of an outcome may be off by: 1e-10, with room for the quotient of two.
@@ -194,29 +193,22 @@ fn at_most(law: &Law, ratio: f64) -> f64 {
     }
 }
 
-/// Whether the f64 numbers of a leaf have their digits, those of the `margin` included: by the size that its bound
-/// gives to the errors that are likely, or else by how they depend on the problem.
+/// Whether the f64 numbers of a leaf have their digits, those of the `margin` included: by what is likely of their
+/// errors, or else by how they depend on the problem.
 pub fn f64_serves(
-    leaf: &Leaf<'_, f64>,
+    leaf: &Leaf<'_, Rounded>,
     modes: &[Mode],
     (problem, scale): (&ContactProblem, &Scale),
-    bound: &Bound,
     (motion, margin): (&Motion, Option<f64>),
 ) -> bool {
     let candidate = Candidate { leaf, modes, problem, scale, motion, margin: margin.unwrap_or(0.0).max(1.0) };
-    let error = bound.likely_error(scale) * scale.speed;
-    let is_still = |row: usize| bound.still >> row & 1 == 1;
-    let by_row = |row: usize| match is_still(row) {
-        true => [0.0; 2],
-        false => [error * scale.mobility[row], error / scale.mobility[row]],
-    };
-    let by_ray = |contact: usize, size| if is_still(2 * contact + 1) { 0.0 } else { error / size };
-    candidate.serves(by_row, by_ray) || candidate.serves_by_sensitivity()
+    candidate.serves(|contact| leaf.numbers(contact).map(|own| scale.likely_part * own.error))
+        || candidate.serves_by_sensitivity()
 }
 
 /// An outcome in f64.
 struct Candidate<'a> {
-    leaf: &'a Leaf<'a, f64>,
+    leaf: &'a Leaf<'a, Rounded>,
     modes: &'a [Mode],
     problem: &'a ContactProblem,
     scale: &'a Scale,
@@ -226,9 +218,8 @@ struct Candidate<'a> {
 }
 
 impl Candidate<'_> {
-    /// Whether the numbers have their digits if the velocity and the impulse of a row are off by `of_row` \[m/s, N s\],
-    /// and the lambda of a sliding contact by `of_ray`, with the size that its ray has in the scale.
-    fn serves(&self, of_row: impl Fn(usize) -> [f64; 2], of_ray: impl Fn(usize, f64) -> f64) -> bool {
+    /// Whether all have their digits if the two numbers of each contact, as the leaf has them, are off by `errors`.
+    fn serves(&self, errors: impl Fn(usize) -> [f64; 2]) -> bool {
         let Self { modes, problem, scale, motion, margin, .. } = self;
         let scales = match scale.likely_rounding {
             0.0 => Scales::of,
@@ -239,16 +230,13 @@ impl Candidate<'_> {
         for (contact, (&mode, law)) in modes.iter().zip(problem.laws()).enumerate() {
             let mobility = [scale.mobility[2 * contact], scale.mobility[2 * contact + 1]];
             let (before, after) = (problem.velocity_before()[contact], motion.velocity_after[contact]);
-            let [tangential, normal] = [of_row(2 * contact), of_row(2 * contact + 1)];
+            let [first, second] = errors(contact);
             let bounce = problem.restitution()[contact] * noise * mobility[1];
             // What c+ and L are off by.
             let (off, push) = match law.impulse(mode) {
-                Impulse::Zero => ([tangential[0], normal[0] + bounce], [0.0; 2]),
-                Impulse::Along(ray) => {
-                    let lambda = of_ray(contact, ray[0].abs() * mobility[0] + ray[1].abs() * mobility[1]);
-                    ([tangential[0], bounce], ray.map(|entry| entry.abs() * lambda))
-                }
-                Impulse::Free => ([0.0, bounce], [tangential[1], normal[1]]),
+                Impulse::Zero => ([first, second + bounce], [0.0; 2]),
+                Impulse::Along(ray) => ([first, bounce], ray.map(|entry| entry.abs() * second)),
+                Impulse::Free => ([0.0, bounce], [first, second]),
             };
             let [of_t, of_n] = scales.impulse(contact, law);
             let known = off[0].max(off[1]) <= DIGITS * scales.speed(contact)
@@ -277,7 +265,8 @@ impl Candidate<'_> {
     /// ```
     fn serves_by_sensitivity(&self) -> bool {
         let Self { leaf, modes, problem, scale, .. } = self;
-        let impulse: Vec<f64> = (0..modes.len()).flat_map(|contact| leaf.impulse(contact)).collect();
+        let impulse: Vec<f64> =
+            (0..modes.len()).flat_map(|contact| leaf.impulse(contact)).map(|own| own.value).collect();
         let pressed: f64 = impulse.iter().zip(&scale.mobility).map(|(l, mobility)| l.abs() * mobility).sum();
         let rounding = scale.likely_rounding + impulse.len() as f64 * f64::EPSILON;
         let given = |row: usize| {
@@ -308,7 +297,10 @@ impl Candidate<'_> {
         let lambda: Vec<f64> = inverse.row_iter().map(|row| change(row.transpose())).collect();
         let velocity =
             |row: usize| given(row) + rows[row].iter().zip(&lambda).map(|(&a, b)| weighed(a, b)).sum::<f64>();
-        let lambda_of = |row: usize| held.iter().position(|&own| own == row).map_or(0.0, |place| lambda[place]);
-        self.serves(|row| [velocity(row), lambda_of(row)], |contact, _| lambda_of(2 * contact + 1))
+        let number = |row: usize| match held.iter().position(|&own| own == row) {
+            Some(place) => lambda[place],
+            None => velocity(row),
+        };
+        self.serves(|contact| [number(2 * contact), number(2 * contact + 1)])
     }
 }

@@ -15,7 +15,7 @@
 use super::problem::ContactProblem;
 use crate::law::{Friction, Impulse, Law, Mode};
 use crate::planar::Pair;
-use crate::scalar::Real;
+use crate::scalar::{Real, Rounded};
 use std::convert::Infallible;
 
 /// Scratch of the enumeration; it is reused from problem to problem and then allocates nothing.
@@ -47,16 +47,11 @@ pub struct Leaf<'a, T> {
     pub pivots: &'a [T],
     tableau: &'a [T],
     laws: &'a [Law],
-    /// The depth of the tableau that the leaf is read from: the last closed contact's number, from 1.
-    pub depth: usize,
 }
 
 /// A visitor of all combinations.
 pub trait Visitor<T> {
     fn leaf(&mut self, leaf: &Leaf<'_, T>);
-
-    /// The impulses of `contact` were eliminated from the tableau of depth `source` to that of depth `contact` + 1.
-    fn eliminated(&mut self, _tableau: &Tableau<T>, _contact: usize, _source: usize) {}
 
     /// Whether the combinations that are left are not visited; asked before each few thousand.
     fn ends(&mut self) -> bool {
@@ -72,10 +67,15 @@ impl<T, F: FnMut(&Leaf<'_, T>)> Visitor<T> for F {
 
 impl<T: Real> Tableau<T> {
     pub fn load(&mut self, problem: &ContactProblem<T>) {
-        let n = problem.contacts();
+        self.load_entries(problem.laws(), |row, column| problem.delassus(row, column), |row| problem.free_row(row));
+    }
+
+    /// As [`Tableau::load`], with G by rows and columns and the velocities without impulses by rows.
+    pub fn load_entries(&mut self, laws: &[Law], delassus: impl Fn(usize, usize) -> T, free: impl Fn(usize) -> T) {
+        let n = laws.len();
         let width = 2 * n + 1;
         self.contacts = n;
-        problem.laws().clone_into(&mut self.laws);
+        laws.clone_into(&mut self.laws);
         // Those of more contacts are kept.
         self.depths.resize_with(self.depths.len().max(n + 1), Vec::new);
         for depth in &mut self.depths[..=n] {
@@ -86,8 +86,10 @@ impl<T: Real> Tableau<T> {
         self.pivots.clear();
         self.pivots.resize(n, T::one());
         for (row, entries) in self.depths[0].chunks_exact_mut(width).enumerate() {
-            entries[..2 * n].copy_from_slice(problem.delassus_row(row));
-            entries[2 * n] = problem.free_row(row);
+            for (column, entry) in entries[..2 * n].iter_mut().enumerate() {
+                *entry = delassus(row, column);
+            }
+            entries[2 * n] = free(row);
         }
     }
 
@@ -101,24 +103,19 @@ impl<T: Real> Tableau<T> {
         let mut source = 0;
         for (contact, &mode) in modes.iter().enumerate() {
             self.modes[contact] = mode;
-            let depth = self.decide(contact, mode, source);
-            if depth != source {
-                visitor.eliminated(self, contact, source);
-            }
-            source = depth;
+            source = self.decide(contact, mode, source);
         }
         visitor.leaf(&self.at(source));
     }
 
-    /// Eliminates all impulses of one contact after the other, as if each stuck and had friction, and calls `visit`
-    /// after each. The laws that it was loaded with are lost.
-    pub fn stick_all(&mut self, mut visit: impl FnMut(&Self, usize)) {
+    /// The combination in which all contacts stick, as if each had friction. The laws that it was loaded with are lost.
+    pub fn stick_all(&mut self) -> Leaf<'_, T> {
         self.laws.fill(Friction::Infinite.into());
         for contact in 0..self.contacts {
             self.modes[contact] = Mode::Stick;
             self.decide(contact, Mode::Stick, contact);
-            visit(self, contact);
         }
+        self.at(self.contacts)
     }
 
     pub fn leaf(&mut self, modes: &[Mode]) -> Leaf<'_, T> {
@@ -142,7 +139,7 @@ impl<T: Real> Tableau<T> {
 
     fn at(&self, depth: usize) -> Leaf<'_, T> {
         let tableau = &self.depths[depth];
-        Leaf { modes: &self.modes, pivots: &self.pivots, tableau, laws: &self.laws, depth }
+        Leaf { modes: &self.modes, pivots: &self.pivots, tableau, laws: &self.laws }
     }
 
     fn descend(&mut self, contact: usize, source: usize, visitor: &mut impl Visitor<T>) {
@@ -160,9 +157,6 @@ impl<T: Real> Tableau<T> {
                 }
                 self.modes[contact] = mode;
                 let depth = self.decide(contact, mode, source);
-                if depth != source {
-                    visitor.eliminated(self, contact, source);
-                }
                 self.descend(contact + 1, depth, visitor);
             }
         }
@@ -228,19 +222,6 @@ impl<T: Real> Tableau<T> {
     }
 }
 
-impl<T: Copy> Tableau<T> {
-    /// The impulses and the pivot of a decided contact.
-    pub fn decided(&self, contact: usize) -> (Impulse, T) {
-        (self.laws[contact].impulse(self.modes[contact]), self.pivots[contact])
-    }
-
-    /// A row of the tableau of this depth: the coefficients of all impulses, then the constant.
-    pub fn row(&self, depth: usize, row: usize) -> &[T] {
-        let width = 2 * self.contacts + 1;
-        &self.depths[depth][row * width..(row + 1) * width]
-    }
-}
-
 impl<T: Real> Leaf<'_, T> {
     fn constant(&self, row: usize) -> T {
         let columns = 2 * self.modes.len();
@@ -278,6 +259,13 @@ impl<T: Real> Leaf<'_, T> {
     }
 }
 
+impl Leaf<'_, Rounded> {
+    /// Whether an error is known of every number, so that no pivot is zero.
+    pub fn is_known(&self) -> bool {
+        (0..2 * self.modes.len()).all(|row| self.constant(row).error.is_finite())
+    }
+}
+
 /// The lists of modes that one leaf stands for: all whose impulses are the same. Memory that is reused.
 #[derive(Debug, Clone, Default)]
 pub struct Labels {
@@ -309,6 +297,72 @@ impl Labels {
             if !advances {
                 return;
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::impact::problem::Errors;
+    use crate::impact::slack::Scale;
+    use crate::scalar::{Interval, Ordered, Sign};
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn numbers_keep_within_their_errors(
+            mut rows in prop::collection::vec(prop::collection::vec(-1.0..1.0f64, 7), 6),
+            before in prop::collection::vec(
+                prop_oneof![2 => prop::array::uniform2(-1.0..1.0f64), 1 => Just([0.0; 2])],
+                3,
+            ),
+            off in prop::collection::vec(-1.0..1.0f64, 42),
+            errors in prop::option::of((-50.0..-20.0f64, -50.0..-20.0f64)),
+            friction in prop::collection::vec(
+                prop_oneof![Just(Friction::ZERO), Just(Friction::Infinite), (0.01..10.0f64).prop_map(Friction::Finite)],
+                3,
+            ),
+            light in -8..8i32,
+        ) {
+            rows[2].iter_mut().for_each(|entry| *entry *= 10f64.powi(light));
+            let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
+            let delassus = rows.iter().flat_map(|a| rows.iter().map(|b| dot(a, b))).collect();
+            let problem = ContactProblem::new(delassus, before, friction, vec![0.5, 0.0, 0.0]).unwrap();
+            // What the f64 problem is off by, of contacts that move.
+            let [of_delassus, of_velocity] = errors.map_or([0.0; 2], |(a, b)| [a.exp2(), b.exp2()]);
+            let moving = |contact: usize, axis: usize| problem.velocity_before()[contact][axis] != 0.0;
+            let noise = |contact: usize, axis: usize| if moving(contact, axis) { of_velocity } else { 0.0 };
+            let velocity: Vec<Pair<f64>> = (0..3).map(|contact| [noise(contact, 0), noise(contact, 1)]).collect();
+            let errors = Errors { delassus: of_delassus, velocity: Some(&velocity), likely: [1.0; 2] };
+            let mut scale = Scale::default();
+            scale.measure(&problem, errors);
+            let mut tableau = Tableau::default();
+            tableau.load_entries(problem.laws(), scale.delassus(&problem, errors), scale.free(&problem, errors));
+            let true_entry = |row: usize, column: usize| {
+                let size = of_delassus * scale.mobility[row] * scale.mobility[column];
+                (problem.delassus(row, column), off[row * 6 + column] * size)
+            };
+            let sum = |(value, off): (f64, f64)| Interval::from_f64(value) + Interval::from_f64(off);
+            let true_free = |row: usize| {
+                let own = sum((problem.velocity_free()[row / 2][row % 2], off[36 + row] * noise(row / 2, row % 2)));
+                let approaches = row % 2 == 1 && own.sign() == Sign::Negative;
+                let bounce = if approaches { problem.restitution()[row / 2] } else { 0.0 };
+                own + Interval::from_f64(bounce) * own
+            };
+            tableau.visit(&mut |leaf: &Leaf<'_, Rounded>| Interval::scope(512, || {
+                let mut tableau = Tableau::<Interval>::default();
+                tableau.load_entries(problem.laws(), |row, column| sum(true_entry(row, column)), true_free);
+                let exact = tableau.leaf(leaf.modes);
+                for contact in 0..3 {
+                    for (own, exact) in leaf.numbers(contact).into_iter().zip(exact.numbers(contact)) {
+                        let error = (exact - Interval::from_f64(own.value)).to_f64().abs();
+                        assert!(!(error > own.error()), "{:?}: {error:e} > {:e}", leaf.modes, own.error());
+                        // Contacts at rest feel nothing of each other.
+                        assert!(own.error != 0.0 || own.value == 0.0 || leaf.modes == [Mode::Separate; 3]);
+                    }
+                }
+            }));
         }
     }
 }

@@ -7,7 +7,6 @@ pub mod outcome;
 pub mod problem;
 pub mod enumerate;
 pub mod slack;
-mod bound;
 mod generators;
 mod digits;
 pub mod inequalities;

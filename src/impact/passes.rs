@@ -1,18 +1,18 @@
 //! The passes over all combinations: first in f64, then with more digits those that need them.
 
-use super::bound::LeafBounds;
 use super::collected::{Collected, OutcomeLists, Pending};
 use super::combination::{CombinationSolver, Solved};
-use super::digits::{Numbers, f64_serves};
-use super::enumerate::{Labels, Leaf, Tableau, Visitor};
+use super::digits::{Numbers, after, f64_serves};
+use super::enumerate::{Labels, Leaf, Visitor};
 use super::kernel::Kernel;
 use super::linear::Unsettled;
 use super::outcome::{Motion, Rejection};
 use super::problem::{ContactProblem, Precision, PrecisionTask};
-use super::reading::{F64Reader, motion};
+use super::reading::{motion, read, rejects};
 use crate::budget::{ROUNDS, is_spent_after};
 use crate::law::Impulse;
-use crate::scalar::{Ordered, Sign};
+use crate::planar::Pair;
+use crate::scalar::{Ordered, Rounded, Sign};
 use std::collections::BTreeMap;
 
 /// Combinations that are tried with many digits: more of many contacts take too long, and what is left is undecided.
@@ -20,7 +20,6 @@ const PRECISE_COMBINATIONS: usize = 2_000;
 
 /// All combinations in f64.
 pub struct F64Pass<'a, 'm> {
-    pub bounds: &'m mut LeafBounds,
     pub labels: &'m mut Labels,
     /// Whether some modes with the same impulses are visited as one.
     pub shares: bool,
@@ -31,31 +30,27 @@ pub struct F64Pass<'a, 'm> {
     pub collected: Collected<'a>,
 }
 
-impl Visitor<f64> for F64Pass<'_, '_> {
-    fn eliminated(&mut self, tableau: &Tableau<f64>, contact: usize, source: usize) {
-        self.bounds.follow(tableau, contact, source);
-    }
-
+impl Visitor<Rounded> for F64Pass<'_, '_> {
     fn ends(&mut self) -> bool {
         is_spent_after(ROUNDS)
     }
 
-    fn leaf(&mut self, leaf: &Leaf<'_, f64>) {
-        let Self { bounds, labels, shares, regular, undecided, collected } = self;
+    fn leaf(&mut self, leaf: &Leaf<'_, Rounded>) {
+        let Self { labels, shares, regular, undecided, collected } = self;
         let Collected { problem, scale, options, .. } = *collected;
-        let bound = bounds.at(leaf.depth);
+        let laws = problem.laws();
         // If every impulse is free, the pivots are those of the whole matrix.
-        *regular |= bound.impulse_error().is_finite()
-            && leaf.modes.iter().zip(problem.laws()).all(|(&mode, law)| law.impulse(mode) == Impulse::Free);
-        let reader = F64Reader::new(problem, scale, bound);
-        labels.visit(leaf.modes, problem.laws(), *shares, |modes| {
+        *regular = *regular
+            || leaf.modes.iter().zip(laws).all(|(&mode, law)| law.impulse(mode) == Impulse::Free) && leaf.is_known();
+        labels.visit(leaf.modes, laws, *shares, |modes| {
             collected.total += 1;
-            if reader.rejects(leaf, modes) && !options.rejections.contain(modes) {
+            if rejects(leaf, modes, laws) && !options.rejections.contain(modes) {
                 return;
             }
             let number = modes.iter().fold(0, |number, &mode| 4 * number + mode as u64);
-            let reading = reader.read(leaf, modes, collected.at_zero());
-            let motion = |memory| motion(leaf, modes, problem, |number| number, memory);
+            let reading = read(leaf, modes, laws, scale, collected.at_zero());
+            let after = |contact: usize, xi: Pair<Rounded>| after(xi.map(|own| own.value), contact, modes, problem);
+            let motion = |memory| motion(leaf, |own| own.value, after, memory);
             if reading.sign == Sign::Negative {
                 return collected
                     .reject(number, modes, || Rejection::read(modes, reading, || motion(Motion::default())));
@@ -63,8 +58,9 @@ impl Visitor<f64> for F64Pass<'_, '_> {
             if reading.sign == Sign::Positive {
                 let OutcomeLists { modes: mut own_modes, motion: memory, friction_needed } = collected.lists();
                 let motion = motion(memory);
-                if f64_serves(leaf, modes, (problem, scale), bound, (&motion, reading.margin)) {
-                    let index = leaf.pivots.iter().fold(1, |sign, &pivot| if pivot < 0.0 { -sign } else { sign });
+                if f64_serves(leaf, modes, (problem, scale), (&motion, reading.margin)) {
+                    let sign = |sign: i8, pivot: &Rounded| if pivot.value < 0.0 { -sign } else { sign };
+                    let index = leaf.pivots.iter().fold(1, sign);
                     modes.clone_into(&mut own_modes);
                     let numbers = Numbers::of_motion(motion, modes, problem, friction_needed);
                     return collected.add_regular(number, own_modes, reading, index, numbers);

@@ -1,12 +1,10 @@
 //! The signs of all inequalities of a combination as one.
 
-use super::bound::Bound;
-use super::digits::after;
 use super::enumerate::Leaf;
 use super::outcome::{Motion, Rejection, RejectionReason};
-use super::problem::ContactProblem;
-use super::slack::{Scale, Slack, slacks};
+use super::slack::{Scale, slacks};
 use crate::law::{Inequality, Law, Mode};
+use crate::planar::Pair;
 use crate::scalar::{Ordered, Real, Sign};
 
 /// What the slacks of a combination say.
@@ -30,95 +28,36 @@ impl Rejection {
     }
 }
 
-/// Reads signs from a leaf's f64 numbers, known to a bound.
-pub struct F64Reader<'a> {
-    problem: &'a ContactProblem,
-    scale: &'a Scale,
-    /// What scaled velocities and impulses may be off by.
-    velocity: f64,
-    impulse: f64,
-    /// Bits of the numbers that are exactly zero, two of each contact.
-    still: u32,
+/// Whether the first wrong sign is found, with which most combinations are done.
+pub fn rejects<T: Ordered>(leaf: &Leaf<'_, T>, modes: &[Mode], laws: &[Law]) -> bool {
+    modes.iter().zip(laws).enumerate().any(|(contact, (&mode, law))| {
+        let numbers = leaf.numbers(contact);
+        let mut wrong = law.is_unheld(mode) && matches!(numbers[0].sign(), Sign::Positive | Sign::Negative);
+        law.conditions(mode, |condition| {
+            wrong = wrong || {
+                match condition.function.at(|which| numbers[which], T::from_f64).sign() {
+                    Sign::Zero => condition.inequality.is_strict(),
+                    sign => sign == Sign::Negative,
+                }
+            };
+        });
+        wrong
+    })
 }
 
-impl<'a> F64Reader<'a> {
-    pub fn new(problem: &'a ContactProblem, scale: &'a Scale, bound: &Bound) -> Self {
-        let [velocity, impulse] = [bound.velocity_error(), bound.impulse_error()];
-        Self { problem, scale, velocity, impulse, still: bound.still }
-    }
-
-    /// Whether the first wrong sign is found, with which most combinations are done.
-    pub fn rejects(&self, leaf: &Leaf<'_, f64>, modes: &[Mode]) -> bool {
-        modes.iter().zip(self.problem.laws()).enumerate().any(|(contact, (&mode, law))| {
-            let numbers = leaf.numbers(contact);
-            let mut wrong =
-                law.is_unheld(mode) && matches!(self.speed(contact, numbers[0]), Sign::Positive | Sign::Negative);
-            law.conditions(mode, |condition| {
-                wrong = wrong || {
-                    let number = condition.function.at(|which| numbers[which], std::convert::identity);
-                    match self.sign(&Slack { contact, condition, number }).0 {
-                        Sign::Zero => condition.inequality.is_strict(),
-                        sign => sign == Sign::Negative,
-                    }
-                };
-            });
-            wrong
-        })
-    }
-
-    /// The reading of a leaf as `modes`; `at_zero` is empty memory.
-    pub fn read(&self, leaf: &Leaf<'_, f64>, modes: &[Mode], at_zero: Vec<(usize, Inequality)>) -> CombinationReading {
-        let speed = |contact: usize, c_t: f64| self.speed(contact, c_t);
-        read(leaf, modes, self.problem.laws(), at_zero, speed, |slack| self.sign(slack))
-    }
-
-    #[inline]
-    fn speed(&self, contact: usize, c_t: f64) -> Sign {
-        if self.is_still(contact, 0b01) {
-            return Sign::Zero;
-        }
-        Sign::within(c_t / self.scale.speed / self.scale.mobility[2 * contact], self.velocity)
-    }
-
-    fn is_still(&self, contact: usize, numbers: u32) -> bool {
-        let numbers = numbers << (2 * contact);
-        self.still & numbers == numbers
-    }
-
-    /// The sign and the value of a slack, free of units.
-    #[inline]
-    fn sign(&self, slack: &Slack<f64>) -> (Sign, f64) {
-        if self.is_still(slack.contact, slack.condition.function.numbers()) {
-            return (Sign::Zero, 0.0);
-        }
-        let scaled = self.scale.scaled(slack, slack.number);
-        (
-            Sign::within(scaled, if slack.condition.inequality.is_strict() { self.velocity } else { self.impulse }),
-            scaled,
-        )
-    }
-}
-
-/// Reads a leaf whose numbers know their own sign.
-pub fn read_signed<T: Ordered>(leaf: &Leaf<'_, T>, modes: &[Mode], laws: &[Law], scale: &Scale) -> CombinationReading {
-    let scaled = |slack: &Slack<T>| scale.scaled(slack, slack.number.to_f64());
-    read(leaf, modes, laws, Vec::new(), |_, c_t| c_t.sign(), |slack| (slack.number.sign(), scaled(slack)))
-}
-
-/// The signs of all slacks, and of the frictionless contacts' equality c_t = 0, as one.
-fn read<T: Real>(
+/// The signs of all slacks, and of the frictionless contacts' equality c_t = 0, as one; `at_zero` is empty memory.
+pub fn read<T: Ordered>(
     leaf: &Leaf<'_, T>,
     modes: &[Mode],
     laws: &[Law],
+    scale: &Scale,
     at_zero: Vec<(usize, Inequality)>,
-    speed: impl Fn(usize, T) -> Sign,
-    slack: impl Fn(&Slack<T>) -> (Sign, f64),
 ) -> CombinationReading {
     let mut reading =
         CombinationReading { sign: Sign::Positive, because: RejectionReason::NoSolution, margin: None, at_zero };
     for (contact, (&mode, law)) in modes.iter().zip(laws).enumerate() {
         if law.is_unheld(mode) {
-            match speed(contact, leaf.numbers(contact)[0]) {
+            match leaf.numbers(contact)[0].sign() {
                 Sign::Zero => {}
                 Sign::Undecided => reading.sign = Sign::Undecided,
                 Sign::Positive | Sign::Negative => {
@@ -130,7 +69,7 @@ fn read<T: Real>(
         }
     }
     slacks(leaf, modes, laws, |entry| {
-        let (sign, scaled) = slack(&entry);
+        let (sign, scaled) = (entry.number.sign(), scale.scaled(&entry, entry.number.to_f64()));
         let (contact, inequality) = (entry.contact, entry.condition.inequality);
         let violated = match sign {
             Sign::Negative => Some(RejectionReason::Violated { contact, inequality }),
@@ -156,19 +95,18 @@ fn read<T: Real>(
     reading
 }
 
-/// Impulses and velocities of a leaf, in the memory of others.
+/// Impulses and velocities of a leaf, in the memory of others: the nearest f64 of each number, and c+ of a contact with
+/// `[c_t, xi_n]`.
 pub fn motion<T: Real>(
     leaf: &Leaf<'_, T>,
-    modes: &[Mode],
-    problem: &ContactProblem<T>,
     nearest: impl Fn(T) -> f64,
+    after: impl Fn(usize, Pair<T>) -> Pair<f64>,
     Motion { mut impulse, mut velocity_after }: Motion,
 ) -> Motion {
-    let contacts = 0..problem.contacts();
+    let contacts = 0..leaf.modes.len();
     impulse.clear();
     impulse.extend(contacts.clone().map(|contact| leaf.impulse(contact).map(&nearest)));
-    let velocity = |contact: usize| after(leaf.velocity(contact), contact, modes, problem).map(&nearest);
     velocity_after.clear();
-    velocity_after.extend(contacts.map(velocity));
+    velocity_after.extend(contacts.map(|contact| after(contact, leaf.velocity(contact))));
     Motion { impulse, velocity_after }
 }

@@ -16,7 +16,6 @@
 //! Nothing that f64 has done is trusted: a [`Claim`] is shown to hold by an error bound ([`Relaxation::shows`]), or in
 //! numbers that know their signs ([`Claim::holds`]).
 
-use super::bound::is_far_from_underflow;
 use super::linear::{Unsettled, extended, settled, solve};
 use super::problem::{ContactProblem, Errors};
 use super::slack::Scale;
@@ -188,7 +187,7 @@ impl Relaxation {
         self.errors = [errors.delassus + rounding, scale.noise + rounding * largest];
         let matrix = DMatrix::from_fn(rows, rows, scaled);
         let up = DVector::from_fn(rows, |row, _| if row % 2 == 1 { 1.0 / mobility[row] } else { 0.0 });
-        self.is_known = errors.delassus.is_finite() && is_far_from_underflow(scale);
+        self.is_known = errors.delassus.is_finite() && scale.is_far_from_underflow();
         let is_bounded = self.is_known && problem.laws().iter().all(Law::is_dissipative);
         self.is_regular = false;
         self.reach = if is_bounded { self.bound(&matrix, &up.unscale(up.amax()), &along) } else { f64::INFINITY };

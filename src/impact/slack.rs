@@ -3,7 +3,7 @@
 use super::enumerate::Leaf;
 use super::problem::{ContactProblem, Errors};
 use crate::law::{Condition, Inequality, Law, Mode};
-use crate::scalar::Real;
+use crate::scalar::{Real, Rounded};
 
 /// One inequality of a combination and its value.
 #[derive(Debug, Clone, Copy)]
@@ -38,13 +38,16 @@ pub struct Scale {
     cone: Vec<f64>,
     /// What the scaled velocities of the f64 problem may be off by.
     pub noise: f64,
-    /// Bits of the rows whose velocity without impulses is exactly zero.
-    pub still: u32,
     /// What they are likely to be off by.
     pub likely_noise: f64,
     /// What the scaled entries of G are likely to be off by.
     pub likely_rounding: f64,
+    /// What part of the error of a number that was computed from them is likely.
+    pub likely_part: f64,
 }
+
+/// What a few operations lose, in the scale.
+const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 
 impl Scale {
     /// Takes the magnitudes of a problem, reusing the memory; `errors` are those of its numbers.
@@ -82,13 +85,6 @@ impl Scale {
             self.speed = if at_rest { 1.0 } else { f64::MIN_POSITIVE };
         }
         let noise = errors.velocity.unwrap_or_default().iter().flatten().zip(&self.mobility);
-        let is_still = |row: &usize| {
-            let [contact, axis] = [row / 2, row % 2];
-            let error = errors.velocity.map_or(0.0, |errors| errors[contact][axis]);
-            error == 0.0 && problem.velocity_free()[contact][axis] == 0.0 && problem.free_row(*row) == 0.0
-        };
-        let still = (0..rows.min(u32::BITS as usize)).filter(is_still);
-        self.still = if errors.delassus.is_finite() { still.fold(0, |bits, row| bits | 1 << row) } else { 0 };
         self.noise = noise.map(|(noise, mobility)| noise / (mobility * self.speed)).fold(0.0, f64::max);
         let [of_delassus, of_velocity] = errors.likely;
         (self.likely_noise, self.likely_rounding) = (of_velocity * self.noise, of_delassus * errors.delassus);
@@ -97,6 +93,44 @@ impl Scale {
             self.noise += 4.0 * f64::EPSILON;
             self.likely_noise += 4.0 * f64::EPSILON;
         }
+        let likely = self.likely_noise + self.likely_rounding + ROUNDINGS;
+        self.likely_part = likely / (errors.delassus + self.noise + ROUNDINGS);
+    }
+
+    /// The entries of G, by row and column, with what they may be off by.
+    pub fn delassus(&self, problem: &ContactProblem, errors: Errors<'_>) -> impl Fn(usize, usize) -> Rounded {
+        let relative = if self.is_far_from_underflow() { errors.delassus } else { f64::INFINITY };
+        move |row, column| {
+            let (value, size) = (problem.delassus(row, column), self.mobility[row] * self.mobility[column]);
+            // A product with zero would make an error of what is infinite.
+            Rounded { value, error: if relative == 0.0 { 0.0 } else { relative * size } }
+        }
+    }
+
+    /// The velocities without impulses, by row, with what they may be off by.
+    pub fn free(&self, problem: &ContactProblem, errors: Errors<'_>) -> impl Fn(usize) -> Rounded {
+        move |row| {
+            let (contact, value) = (row / 2, problem.free_row(row));
+            let own = errors.velocity.map_or(0.0, |errors| errors[contact][row % 2]);
+            let error = match problem.restitution()[contact] {
+                bouncing if row % 2 == 1 && bouncing != 0.0 => {
+                    // Of the bounce, its rounding and that of the sum.
+                    own * (1.0 + bouncing) + f64::EPSILON * (problem.bounce(contact).abs() + value.abs())
+                }
+                _ => own,
+            };
+            Rounded { value, error: if errors.delassus.is_finite() { error } else { f64::INFINITY } }
+        }
+    }
+
+    /// Whether products of the problem's magnitudes stay so far from underflow that all rounding is relative.
+    pub fn is_far_from_underflow(&self) -> bool {
+        let ends = (f64::INFINITY, 0.0);
+        let (least, most) = self
+            .mobility
+            .iter()
+            .fold(ends, |(least, most): (f64, f64), &mobility| (least.min(mobility), most.max(mobility)));
+        self.mobility.is_empty() || (self.speed * least > 1e-200 && self.speed * most < 1e200 && most < 1e60 * least)
     }
 
     /// A slack's value free of units; `number` is the nearest f64.

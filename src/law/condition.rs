@@ -25,15 +25,6 @@ pub struct Condition<T = f64> {
 }
 
 impl<T: Real> Function<T> {
-    /// Bits of the numbers, first and second, that it reads.
-    pub fn numbers(self) -> u32 {
-        match self {
-            Self::First | Self::MinusFirst => 0b01,
-            Self::Second => 0b10,
-            Self::ConeMinus(_) | Self::ConePlus(_) => 0b11,
-        }
-    }
-
     /// The value at the contact's numbers, first (0) and second (1), with the law's coefficients put into their kind.
     #[inline]
     pub fn at<N: Real>(self, number: impl Fn(usize) -> N, coefficient: impl Fn(T) -> N) -> N {

@@ -40,17 +40,6 @@ pub enum Impulse<T = f64> {
     Free,
 }
 
-impl Impulse {
-    /// Bits of the contact's numbers, tangential and normal, that its unknowns take the place of.
-    pub(crate) fn unknowns(self) -> u32 {
-        match self {
-            Self::Zero => 0b00,
-            Self::Along(_) => 0b10,
-            Self::Free => 0b11,
-        }
-    }
-}
-
 /// The law of a contact; `T` is the number of its coefficients.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Law<T = f64> {

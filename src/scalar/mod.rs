@@ -8,6 +8,7 @@
 //! | --- | --- | --- |
 //! | `f64` | nothing | 1 |
 //! | [`DoubleDouble`] | nothing; 106 bits | about 20 |
+//! | [`Rounded`] | the exact result of its operations far from overflow, checked at the end | about 3 |
 //! | [`Ball`] | the exact result of its operations, over f64 or [`DoubleDouble`] | about 5, or 30 |
 //! | [`Interval`] | the same, with any number of bits | an allocation, some 100 |
 //! | [`Residue`] | nothing; knows whether the exact result is zero | about 20, a quotient some 500 |
@@ -43,6 +44,7 @@ macro_rules! operators {
 
 mod double;
 mod series;
+mod rounded;
 mod ball;
 mod interval;
 mod residue;
@@ -57,6 +59,7 @@ pub use double::DoubleDouble;
 pub use interval::Interval;
 pub use magnitude::{Magnitude, UNDERFLOW};
 pub use residue::Residue;
+pub use rounded::Rounded;
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 

@@ -65,12 +65,6 @@ impl<T: Real> ContactProblem<T> {
         self.delassus[row * 2 * self.contacts() + column]
     }
 
-    /// A row of the Delassus matrix.
-    pub(super) fn delassus_row(&self, row: usize) -> &[T] {
-        let rows = 2 * self.contacts();
-        &self.delassus[row * rows..(row + 1) * rows]
-    }
-
     /// Contact velocities of the given state, before any applied impulse \[m/s\].
     pub fn velocity_before(&self) -> &[Pair<T>] {
         &self.velocity_before

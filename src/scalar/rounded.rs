@@ -1,0 +1,145 @@
+//! An f64 and how far it may be off.
+
+use super::{Ordered, Real, Sign};
+
+/// A number that lies within `error` of `value`: a [`Ball`](super::Ball) that checks nothing on its way.
+///
+/// Errors are first-order sums that are rounded to nearest, and [`SLACK`] covers what they lose themselves; a value or an
+/// error that is not finite leaves the sign undecided. An exact zero stays one, also as a factor. Source: Higham 2002,
+/// chapter 3.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Rounded {
+    pub value: f64,
+    pub error: f64,
+}
+
+const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
+/// Covers the roundings of the errors: thousands of operations, one on top of the other.
+const SLACK: f64 = 1.0 + 1e-6;
+
+impl Rounded {
+    /// The greatest magnitude that the number may have.
+    #[inline]
+    fn reach(self) -> f64 {
+        self.value.abs() + self.error
+    }
+
+    #[inline]
+    fn plus(self, other: Self) -> Self {
+        let value = self.value + other.value;
+        // Sums do not underflow.
+        Self { value, error: self.error + other.error + UNIT_ROUNDOFF * value.abs() }
+    }
+
+    #[inline]
+    fn minus(self, other: Self) -> Self {
+        self + -other
+    }
+
+    #[inline]
+    fn times(self, other: Self) -> Self {
+        let (value, [own, others]) = (self.value * other.value, [self.reach(), other.reach()]);
+        let error = self.value.abs() * other.error + self.error * others + UNIT_ROUNDOFF * value.abs();
+        // Only a product with an exact zero does not underflow.
+        let least = if own < others { own } else { others };
+        Self { value, error: error + if least == 0.0 { 0.0 } else { f64::MIN_POSITIVE } }
+    }
+
+    #[inline]
+    fn over(self, other: Self) -> Self {
+        let value = self.value / other.value;
+        // Not positive, or not a number, if the divisor may be zero.
+        let least = other.value.abs() - other.error * SLACK;
+        let underflow = if self.reach() == 0.0 { 0.0 } else { f64::MIN_POSITIVE };
+        let spread = self.error + value.abs() * other.error + underflow;
+        let error = spread / least + UNIT_ROUNDOFF * value.abs() + underflow;
+        Self { value, error: if least > 0.0 { error } else { f64::INFINITY } }
+    }
+
+    #[inline]
+    fn negated(self) -> Self {
+        Self { value: -self.value, error: self.error }
+    }
+}
+
+operators!([] Rounded);
+
+impl Real for Rounded {
+    #[inline]
+    fn from_f64(value: f64) -> Self {
+        Self { value, error: 0.0 }
+    }
+}
+
+impl Ordered for Rounded {
+    #[inline]
+    fn sign(self) -> Sign {
+        Sign::within(self.value, self.error())
+    }
+
+    fn to_f64(self) -> f64 {
+        self.value
+    }
+
+    #[inline]
+    fn error(self) -> f64 {
+        self.error * SLACK
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{exact, magnitude};
+    use super::*;
+    use dashu_ratio::RBig;
+    use proptest::prelude::*;
+
+    /// Whether `truth` is as near to the number as its error says.
+    fn encloses(found: Rounded, truth: RBig) -> bool {
+        !found.error().is_finite() || magnitude(exact(found.value) - truth) <= exact(found.error())
+    }
+
+    proptest! {
+        #[test]
+        fn operations_enclose_exact_results(
+            [a, b, c] in prop::array::uniform3((1.0..2.0f64, -700..700i32, any::<bool>())),
+            [off_a, off_b] in prop::array::uniform2((-1.0..1.0f64, -60..-2i32)),
+        ) {
+            let [a, b, c] = [a, b, c].map(|(part, bits, minus)| libm::scalbn(if minus { -part } else { part }, bits));
+            // Numbers near others that are exact.
+            let near = |value: f64, (part, bits): (f64, i32)| {
+                let off = libm::scalbn(part * value, bits);
+                (Rounded { value, error: off.abs() }, exact(value) + exact(off))
+            };
+            let ((x, p), (y, q), z) = (near(a, off_a), near(b, off_b), Rounded::from_f64(c));
+            let r = exact(c);
+            for (found, truth) in [
+                (x * y, &p * &q),
+                (x * y + z * x, &p * &q + &r * &p),
+                (x - x * y, &p - &p * &q),
+                (x / y, &p / &q),
+                (x / y * y - x, RBig::ZERO),
+                (-z / (x * y), -&r / (&p * &q)),
+            ] {
+                // Beyond the range of f64 nothing is known.
+                prop_assert!(!found.value.is_finite() || encloses(found, truth), "{found:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn zeros_stay_zeros_and_doubt_stays_doubt() {
+        let [zero, third] = [Rounded::zero(), Rounded::one() / Rounded::from_f64(3.0)];
+        for number in [zero * third, zero / third, third * zero + zero, -zero - zero * zero] {
+            assert_eq!(number.sign(), Sign::Zero);
+        }
+        let unknown = Rounded { value: 1.0, error: f64::INFINITY };
+        let vague = third * Rounded::from_f64(3.0) - Rounded::one();
+        for number in [zero * unknown, zero / unknown, zero / vague, third / vague, unknown - unknown, third / zero] {
+            assert_eq!(number.sign(), Sign::Undecided, "{number:?}");
+        }
+        // A product that underflows is no zero.
+        let tiny = Rounded::from_f64(1e-200);
+        assert_eq!((tiny * tiny).sign(), Sign::Undecided);
+    }
+}
