@@ -1,7 +1,7 @@
 //! `inspect`, and what options and cautions make of a robot.
 
 use super::support::urdf;
-use super::{RAMONE, each, file, heelstrike, heelstrike_reads, list, result};
+use super::{RAMONE, WALKER, each, file, heelstrike, heelstrike_reads, list, place, read, result};
 use serde_json::json;
 
 const A1: &str = "tests/data/robots/a1/a1.urdf";
@@ -99,4 +99,25 @@ fn the_reduced_robot_is_written_with_every_digit() {
     let shank = &robot["bodies"][2];
     assert_eq!((&shank["com"], &shank["links"]), (&json!([0.0, -0.073265]), &json!(["left_shank", "left_foot"])));
     assert_eq!((&robot["joints"][0]["sign"], &robot["feet"][1]["radius"]), (&json!(-1.0), &json!(0.02815)));
+}
+
+#[test]
+fn a_state_poses_the_robot_in_its_picture() {
+    let drawn = |arguments: &[&str], state: &str| {
+        let path = place("pose.svg");
+        heelstrike_reads(&[&["inspect", WALKER, "--plot", &path], arguments].concat(), state).well();
+        read(&path)
+    };
+    let at = |state: serde_json::Value| drawn(&["--state", "-"], &state.to_string());
+    assert_eq!(at(json!({})), drawn(&[], ""));
+    // The axes reach where the base is, and the lowest point of a stance is the origin.
+    assert!(at(json!({"position": {"base": {"x": 40}}})).contains(">40.0</text>"));
+    let high = json!({"position": {"joints": {"hip": 0.4}}, "stance": "left_leg"});
+    let low = json!({"position": {"base": {"pitch": -1.4}, "joints": {"hip": -2.8}}, "stance": "left_leg"});
+    let [upright, flat] = [at(high), at(low)].map(|svg| svg.contains(">1.0</text>"));
+    assert!(upright && !flat, "the hip is 1 m high, or 0.17 m");
+    let refused =
+        heelstrike_reads(&["inspect", WALKER, "--plot", &place("pose.svg"), "--state", "-"], "{\"velocity\": 1}");
+    assert!(refused.refusal(1).contains("<stdin>:1:2"));
+    assert!(heelstrike(&["inspect", WALKER, "--state", "-"]).refusal(2).contains("--plot"));
 }

@@ -67,8 +67,12 @@ pub fn impact(robot: &Robot, feet: &[NamedContact], state: &State, impact: &Impa
 
 /// The robot with its joints at zero, or where they are frozen, and the names of its bodies.
 pub fn robot(robot: &Robot, feet: &[NamedContact]) -> Picture {
-    let placement = Placement::of_robot(robot, &vec![0.0; robot.dofs()]);
-    let drawing = Drawing::of_robot(robot, &placement, feet);
+    posed(robot, feet, &Placement::of_robot(robot, &vec![0.0; robot.dofs()]))
+}
+
+/// The robot with its bodies at `placement`, and their names.
+pub fn posed(robot: &Robot, feet: &[NamedContact], placement: &Placement) -> Picture {
+    let drawing = Drawing::of_robot(robot, placement, feet);
     let size = drawing.extent().size();
     let root = placement.world(0, Vector::zero());
     let tip = |axis: Vector<f64>| root + placement.turned(0, axis * (AXES * size));
