@@ -357,7 +357,8 @@ mod tests {
                 for contact in 0..3 {
                     for (own, exact) in leaf.numbers(contact).into_iter().zip(exact.numbers(contact)) {
                         let error = (exact - Interval::from_f64(own.value)).to_f64().abs();
-                        assert!(!(error > own.error()), "{:?}: {error:e} > {:e}", leaf.modes, own.error());
+                        let is_beyond = error > own.error();
+                        assert!(!is_beyond, "{:?}: {error:e} > {:e}", leaf.modes, own.error());
                         // Contacts at rest feel nothing of each other.
                         assert!(own.error != 0.0 || own.value == 0.0 || leaf.modes == [Mode::Separate; 3]);
                     }
