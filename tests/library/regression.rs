@@ -3,7 +3,9 @@
 use crate::support::impact::{impact, robot, try_impact};
 use crate::support::urdf::{self, HINGE, POINT, collision, joint, link};
 use heelstrike::Robot;
-use heelstrike::impact::{Analysis, ContactProblem, Friction, ListedRejections, Mode, Verdict, analyze};
+use heelstrike::impact::{
+    Analysis, ContactProblem, Friction, Inequality, ListedRejections, Mode, RejectionReason, Verdict, analyze,
+};
 use heelstrike::pipeline::{Impact, Options};
 use heelstrike::robot::Base;
 
@@ -132,6 +134,18 @@ fn a_sign_that_rounding_hides_is_read_exactly() {
 }
 
 // Feet at rest.
+
+#[test]
+fn a_foot_at_rest_hides_no_velocity_into_the_ground() {
+    // The slide of the first contact divides by 1e-8, and leaves it without an impulse.
+    let delassus = [2., 0.99999999, 0., 0.3, 0.99999999, 1., 0.2, 0.4, 0., 0.2, 2., 0., 0.3, 0.4, 0., 2.];
+    let before = vec![[0., 0.], [0., -0.4]];
+    let problem = ContactProblem::new(delassus.to_vec(), before, vec![mu(1.0), mu(0.5)], vec![0.0; 2]).unwrap();
+    let analysis = analyze(&problem, ListedRejections::Everything).expect("few contacts");
+    let rejected = analysis.rejected.iter().find(|own| own.modes == [Mode::SlidePlus, Separate]);
+    let into_the_ground = RejectionReason::Violated { contact: 1, inequality: Inequality::NormalVelocity };
+    assert_eq!(rejected.map(|own| own.because), Some(into_the_ground));
+}
 
 #[test]
 fn a_flat_foot_rests_while_another_contact_leaves() {
