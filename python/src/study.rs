@@ -161,11 +161,8 @@ fn found(
         Some(Location { line: own, column }) => error.on(line + own - 1, column),
         None => error,
     })?;
+    let header = header.with_time()?;
     chunks.expect_columns(header.count());
-    if !header.has_time() {
-        let missing = Error::new(Reason::Missing("a column \"time\"".into()));
-        return Err(missing.hint("touchdowns need the time of each row"));
-    }
     let question = Question {
         robot,
         options: model.options.clone(),

@@ -3,6 +3,8 @@
 use super::run::TaskSource;
 use crate::read::documents::refuse_foreign;
 use crate::read::table::{Form, Quotes, Quoting};
+#[cfg(feature = "columnar")]
+use crate::read::table::{Part, Parts};
 use crate::{Error, Reason, Result};
 use memchr::{memchr, memchr_iter};
 use std::io::{BufRead, BufReader, ErrorKind, Read};
@@ -284,6 +286,15 @@ impl<R: Read + Send> TaskSource for Chunks<R> {
     fn keeps_waiting(&self) -> bool {
         let again = &self.again.0[self.again.1..];
         memchr(b'\n', again).is_none() && memchr(b'\n', self.input.buffer()).is_none()
+    }
+}
+
+#[cfg(feature = "columnar")]
+impl TaskSource for Parts {
+    type Task = Part;
+
+    fn next(&mut self) -> Result<Option<Part>> {
+        self.part()
     }
 }
 

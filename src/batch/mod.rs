@@ -14,6 +14,8 @@ mod recording;
 
 use chunk::too_long;
 pub use chunk::{Chunk, Chunks, RECORD_LIMIT};
+#[cfg(feature = "columnar")]
+pub use recording::samples_of_parts;
 pub use recording::{Recording, RowOrigin, samples};
 pub use run::{Block, RefusedRecord, Sink, TaskSource, run};
 pub use summary::{ModeCount, MoreFriction, Nearest, Needed, StateRef, Summary, Verdicts};
@@ -26,7 +28,9 @@ use crate::gait::{Landing, Sample, Sampled};
 use crate::pipeline::{Options, Pipeline};
 use crate::read::documents::utf8;
 use crate::read::lines::StateLines;
-use crate::read::table::{Carried, Header, Rows};
+use crate::read::table::{Carried, Header, Row, Rows};
+#[cfg(feature = "columnar")]
+use crate::read::table::{Form, Part};
 use crate::state::{Defaults, State};
 use crate::write::{self, CarriedFields, Columns, Detail, Refused, Report, Touchdown, short_id};
 use crate::{Error, Reason, Result, Robot};
@@ -114,12 +118,16 @@ impl<'q> Batch<'q> {
     /// Answers records that do not depend on each other.
     pub fn records(&mut self, chunk: &Chunk) -> Block {
         let Self { reader, answerer, most } = self;
-        let mut block = Block { out: Vec::with_capacity(*most), ..Block::default() };
+        let mut block = Block { out: Vec::with_capacity(*most), ..answerer.block() };
         for (line, record) in chunk.records() {
             let around = Around { line, record, ..Around::default() };
             match reader {
                 Reader::Lines(lines) => answerer.line(lines, around, &mut block),
-                Reader::Rows(rows) => answerer.row(rows, around, &mut block),
+                Reader::Rows(rows) => {
+                    if let Some(row) = rows.row(record, line).transpose() {
+                        answerer.row(row, around, &mut block);
+                    }
+                }
             }
         }
         if let Some(line) = chunk.too_long {
@@ -129,9 +137,20 @@ impl<'q> Batch<'q> {
         block
     }
 
+    /// Answers rows of columns with types.
+    #[cfg(feature = "columnar")]
+    pub fn part(&mut self, part: &Part) -> Block {
+        let Self { answerer, .. } = self;
+        let mut block = answerer.block();
+        for row in answerer.question.header.into_iter().flat_map(|header| part.rows(header)) {
+            answerer.row(Ok(row), Around { line: row.line(), ..Around::default() }, &mut block);
+        }
+        block
+    }
+
     /// Answers samples of a recording.
     pub fn samples(&mut self, samples: Vec<Sampled<RowOrigin>>) -> Block {
-        let mut block = Block::default();
+        let mut block = self.answerer.block();
         for sampled in samples {
             let (origin, state, time, landing) = match sampled {
                 Ok(Sample { source, state, time, landing, .. }) => (source, Ok(state), Some(time), landing),
@@ -165,12 +184,24 @@ impl Answerer<'_> {
         self.answer(state, || utf8(record).ok().and_then(State::id_in), Around { record, ..around }, block);
     }
 
-    /// Answers a row of a table; a blank one has no answer.
-    fn row(&mut self, rows: &mut Rows, around: Around<'_>, block: &mut Block) {
+    /// No answer yet.
+    fn block(&self) -> Block {
+        Block {
+            #[cfg(feature = "columnar")]
+            columns: self
+                .question
+                .columns
+                .filter(|columns| columns.form() == Form::Columns)
+                .map(write::ColumnBlock::new),
+            ..Block::default()
+        }
+    }
+
+    /// Answers a row of a table.
+    fn row(&mut self, row: Result<Row<'_>>, around: Around<'_>, block: &mut Block) {
         let Question { robot, defaults, header, .. } = self.question;
-        match rows.row(around.record, around.line) {
-            Ok(None) => {}
-            Ok(Some(row)) => {
+        match row {
+            Ok(row) => {
                 let carried = row.carried();
                 let around = Around { carried: Some(&carried), ..around };
                 let state = row.state(robot, defaults);
@@ -218,7 +249,7 @@ impl Answerer<'_> {
         let landing = around.landing.zip(around.time);
         report.touchdown = landing.and_then(|(landing, time)| Touchdown::of(robot, state, landing, around.line, time));
         if let Some(columns) = columns {
-            columns.append_result(&report, around.carried, &mut block.out)?;
+            columns.append_result(&report, around.carried, block.rows())?;
         } else {
             let fields = header.zip(around.carried).into_iter().flat_map(|(header, carried)| carried.by_name(header));
             let fields: Vec<_> = fields.map(|(name, value)| (name.into(), value)).collect();
@@ -245,7 +276,7 @@ impl Answerer<'_> {
         self.keep(id.as_ref(), around, block, || Keyframe::refused(error.clone()));
         let refused = Refused::new(id, around.line, &error);
         match self.question.columns {
-            Some(columns) => columns.append_refused(&refused, around.carried, &mut block.out),
+            Some(columns) => columns.append_refused(&refused, around.carried, block.rows()),
             None => write::append_line(&mut block.out, &refused),
         }
         block.refuse(error, around);

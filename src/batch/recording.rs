@@ -5,7 +5,9 @@ use super::chunk::{Chunks, too_long};
 use super::run::TaskSource;
 use crate::error::excerpt::Excerpt;
 use crate::gait::{Sample, Sampled};
-use crate::read::table::{Carried, Header};
+#[cfg(feature = "columnar")]
+use crate::read::table::Parts;
+use crate::read::table::{Carried, Header, Row};
 use crate::state::Defaults;
 use crate::{Error, Reason, Result, Robot};
 use serde_json::Value;
@@ -35,22 +37,13 @@ pub fn samples<'h, R: Read + Send>(
 ) -> impl Iterator<Item = Sampled<RowOrigin>> {
     let mut rows = header.rows();
     let mut read = move |line: usize, record: &[u8]| {
-        let mut source = RowOrigin { line, ..RowOrigin::default() };
-        let sample = rows.row(record, line).and_then(|row| {
-            let Some(row) = row else { return Ok(None) };
-            (source.id, source.carried) = (row.id(), row.carried());
-            Ok(Some((row.time()?, row.state(robot, defaults)?, row.spatial()?)))
-        });
-        match sample.transpose()? {
-            Ok((time, state, spatial)) => {
-                Some(Ok(Sample { time, state, rate_over: [time; 2], spatial, landing: None, source }))
-            }
-            Err(error) => {
-                source.id = source.id.or_else(|| header.id_in(record));
-                source.excerpt = error.location().and_then(|place| Excerpt::around(record, line, place));
-                Some(Err((source, error)))
-            }
-        }
+        let row = rows.row(record, line).transpose()?;
+        Some(sample(row, robot, defaults).map_err(|(mut source, error)| {
+            source.line = line;
+            source.id = source.id.or_else(|| header.id_in(record));
+            source.excerpt = error.location().and_then(|place| Excerpt::around(record, line, place));
+            (source, error)
+        }))
     };
     let chunks = std::iter::from_fn(move || chunks.record().transpose());
     chunks.flat_map(move |chunk| match chunk {
@@ -62,6 +55,31 @@ pub fn samples<'h, R: Read + Send>(
         }
         Err(error) => vec![Err((RowOrigin::default(), error))],
     })
+}
+
+/// The same of columns with types.
+#[cfg(feature = "columnar")]
+pub fn samples_of_parts<'h>(
+    mut parts: Parts,
+    header: &'h Header,
+    robot: &'h Robot,
+    defaults: &'h Defaults,
+) -> impl Iterator<Item = Sampled<RowOrigin>> {
+    std::iter::from_fn(move || parts.part().transpose()).flat_map(move |part| match part {
+        Ok(part) => part.rows(header).map(|row| sample(Ok(row), robot, defaults)).collect(),
+        Err(error) => vec![Err((RowOrigin::default(), error))],
+    })
+}
+
+/// A row with its time.
+fn sample(row: Result<Row>, robot: &Robot, defaults: &Defaults) -> Sampled<RowOrigin> {
+    let row = row.map_err(|error| (RowOrigin::default(), error))?;
+    let source = RowOrigin { line: row.line(), id: row.id(), carried: row.carried(), excerpt: None };
+    let read = || Ok((row.time()?, row.state(robot, defaults)?, row.spatial()?));
+    match read() {
+        Ok((time, state, spatial)) => Ok(Sample { time, state, rate_over: [time; 2], spatial, landing: None, source }),
+        Err(error) => Err((source, error)),
+    }
 }
 
 /// States of a recording as tasks.

@@ -11,6 +11,7 @@
 use super::Summary;
 use crate::draw::ListedKeyframe;
 use crate::error::excerpt::Excerpt;
+use crate::write::RowSink;
 use crate::{Error, Result};
 use std::sync::Mutex;
 use std::sync::mpsc::{Receiver, SendError, TryRecvError, channel, sync_channel};
@@ -36,11 +37,25 @@ pub trait TaskSource: Send {
 #[derive(Debug, Default)]
 pub struct Block {
     pub out: Vec<u8>,
+    /// The answers as columns, if these are asked for.
+    #[cfg(feature = "columnar")]
+    pub columns: Option<crate::write::ColumnBlock>,
     pub refused: Vec<RefusedRecord>,
     /// The summary of these records; see [`Summary::merge`].
     pub summary: Summary,
     /// Keyframes of the states, if requested.
     pub keyframes: Vec<ListedKeyframe>,
+}
+
+impl Block {
+    /// Where rows of a table go.
+    pub(super) fn rows(&mut self) -> &mut dyn RowSink {
+        #[cfg(feature = "columnar")]
+        if let Some(columns) = &mut self.columns {
+            return columns;
+        }
+        &mut self.out
+    }
 }
 
 /// A refused record.

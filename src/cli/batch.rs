@@ -1,14 +1,15 @@
 //! `heelstrike batch`: the answers to many states, in order.
 
 use super::diagnostic::{is_quiet, note, note_all, with_flags};
+use super::format::RecordFormat;
 use super::options::{
     BudgetOptions, Choices, ContactOptions, CsvOptions, DetailOptions, LoopOptions, NextOption, SceneOptions, Seconds,
     ThreadOptions, choice, pipeline_options, seconds,
 };
 use super::origin::{Asked, Origin};
-use super::output::{NewFile, apart, check_ending, spare, writable};
+use super::output::{NewFile, apart, spare, writable};
 use super::picture::PlotOptions;
-use super::recording::RecordingOptions;
+use super::recording::{RecordingOptions, Samples};
 use super::resume::BatchOutput;
 use super::robot::RobotOptions;
 use super::sink::{OutputSink, note_part};
@@ -19,11 +20,13 @@ use crate::error::Location;
 use crate::error::excerpt::Excerpt;
 use crate::gait::{Dropped, Thresholds};
 use crate::pipeline::{Aspect, Options};
+#[cfg(feature = "columnar")]
+use crate::read::table::Parts;
 use crate::read::table::{Form, Header, is_flat};
 use crate::state::NamedContact;
 use crate::write::{self, Columns, RowKind, notes};
 use crate::{Detail, Error, Reason, Robot};
-use clap::ValueEnum;
+use indicatif::ProgressBar;
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -98,38 +101,18 @@ pub struct Args {
     threads: ThreadOptions,
 }
 
-/// The format of an input or output.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum RecordFormat {
-    /// One JSON object per line
-    #[value(alias = "json", alias = "jsonl")]
-    Ndjson,
-    /// A table with a header and commas between columns
-    Csv,
-    /// A table with a header and tabs between columns
-    Tsv,
-}
-
 const ON_REFUSED: Choices<Answered> =
     &[("fail", "The exit status is 1", Answered::NotAll), ("ok", "The exit status is 0", Answered::All)];
 
-impl RecordFormat {
-    fn of(path: &Path) -> Self {
-        let is = |known: &str| path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(known));
-        let known = [("csv", Self::Csv), ("tsv", Self::Tsv)];
-        known.into_iter().find(|(ending, _)| is(ending)).map_or(Self::Ndjson, |(_, format)| format)
-    }
-
-    fn form(self) -> Form {
-        match self {
-            Self::Ndjson => Form::Ndjson,
-            Self::Csv => Form::Csv,
-            Self::Tsv => Form::Tsv,
-        }
-    }
+/// The states of an input.
+enum States {
+    Text(Chunks<Box<dyn Read + Send>>),
+    #[cfg(feature = "columnar")]
+    Columns(Parts),
 }
 
 pub(super) fn run(args: &Args) -> Completion {
+    let [input_format, format] = args.formats()?;
     args.check_files()?;
     let robot = args.robot.load()?;
     let feet = args.robot.feet(&robot)?;
@@ -137,18 +120,14 @@ pub(super) fn run(args: &Args) -> Completion {
     let in_input = |error: Error| error.in_file(&name);
     let progress = progress::over(&args.states, args.output.is_some());
     let origin = Origin::of(args.output.as_deref(), args.resume);
-    let states: Box<dyn Read + Send> = Box::new(origin.watch(progress.wrap_read(input::stream(&args.states)?)));
-    let form = args.input_format.unwrap_or_else(|| RecordFormat::of(&args.states)).form();
-    let mut chunks = Chunks::of_table(states, form);
-    chunks.check_format().map_err(in_input)?;
-    let header = args.header(&robot, &mut chunks, form)?;
+    let mut states = args.open(input_format, &origin, &progress).map_err(in_input)?;
+    let header = args.header(&robot, &mut states, input_format)?;
     // An engine may have an empty part.
-    if args.refused == Answered::NotAll && chunks.is_empty().map_err(in_input)? {
+    if args.refused == Answered::NotAll && states.is_empty().map_err(in_input)? {
         let hint = if header.is_some() { "the table has a header and no rows" } else { "the input is empty" };
         return Err(in_input(Error::new(Reason::Missing("a state".into()))).hint(hint).into());
     }
     note_all(header.as_ref().and_then(notes::missing));
-    let format = args.results_format()?;
     // Before any file is replaced: does this robot have feet to look for?
     let thresholds = args.recording.thresholds(&robot, &feet);
     let thresholds = thresholds.map_err(|error| error.in_file(input::name(&args.robot.robot)))?;
@@ -163,19 +142,27 @@ pub(super) fn run(args: &Args) -> Completion {
     // Tried before the work, which would otherwise be lost.
     writable(args.summary.as_deref())?;
     let mut head = Vec::new();
-    if let Some(columns) = &columns {
+    if let Some(columns) = columns.as_ref().filter(|_| format.is_text()) {
         columns.append_header(&mut head);
     }
-    let mut output = args.begin(&question, format, &head, origin)?;
+    let mut output = args.begin(&question, (input_format, format), &head, origin)?;
     let ((answered, refused), begun) = (output.kept(), output.is_empty()?);
     let mut sink = OutputSink::new(output, &name, &progress);
     if begun {
         sink.write(&head)?;
     }
+    #[cfg(feature = "columnar")]
+    if let Some(columns) = &columns {
+        sink.columns = format.writer(columns)?;
+    }
 
     let dropped = Mutex::new(Dropped::default());
-    let done = args.answer(&question, chunks, answered, (thresholds, &dropped), &mut sink);
+    let done = args.answer(&question, states, answered, (thresholds, &dropped), &mut sink);
     done.map_err(in_input).inspect_err(|_| note_part(&sink.output))?;
+    #[cfg(feature = "columnar")]
+    if let Some(columns) = sink.columns.take() {
+        sink.write(&columns.finish()?)?;
+    }
     let OutputSink { output, summary: mut counts, gait, .. } = sink;
     let useful = answered > 0 || counts.refused < counts.states || counts.states == 0 || args.refused == Answered::All;
     output.finish(useful)?;
@@ -193,17 +180,62 @@ pub(super) fn run(args: &Args) -> Completion {
     Ok(if counts.refused + refused == 0 { Answered::All } else { args.refused })
 }
 
+impl States {
+    /// Whether nothing is left.
+    fn is_empty(&mut self) -> crate::Result<bool> {
+        match self {
+            Self::Text(chunks) => chunks.is_empty(),
+            #[cfg(feature = "columnar")]
+            Self::Columns(parts) => parts.is_empty(),
+        }
+    }
+}
+
 impl Args {
-    /// Refuses files of formats that are not known here, and outputs that would replace an input or each other.
+    /// The formats of input and output, which must have room for what is asked.
+    fn formats(&self) -> Result<[RecordFormat; 2], Failure> {
+        let input = RecordFormat::of(Some(&self.states), self.input_format, "--input-format")?;
+        let output = RecordFormat::of(self.output.as_deref(), self.output_format, "--output-format")?;
+        self.csv.check(matches!(output, RecordFormat::Csv | RecordFormat::Tsv))?;
+        let Detail { explain, matrices, .. } = self.detail.detail();
+        let refuse = |reason: &str, hint: &str| {
+            Err(Failure::Usage(Error::new(Reason::Inconsistent(reason.to_owned())).hint(hint)))
+        };
+        if output != RecordFormat::Ndjson && (explain || matrices) {
+            let reason = "a table has a row per outcome and no room for --explain or --matrices";
+            return refuse(reason, "write JSON: --output-format ndjson, or -o with that ending");
+        }
+        if self.resume && !(input.is_text() && output.is_text()) {
+            return refuse("--resume continues text, and not Parquet or Arrow", "leave it out");
+        }
+        if input == RecordFormat::Parquet && self.states == Path::new("-") {
+            let reason = "Parquet is read from its end, and standard input has none";
+            return refuse(reason, "name the file, or give an Arrow stream: --input-format arrows");
+        }
+        Ok([input, output])
+    }
+
+    /// Opens the input.
+    fn open(&self, format: RecordFormat, origin: &Origin, progress: &ProgressBar) -> crate::Result<States> {
+        if format.is_text() {
+            let states: Box<dyn Read + Send> = Box::new(origin.watch(progress.wrap_read(input::stream(&self.states)?)));
+            let mut chunks = Chunks::of_table(states, format.form());
+            chunks.check_format()?;
+            return Ok(States::Text(chunks));
+        }
+        #[cfg(feature = "columnar")]
+        return Ok(States::Columns(match format {
+            _ if self.states == Path::new("-") => Parts::arrow_stream(io::stdin())?,
+            RecordFormat::Parquet => Parts::parquet(input::file(&self.states)?)?,
+            _ => Parts::arrow(input::file(&self.states)?)?,
+        }));
+        #[cfg(not(feature = "columnar"))]
+        Err(format.absent())
+    }
+
+    /// Refuses outputs that would replace an input or each other.
     fn check_files(&self) -> Result<(), Failure> {
         let output = self.output.as_deref();
-        if self.output_format.is_none() {
-            check_ending(output, &["csv", "tsv"], "results are written as .ndjson, .csv or .tsv", "--output-format")?;
-        }
-        if self.input_format.is_none() {
-            let known = "states are read as .ndjson, .csv or .tsv";
-            check_ending(Some(&self.states), &["csv", "tsv"], known, "--input-format")?;
-        }
         let inputs = [Some(&self.robot.robot), Some(&self.states), self.loops.loops.as_ref()];
         self.plot.claim(&inputs, output)?;
         let Some(summary) = self.summary.as_deref() else { return Ok(()) };
@@ -215,20 +247,6 @@ impl Args {
         }
         apart([("results", output), ("summary", Some(summary))], "--summary")?;
         apart([("summary", Some(summary)), ("picture", self.plot.path())], "--plot")
-    }
-
-    /// The format of the results, which must have room for what is asked.
-    fn results_format(&self) -> Result<RecordFormat, Failure> {
-        let by_name = || self.output.as_deref().map_or(RecordFormat::Ndjson, RecordFormat::of);
-        let format = self.output_format.unwrap_or_else(by_name);
-        self.csv.check(format != RecordFormat::Ndjson)?;
-        let Detail { explain, matrices, .. } = self.detail.detail();
-        if format != RecordFormat::Ndjson && (explain || matrices) {
-            let reason = "a table has a row per outcome and no room for --explain or --matrices".to_owned();
-            let hint = "write JSON: --output-format ndjson, or -o with that ending";
-            return Err(Failure::Usage(Error::new(Reason::Inconsistent(reason)).hint(hint)));
-        }
-        Ok(format)
     }
 
     /// What is asked of each state.
@@ -259,7 +277,7 @@ impl Args {
     fn begin(
         &self,
         question: &Question<'_>,
-        format: RecordFormat,
+        (input, format): (RecordFormat, RecordFormat),
         head: &[u8],
         origin: Origin,
     ) -> io::Result<BatchOutput> {
@@ -267,7 +285,10 @@ impl Args {
         match self.output.as_deref().filter(|_| self.resume) {
             // Summaries and pictures are of all states.
             Some(path) => BatchOutput::resume(path, head, self.summary.is_some() || question.keyframes, origin, asked),
-            None => BatchOutput::create(self.output.as_deref(), origin, asked),
+            None => {
+                let continued = input.is_text() && format.is_text();
+                BatchOutput::create(self.output.as_deref(), origin, continued.then_some(asked))
+            }
         }
     }
 
@@ -286,22 +307,36 @@ impl Args {
     fn answer(
         &self,
         question: &Question<'_>,
-        mut chunks: Chunks<Box<dyn Read + Send>>,
+        states: States,
         answered: usize,
         (thresholds, dropped): (Thresholds, &Mutex<Dropped>),
         sink: &mut OutputSink<'_>,
     ) -> crate::Result<()> {
         let threads = self.threads.count();
-        let Some(header) = question.header.filter(|_| self.recording.is_in_order()) else {
-            chunks.skip(answered)?;
-            let answerer = || {
-                let mut batch = Batch::new(question);
-                move |chunk| batch.records(&chunk)
-            };
-            return batch::run(chunks, threads, answerer, sink);
+        let (robot, defaults) = (question.robot, &question.defaults);
+        let samples: Samples = match (question.header.filter(|_| self.recording.is_in_order()), states) {
+            (Some(header), States::Text(chunks)) => Box::new(batch::samples(chunks, header, robot, defaults)),
+            #[cfg(feature = "columnar")]
+            (Some(header), States::Columns(parts)) => Box::new(batch::samples_of_parts(parts, header, robot, defaults)),
+            (None, States::Text(mut chunks)) => {
+                chunks.skip(answered)?;
+                let answerer = || {
+                    let mut batch = Batch::new(question);
+                    move |chunk| batch.records(&chunk)
+                };
+                return batch::run(chunks, threads, answerer, sink);
+            }
+            #[cfg(feature = "columnar")]
+            (None, States::Columns(parts)) => {
+                let answerer = || {
+                    let mut batch = Batch::new(question);
+                    move |part| batch.part(&part)
+                };
+                return batch::run(parts, threads, answerer, sink);
+            }
         };
-        let samples = Box::new(batch::samples(chunks, header, question.robot, &question.defaults));
-        let known = (question.robot, &question.options.feet[..]);
+        let Some(header) = question.header else { return Ok(()) };
+        let known = (robot, &question.options.feet[..]);
         let samples = self.recording.chosen(samples, header, known, thresholds, dropped)?.skip(answered);
         let answerer = || {
             let mut batch = Batch::new(question);
@@ -342,7 +377,21 @@ impl Args {
     }
 
     /// The columns of a table; `None` for lines of JSON that are not flat and for an empty table.
-    fn header(
+    fn header(&self, robot: &Robot, states: &mut States, format: RecordFormat) -> Result<Option<Header>, Failure> {
+        match states {
+            States::Text(chunks) => self.text_header(robot, chunks, format.form()),
+            #[cfg(feature = "columnar")]
+            States::Columns(parts) => {
+                let header = parts.header(robot, self.recording.rates(), &self.foreign);
+                let in_order = self.recording.is_in_order();
+                let header = header.and_then(|header| if in_order { header.with_time() } else { Ok(header) });
+                Ok(Some(header.map_err(|error| error.in_file(input::name(&self.states)))?))
+            }
+        }
+    }
+
+    /// The same of text.
+    fn text_header(
         &self,
         robot: &Robot,
         chunks: &mut Chunks<impl Read + Send>,
@@ -372,10 +421,7 @@ impl Args {
             Failure::Refused(error.on(place.line, place.column).in_file(&name), excerpt)
         })?;
         chunks.expect_columns(header.count());
-        if in_order && !header.has_time() {
-            let missing = Error::new(Reason::Missing("a column \"time\"".into())).on(line, 1);
-            return Err(missing.in_file(name).hint("touchdowns need the time of each row").into());
-        }
-        Ok(Some(header))
+        let header = if in_order { header.with_time().map_err(|error| error.on(line, 1)) } else { Ok(header) };
+        Ok(Some(header.map_err(|error| error.in_file(name))?))
     }
 }

@@ -61,7 +61,12 @@ pub(super) fn stream(path: &Path) -> Result<Box<dyn Read + Send>> {
     if path == Path::new("-") {
         return Ok(Box::new(io::stdin()));
     }
-    Ok(Box::new(File::open(path).map_err(|error| cannot_read(path, &error))?))
+    Ok(Box::new(file(path)?))
+}
+
+/// Opens a file.
+pub(super) fn file(path: &Path) -> Result<File> {
+    File::open(path).map_err(|error| cannot_read(path, &error))
 }
 
 fn cannot_read(path: &Path, error: &io::Error) -> Error {

@@ -8,6 +8,7 @@ mod clock;
 mod progress;
 mod input;
 mod output;
+mod format;
 mod picture;
 mod options;
 mod meshes;

@@ -66,9 +66,9 @@ impl OutputOptions {
 }
 
 /// Endings of formats of which a command reads or writes a few.
-const FORMATS: [&str; 18] = [
-    "csv", "h5", "hdf5", "html", "mat", "npy", "npz", "parquet", "pdf", "pickle", "png", "svg", "toml", "tsv", "xlsx",
-    "xml", "yaml", "yml",
+const FORMATS: [&str; 22] = [
+    "arrow", "arrows", "csv", "feather", "h5", "hdf5", "html", "ipc", "mat", "npy", "npz", "parquet", "pdf", "pickle",
+    "png", "svg", "toml", "tsv", "xlsx", "xml", "yaml", "yml",
 ];
 
 /// Refuses a file whose ending means a format that is not `known`, for the `reason`; `option` overrules the ending.

@@ -33,10 +33,12 @@ enum Written {
 }
 
 impl BatchOutput {
-    /// A new output at `path`, or on standard output, for answers to what is `asked`.
-    pub fn create(path: Option<&Path>, mut origin: Origin, asked: Asked) -> io::Result<Self> {
-        let target = Target::open(path, true)?;
-        if matches!(&target, Target::File(file) if file.part().is_some()) {
+    /// A new output at `path`, or on standard output, for answers to what is `asked`; `None` if no run can continue it.
+    pub fn create(path: Option<&Path>, mut origin: Origin, asked: Option<Asked>) -> io::Result<Self> {
+        let target = Target::open(path, asked.is_some())?;
+        if let (Target::File(file), Some(asked)) = (&target, asked)
+            && file.part().is_some()
+        {
             origin.begin(asked, true)?;
         }
         Ok(Self { written: Written::New(target), origin })
@@ -45,7 +47,7 @@ impl BatchOutput {
     /// Continues what there is of the output at `path`, or begins it. A table begins with `header`. With `all`, every
     /// state is answered again and compared.
     pub fn resume(path: &Path, header: &[u8], all: bool, origin: Origin, asked: Asked) -> io::Result<Self> {
-        let Some(file) = NewFile::reopen(path)? else { return Self::create(Some(path), origin, asked) };
+        let Some(file) = NewFile::reopen(path)? else { return Self::create(Some(path), origin, Some(asked)) };
         let known = origin.answers(&asked, file.part().is_some()).map_err(|what| unlike(&file, what))?;
         let continued = Continued::open(file, header, all || !known, asked).map_err(|error| named(path, error))?;
         Ok(Self { written: Written::Continued(continued), origin })
@@ -70,7 +72,9 @@ impl BatchOutput {
     /// What holds the answers so far, if another run can continue it.
     pub fn part(&self) -> Option<&Path> {
         match &self.written {
-            Written::New(Target::File(file)) | Written::Continued(Continued { file, .. }) => file.part(),
+            Written::New(Target::File(file)) | Written::Continued(Continued { file, .. }) => {
+                file.part().filter(|_| file.keep)
+            }
             Written::New(Target::Standard(_)) => None,
         }
     }

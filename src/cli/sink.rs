@@ -5,6 +5,8 @@ use super::resume::BatchOutput;
 use super::{Failure, status};
 use crate::batch::{Block, RefusedRecord, Sink, Summary};
 use crate::draw::page::Gait;
+#[cfg(feature = "columnar")]
+use crate::write::ColumnWriter;
 use indicatif::ProgressBar;
 use memchr::memchr_iter;
 use std::io::{self, ErrorKind, Write};
@@ -25,12 +27,25 @@ pub(super) struct OutputSink<'a> {
     refused: u64,
     /// Lines written so far.
     lines: usize,
+    /// For columns with types.
+    #[cfg(feature = "columnar")]
+    pub columns: Option<ColumnWriter>,
 }
 
 impl<'a> OutputSink<'a> {
     /// Answers to `input` go to `output`, which must not buffer, so that the number of written lines is known.
     pub fn new(output: BatchOutput, input: &'a str, progress: &'a ProgressBar) -> Self {
-        Self { output, input, progress, summary: Summary::default(), gait: Gait::default(), refused: 0, lines: 0 }
+        Self {
+            output,
+            input,
+            progress,
+            summary: Summary::default(),
+            gait: Gait::default(),
+            refused: 0,
+            lines: 0,
+            #[cfg(feature = "columnar")]
+            columns: None,
+        }
     }
 
     /// Writes all bytes; an error says how many lines were written.
@@ -87,6 +102,11 @@ pub(super) fn note_part(output: &BatchOutput) {
 
 impl Sink for OutputSink<'_> {
     fn block(&mut self, block: Block) -> crate::Result<()> {
+        #[cfg(feature = "columnar")]
+        if let (Some(writer), Some(columns)) = (&mut self.columns, block.columns) {
+            let bytes = writer.write(columns)?;
+            self.write(&bytes).unwrap_or_else(|error| self.end(error));
+        }
         self.write(&block.out).unwrap_or_else(|error| self.end(error));
         // On a terminal the answers come before the errors.
         block.refused.into_iter().for_each(|refused| self.report(refused));

@@ -1,6 +1,7 @@
 //! `heelstrike sweep`: outcomes against one or two parameters.
 
 use super::diagnostic::{note_all, report};
+use super::format::RecordFormat;
 use super::input::InputFile;
 use super::options::{
     BudgetOptions, ContactOptions, CsvOptions, DetailOptions, LoopOptions, SceneOptions, ThreadOptions,
@@ -14,8 +15,9 @@ use super::{Answered, Completion, Failure};
 use crate::budget::SharedBudget;
 use crate::draw::page::{Page, Stops};
 use crate::draw::sweep as picture;
-use crate::read::table::Form;
 use crate::sweep::{Findings, Regime, RobotStudy, Solver, Study, Workers, letter};
+#[cfg(feature = "columnar")]
+use crate::write::ColumnBlock;
 use crate::write::sweep::{Regions, SampleRecord, columns};
 use crate::write::{append_line, notes};
 use crate::{Error, Reason};
@@ -75,6 +77,12 @@ enum SweepFormat {
     Csv,
     /// The same with tabs between columns
     Tsv,
+    /// The same as a Parquet file
+    Parquet,
+    /// The same as an Arrow IPC file
+    Arrow,
+    /// The same as an Arrow IPC stream
+    Arrows,
 }
 
 impl SweepFormat {
@@ -82,17 +90,37 @@ impl SweepFormat {
     fn of(args: &Args) -> Result<Self, Failure> {
         let ending = args.output.as_deref().and_then(Path::extension).and_then(|ending| ending.to_str());
         let by_ending = match ending.map(str::to_ascii_lowercase).as_deref() {
-            Some("csv") => Some(Self::Csv),
-            Some("tsv") => Some(Self::Tsv),
             Some("json" | "ndjson" | "jsonl") => Some(Self::Json),
             None | Some("" | "txt") => Some(Self::Text),
-            Some(_) => None,
+            Some(_) => args.output.as_deref().and_then(RecordFormat::table).map(|table| match table {
+                RecordFormat::Ndjson => Self::Json,
+                RecordFormat::Csv => Self::Csv,
+                RecordFormat::Tsv => Self::Tsv,
+                RecordFormat::Parquet => Self::Parquet,
+                RecordFormat::Arrow => Self::Arrow,
+                RecordFormat::Arrows => Self::Arrows,
+            }),
         };
-        args.format.or(by_ending).ok_or_else(|| {
-            let reason = Reason::Unsupported("a study is written as .json, .csv, .tsv or .txt".into());
+        let format = args.format.or(by_ending).ok_or_else(|| {
+            let reason =
+                Reason::Unsupported("a study is written as .json, .csv, .tsv, .parquet, .arrow or .txt".into());
             let hint = "name a file with one of these endings, or say --format; pictures and pages go to --plot";
             Failure::Usage(Error::new(reason).at("--output").hint(hint))
-        })
+        })?;
+        RecordFormat::of(args.output.as_deref(), format.table().or(Some(RecordFormat::Ndjson)), "--format")?;
+        Ok(format)
+    }
+
+    /// The table that is written, if it is one.
+    fn table(self) -> Option<RecordFormat> {
+        match self {
+            Self::Text | Self::Json => None,
+            Self::Csv => Some(RecordFormat::Csv),
+            Self::Tsv => Some(RecordFormat::Tsv),
+            Self::Parquet => Some(RecordFormat::Parquet),
+            Self::Arrow => Some(RecordFormat::Arrow),
+            Self::Arrows => Some(RecordFormat::Arrows),
+        }
     }
 }
 
@@ -140,38 +168,58 @@ pub(super) fn run(args: &Args) -> Completion {
     }
     let mut output = Output::open(args.output.as_deref())?;
     let writer = &mut output.writer;
-    let mut head = Vec::new();
     let refused = match format {
         SweepFormat::Text => {
             writer.write_all(regions.text(&robot.name, &output.palette).as_bytes())?;
             0
         }
         SweepFormat::Json => {
+            let mut head = Vec::new();
             append_line(&mut head, &regions);
             // The samples are the last field of the object.
             writer.write_all(head.strip_suffix(b"}\n").unwrap_or(&head))?;
             writer.write_all(b",\"samples\":[")?;
-            let refused = samples(writer, &model, (workers, &budget), |solver, sample, out| {
+            let append = |solver: &mut Solver, sample: &SampleRecord, out: &mut Vec<u8>| {
                 out.extend(if sample.index == 0 { "" } else { "," }.bytes());
                 sample.append_json(solver, args.detail.detail(), out)
-            })?;
+            };
+            let refused = samples(&model, (workers, &budget), Vec::new, append, |out| Ok(writer.write_all(&out)?))?;
             writer.write_all(b"]}\n")?;
             refused
         }
-        SweepFormat::Csv | SweepFormat::Tsv => {
+        _ => {
+            let table = format.table().unwrap_or(RecordFormat::Csv);
             let contacts = regimes.iter().flat_map(|(regime, ..)| regime.contacts()).map(String::as_str);
-            let columns = args.csv.columns(columns(&model, &feet, contacts)).written_as(match format {
-                SweepFormat::Tsv => Form::Tsv,
-                _ => Form::Csv,
-            });
+            let columns = args.csv.columns(columns(&model, &feet, contacts)).written_as(table.form());
             let columns = if args.detail.brief { columns.in_brief() } else { columns };
-            columns.append_header(&mut head);
-            writer.write_all(&head)?;
             let kind = |regime: &Regime| regimes.iter().find(|(known, ..)| ***known == *regime);
             let letter = |regime: &Regime| kind(regime).map_or_else(String::new, |(_, kind, _)| letter(*kind));
-            samples(writer, &model, (workers, &budget), |solver, sample, out| {
-                sample.append_rows(solver, &columns, letter, out)
-            })?
+            let as_text = |writer: &mut dyn Write| {
+                let mut head = Vec::new();
+                columns.append_header(&mut head);
+                writer.write_all(&head)?;
+                let append = |solver: &mut Solver, sample: &SampleRecord, out: &mut Vec<u8>| {
+                    sample.append_rows(solver, &columns, letter, out)
+                };
+                samples(&model, (workers, &budget), Vec::new, append, |out| Ok(writer.write_all(&out)?))
+            };
+            #[cfg(feature = "columnar")]
+            let refused = match table.writer(&columns)? {
+                Some(mut typed) => {
+                    let append = |solver: &mut Solver, sample: &SampleRecord, out: &mut ColumnBlock| {
+                        sample.append_rows(solver, &columns, letter, out)
+                    };
+                    let write = |out| Ok(writer.write_all(&typed.write(out)?)?);
+                    let block = || ColumnBlock::new(&columns);
+                    let refused = samples(&model, (workers, &budget), block, append, write)?;
+                    writer.write_all(&typed.finish()?)?;
+                    refused
+                }
+                None => as_text(writer)?,
+            };
+            #[cfg(not(feature = "columnar"))]
+            let refused = as_text(writer)?;
+            refused
         }
     };
     output.close(true)?;
@@ -200,23 +248,24 @@ impl StudyBudget<'_> {
     }
 }
 
-/// Writes all samples in order; returns how many were refused.
-fn samples(
-    writer: &mut impl Write,
+/// Writes all samples in order, each appended to what `new` makes; returns how many were refused.
+fn samples<T: Send>(
     model: &RobotStudy,
     (workers, budget): (Workers, &StudyBudget),
-    append: impl Fn(&mut Solver, &SampleRecord, &mut Vec<u8>) -> bool + Sync,
+    new: impl Fn() -> T + Sync,
+    append: impl Fn(&mut Solver, &SampleRecord, &mut T) -> bool + Sync,
+    mut write: impl FnMut(T) -> Result<(), Failure>,
 ) -> Result<usize, Failure> {
     let (count, mut refused) = (SampleRecord::count(model), 0);
     for start in (0..count).step_by(TOGETHER) {
         let answer = |solver: &mut Solver, index: usize| {
-            let mut out = Vec::new();
+            let mut out = new();
             let answered = append(solver, &SampleRecord::new(model, start + index), &mut out);
             (out, answered)
         };
         let answers = || workers.map(TOGETHER.min(count - start), || Solver::new(model), answer);
         for (out, answered) in budget.within(answers)? {
-            writer.write_all(&out)?;
+            write(out)?;
             refused += usize::from(!answered);
         }
     }

@@ -106,8 +106,14 @@ fn require_urdf(root: Node<'_, '_>) -> Result<()> {
     let tag = root.tag_name().name();
     let hint = match tag {
         "robot" => return Ok(()),
-        "sdf" => "this is an SDF file; convert it to URDF",
-        "mujoco" => "this is a MuJoCo model; convert it to URDF",
+        "sdf" => {
+            "this is an SDF file; convert it by the Python package and `pip install drake`: \
+             `python -m heelstrike.to_urdf MODEL.sdf ROBOT.urdf`"
+        }
+        "mujoco" => {
+            "this is a MuJoCo model; convert it by the Python package and `pip install drake`: \
+             `python -m heelstrike.to_urdf MODEL.xml ROBOT.urdf`"
+        }
         _ => "the outermost element of a URDF file is <robot>",
     };
     Err(xml::refuse(root, Reason::Missing("<robot>".into())).at(format!("<{tag}>")).hint(hint))

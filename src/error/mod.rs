@@ -133,6 +133,12 @@ impl Error {
         self
     }
 
+    /// Leaves out line and column, of an input that has none.
+    pub fn nowhere(mut self) -> Self {
+        self.0.location = None;
+        self
+    }
+
     /// Names the file.
     pub fn in_file(mut self, file: impl Into<String>) -> Self {
         self.0.file = Some(visible(&file.into()).into_owned());

@@ -53,6 +53,9 @@ pub struct Columns {
     /// Whether cells of text are kept from being formulas.
     guarded: bool,
     form: Form,
+    /// The columns that are carried through, if they have types.
+    #[cfg(feature = "columnar")]
+    types: Option<arrow_schema::SchemaRef>,
 }
 
 /// What the cells of a column hold.
@@ -66,6 +69,9 @@ pub enum Kind {
     Integer,
     /// True or false.
     Boolean,
+    /// What a column of the input holds, of those that are carried through.
+    #[cfg(feature = "columnar")]
+    Carried(usize),
 }
 
 /// What is in a cell.
@@ -78,7 +84,7 @@ pub enum Cell<'c> {
     /// A number.
     Number(f64),
     /// A whole number.
-    Integer(usize),
+    Integer(i64),
     /// True or false.
     Boolean(bool),
     /// A cell of the input that is carried through, and which of these it is.
@@ -150,7 +156,32 @@ impl Columns {
     pub fn new(robot: &Robot, feet: &[NamedContact], input: Option<&Header>, kind: RowKind) -> Self {
         let through: Vec<_> = input.into_iter().flat_map(Header::carried).map(|name| (name, Kind::Text)).collect();
         let named = [("id", Kind::Text), ("line", Kind::Integer)];
-        Self::with(robot, &named, contacts(robot, feet, kind), &through, kind)
+        let columns = Self::with(robot, &named, contacts(robot, feet, kind), &through, kind);
+        #[cfg(feature = "columnar")]
+        let columns = columns.with_types(input);
+        columns
+    }
+
+    /// The same with the types of the input's columns, if they have some.
+    #[cfg(feature = "columnar")]
+    fn with_types(mut self, input: Option<&Header>) -> Self {
+        let Some((carried, integers)) = input.and_then(|header| header.types.clone()) else { return self };
+        let places = self.last() - self.carried..self.last();
+        places.zip(0..).for_each(|(at, which)| self.kinds[at] = Kind::Carried(which));
+        if integers {
+            self.kinds[0] = Kind::Integer;
+        }
+        Self { types: Some(carried), ..self }
+    }
+
+    /// The field of a column that is carried through.
+    #[cfg(feature = "columnar")]
+    pub(super) fn carried_field(&self, which: usize) -> arrow_schema::Field {
+        let field = self.types.as_ref().and_then(|types| types.fields().get(which));
+        field.map_or_else(
+            || arrow_schema::Field::new("", arrow_schema::DataType::Null, true),
+            |own| own.as_ref().clone(),
+        )
     }
 
     /// The columns for states that have no line, with columns of these names that are carried through, and for contacts
@@ -221,6 +252,8 @@ impl Columns {
             brief: false,
             guarded: false,
             form: Form::Csv,
+            #[cfg(feature = "columnar")]
+            types: None,
         }
     }
 
@@ -263,6 +296,11 @@ impl Columns {
         Self { guarded: true, ..self }
     }
 
+    /// How they are written.
+    pub fn form(&self) -> Form {
+        self.form
+    }
+
     /// The names of all columns.
     pub fn names(&self) -> &[String] {
         &self.names
@@ -291,7 +329,7 @@ impl Columns {
         cells.0[self.named + 3] = report.proven.map_or(Cell::Empty, Cell::Boolean);
         if let Some(touchdown) = report.touchdown.as_ref().filter(|_| self.kind == RowKind::Touchdown) {
             let start = self.velocities() + self.coordinates;
-            cells.0[start] = Cell::Integer(touchdown.row);
+            cells.0[start] = Cell::Integer(touchdown.row as i64);
             cells.number(start + 1, touchdown.time);
             cells.text(start + 2, &*touchdown.striking);
             cells.number(start + 3, touchdown.shift_z);
@@ -338,9 +376,12 @@ impl Columns {
     /// A row with the id, the line and what is carried through.
     fn cells<'c>(&self, id: Option<&Value>, line: Option<usize>, carried: Option<&'c Carried>) -> Cells<'c> {
         let mut cells = Cells(vec![Cell::Empty; self.names.len()]);
-        cells.text(0, id.map_or(String::new(), words::id));
+        match (id, self.kinds[0]) {
+            (Some(Value::Number(id)), Kind::Integer) => cells.0[0] = id.as_i64().map_or(Cell::Empty, Cell::Integer),
+            (id, _) => cells.text(0, id.map_or(String::new(), words::id)),
+        }
         if let Some(line) = line {
-            cells.0[1] = Cell::Integer(line);
+            cells.0[1] = Cell::Integer(line as i64);
         }
         if let Some(carried) = carried {
             let places = self.last() - self.carried..self.last();
@@ -350,7 +391,7 @@ impl Columns {
     }
 
     fn outcome(&self, number: usize, outcome: &Outcome, places: &[usize], cells: &mut Cells) {
-        cells.0[self.named + 1] = Cell::Integer(number);
+        cells.0[self.named + 1] = Cell::Integer(number as i64);
         cells.0[self.named + 2] = outcome.margin.map_or(Cell::Empty, Cell::Number);
         cells.0[self.named + 3] = Cell::Boolean(outcome.proven);
         for ((&place, mode), impulse) in places.iter().zip(&outcome.modes).zip(&outcome.impulse) {

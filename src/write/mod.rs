@@ -19,6 +19,8 @@ mod result;
 mod forces;
 mod text;
 mod csv;
+#[cfg(feature = "columnar")]
+mod columnar;
 mod arrays;
 mod inspection;
 pub mod notes;
@@ -31,6 +33,8 @@ pub mod schema;
 #[cfg(feature = "accuracy")]
 pub use accuracy::{Accuracy, Compliant};
 pub use arrays::{Arrays, Texts};
+#[cfg(feature = "columnar")]
+pub use columnar::{ColumnBlock, ColumnWriter, ColumnarFormat};
 pub use csv::{Cell, Columns, Kind, RowKind, RowSink};
 pub use forces::{ForceOutcome, ForcesRecord, RejectedForces, SustainedContact};
 pub use inspection::Inspection;

@@ -50,6 +50,9 @@ pub struct Header {
     pub(crate) form: Form,
     pub(crate) time: Option<usize>,
     pub(crate) spatial: Option<SpatialColumns>,
+    /// Of columns with types: the fields that are carried through, and whether ids are whole numbers.
+    #[cfg(feature = "columnar")]
+    pub(crate) types: Option<(arrow_schema::SchemaRef, bool)>,
 }
 
 /// The columns of a base in three dimensions.
@@ -94,6 +97,17 @@ impl Header {
         let bytes = record.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(record);
         let record = Record { bytes, form };
         let names = if form == Form::Ndjson { flat::keys(bytes)? } else { names(record)? };
+        Self::named(names, record, robot, rates, foreign)
+    }
+
+    /// The same of names that are known already.
+    pub(super) fn named(
+        names: Vec<String>,
+        record: Record,
+        robot: &Robot,
+        rates: Rates,
+        foreign: &[String],
+    ) -> Result<Self> {
         if names.len() > COLUMN_LIMIT {
             return Err(Error::new(Reason::TooMany { what: "columns", limit: COLUMN_LIMIT }).on(1, 1));
         }
@@ -112,7 +126,16 @@ impl Header {
             columns.push(column.map_err(|error| in_column(error, record, at, name))?);
         }
         let time = names.iter().position(|name| name == "time");
-        let mut header = Self { names, columns, missing: Vec::new(), form, time, spatial: None };
+        let mut header = Self {
+            names,
+            columns,
+            missing: Vec::new(),
+            form: record.form,
+            time,
+            spatial: None,
+            #[cfg(feature = "columnar")]
+            types: None,
+        };
         header.spatial = header.spatial(record, robot)?;
         header.missing = header.absent(robot, rates);
         header.check_foreign(record, foreign)?;
@@ -171,6 +194,12 @@ impl Header {
     /// Whether there is a column `time`.
     pub fn has_time(&self) -> bool {
         self.time.is_some()
+    }
+
+    /// The same, refused if there is no column `time`; without a line.
+    pub fn with_time(self) -> Result<Self> {
+        let missing = || Error::new(Reason::Missing("a column \"time\"".into()));
+        if self.has_time() { Ok(self) } else { Err(missing().hint("touchdowns need the time of each row")) }
     }
 
     /// Whether the base is given in three dimensions, so that the motion has to be projected clip by clip

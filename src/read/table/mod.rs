@@ -19,8 +19,14 @@
 mod flat;
 mod records;
 mod header;
+#[cfg(feature = "columnar")]
+mod typed;
 mod rows;
+#[cfg(feature = "columnar")]
+mod columns;
 
+#[cfg(feature = "columnar")]
+pub use columns::{Part, Parts};
 pub use flat::is_flat;
 pub(crate) use header::prefixed;
 pub use header::{Header, Rates};

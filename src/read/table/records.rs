@@ -7,6 +7,7 @@
 //! ```
 
 use super::flat;
+use std::borrow::Cow;
 
 /// How the records of a table are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -18,6 +19,15 @@ pub enum Form {
     Tsv,
     /// An object of JSON on each line, whose keys are the names of the columns.
     Ndjson,
+    /// Columns with types (feature `columnar`).
+    Columns,
+}
+
+/// What is in a cell.
+pub(super) enum Cell<'r> {
+    Empty,
+    Text(Cow<'r, str>),
+    Number(f64),
 }
 
 /// The bytes of a record, and how it is written.

@@ -2,18 +2,28 @@
 
 use super::flat;
 use super::header::{Header, SpatialColumns, TableColumn, short};
-use super::records::{Form, Record};
+use super::records::{Cell, Form, Record};
+#[cfg(feature = "columnar")]
+use super::typed::Typed;
 use crate::gait::spatial::{Spatial, project};
 use crate::law::Friction;
 use crate::read::json::{id_in, id_of};
 use crate::robot::Base;
 use crate::state::{ByLink, Defaults, Scene, State};
 use crate::{Error, Reason, Result, Robot};
+#[cfg(feature = "columnar")]
+use arrow_array::{Array, RecordBatch};
+#[cfg(feature = "columnar")]
+use arrow_cast::display::array_value_to_string;
+#[cfg(feature = "columnar")]
+use arrow_schema::DataType;
 use csv::ByteRecord;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::borrow::Cow;
 use std::io::Cursor;
+#[cfg(feature = "columnar")]
+use std::sync::Arc;
 
 /// Reads the rows of a table one record at a time, in memory that is reused.
 #[derive(Debug)]
@@ -28,34 +38,49 @@ pub struct Rows<'h> {
 #[derive(Debug, Clone, Copy)]
 pub struct Row<'r> {
     header: &'r Header,
-    cells: &'r ByteRecord,
-    raw: &'r [u8],
+    source: Source<'r>,
     line: usize,
 }
 
-/// What is in a cell.
-enum Cell<'r> {
-    Empty,
-    Text(Cow<'r, str>),
-    Number(f64),
+#[derive(Debug, Clone, Copy)]
+enum Source<'r> {
+    /// Cells, and the bytes that they were read from.
+    Text(&'r ByteRecord, &'r [u8]),
+    /// Columns, and a row of theirs.
+    #[cfg(feature = "columnar")]
+    Columns(&'r Typed, usize),
 }
 
 /// The cells of a row to copy to the result, kept longer than their chunk.
-#[derive(Debug, Clone, Default)]
-pub struct Carried {
-    cells: ByteRecord,
-    /// Whether these are values of JSON.
-    json: bool,
+#[derive(Debug, Clone)]
+pub enum Carried {
+    /// Fields of text.
+    Text(ByteRecord),
+    /// Values of JSON; an empty one is null.
+    Json(ByteRecord),
+    /// A row of columns with types.
+    #[cfg(feature = "columnar")]
+    Columns(Arc<RecordBatch>, usize),
+}
+
+impl Default for Carried {
+    fn default() -> Self {
+        Self::Text(ByteRecord::new())
+    }
 }
 
 impl Carried {
     pub fn new(fields: impl Iterator<Item = String>) -> Self {
-        Self { cells: fields.collect::<Vec<_>>().into(), json: false }
+        Self::Text(fields.collect::<Vec<_>>().into())
     }
 
     /// How many there are, in the order of [`Header::carried`]; none if the row could not be read.
     pub fn len(&self) -> usize {
-        self.cells.len()
+        match self {
+            Self::Text(cells) | Self::Json(cells) => cells.len(),
+            #[cfg(feature = "columnar")]
+            Self::Columns(columns, _) => columns.num_columns(),
+        }
     }
 
     /// Whether there are none.
@@ -65,22 +90,39 @@ impl Carried {
 
     /// A cell as text.
     pub fn text(&self, which: usize) -> Cow<'_, [u8]> {
-        let cell = self.cells.get(which).unwrap_or_default();
-        match (self.json, cell.first()) {
-            (true, Some(b'"')) => {
-                serde_json::from_slice(cell).map_or(cell.into(), |text: String| text.into_bytes().into())
+        match self {
+            Self::Text(cells) => cells.get(which).unwrap_or_default().into(),
+            Self::Json(cells) => match cells.get(which).unwrap_or_default() {
+                cell @ [b'"', ..] => {
+                    serde_json::from_slice(cell).map_or(cell.into(), |text: String| text.into_bytes().into())
+                }
+                cell => cell.into(),
+            },
+            #[cfg(feature = "columnar")]
+            Self::Columns(columns, row) => {
+                array_value_to_string(columns.column(which), *row).unwrap_or_default().into_bytes().into()
             }
-            _ => cell.into(),
         }
     }
 
-    /// The cells by column: text as text, with a replacement for bytes that are no UTF-8, values of JSON as they are.
+    /// A cell as a value.
+    fn value(&self, which: usize) -> CarriedValue<'_> {
+        let parsed = |cell: &[u8]| CarriedValue::Json(serde_json::from_slice(cell).unwrap_or_default());
+        match self {
+            Self::Text(cells) => CarriedValue::Text(String::from_utf8_lossy(cells.get(which).unwrap_or_default())),
+            Self::Json(cells) => parsed(cells.get(which).unwrap_or_default()),
+            #[cfg(feature = "columnar")]
+            Self::Columns(columns, row) => match self.text(which) {
+                _ if columns.column(which).is_null(*row) => CarriedValue::Json(Value::Null),
+                text if is_json(columns.column(which).data_type()) => parsed(&text),
+                text => CarriedValue::Text(String::from_utf8_lossy(&text).into_owned().into()),
+            },
+        }
+    }
+
+    /// The cells by column: text as text, with a replacement for bytes that are no UTF-8, other values as they are.
     pub fn by_name<'c>(&'c self, header: &'c Header) -> impl Iterator<Item = (&'c str, CarriedValue<'c>)> {
-        let value = |cell: &'c [u8]| match self.json {
-            true => CarriedValue::Json(serde_json::from_slice(cell).unwrap_or_default()),
-            false => CarriedValue::Text(String::from_utf8_lossy(cell)),
-        };
-        header.carried().zip(self.cells.iter().map(value))
+        header.carried().zip((0..self.len()).map(|which| self.value(which)))
     }
 }
 
@@ -130,7 +172,7 @@ impl<'h> Rows<'h> {
         if self.header.form == Form::Ndjson {
             let read = flat::read(raw, &self.header.names, &mut self.record);
             read.map_err(|error| error.location().map_or(error.clone(), |place| error.on(line, place.column)))?;
-            return Ok(Some(Row { header: self.header, cells: &self.record, raw, line }));
+            return Ok(Some(Row { header: self.header, source: Source::Text(&self.record, raw), line }));
         }
         let fault = Record { bytes: raw, form: self.header.form }.quoting_fault();
         if let Some((at, fault)) = fault {
@@ -149,12 +191,29 @@ impl<'h> Rows<'h> {
             return Err(syntax("a line break of another kind stands in the row".into()));
         }
         read.map_err(|error| syntax(error.to_string()))?;
-        Ok(Some(Row { header: self.header, cells: &self.record, raw, line }))
+        Ok(Some(Row { header: self.header, source: Source::Text(&self.record, raw), line }))
     }
 }
 
 fn reader(form: Form) -> csv::Reader<Cursor<Vec<u8>>> {
     form.csv().from_reader(Cursor::default())
+}
+
+#[cfg(feature = "columnar")]
+impl<'r> Row<'r> {
+    /// Row `at` of these columns, which is number `line` of the table.
+    pub(super) fn of_columns(header: &'r Header, columns: &'r Typed, at: usize, line: usize) -> Self {
+        Self { header, source: Source::Columns(columns, at), line }
+    }
+}
+
+/// Whether values of this type are numbers or truth values in JSON.
+#[cfg(feature = "columnar")]
+fn is_json(own: &DataType) -> bool {
+    match own {
+        DataType::Dictionary(_, values) => is_json(values),
+        own => own.is_numeric() || *own == DataType::Boolean,
+    }
 }
 
 impl Row<'_> {
@@ -165,7 +224,13 @@ impl Row<'_> {
 
     /// Its id, if it can be read.
     pub fn id(&self) -> Option<Value> {
-        let text = std::str::from_utf8(self.cells.get(self.header.place(TableColumn::Id)?)?).ok()?;
+        let at = self.header.place(TableColumn::Id)?;
+        let cells = match self.source {
+            Source::Text(cells, _) => cells,
+            #[cfg(feature = "columnar")]
+            Source::Columns(columns, row) => return columns.id(at, row),
+        };
+        let text = std::str::from_utf8(cells.get(at)?).ok()?;
         match self.header.form {
             _ if text.is_empty() => None,
             Form::Ndjson => id_of(text),
@@ -175,11 +240,14 @@ impl Row<'_> {
 
     /// The fields to copy to the result, if the row has as many as the header.
     pub fn carried(&self) -> Carried {
-        if self.cells.len() != self.header.columns.len() {
-            return Carried::default();
-        }
-        let cells = self.header.places(TableColumn::Carried).filter_map(|at| self.cells.get(at)).collect();
-        Carried { cells, json: self.header.form == Form::Ndjson }
+        let cells = match self.source {
+            Source::Text(cells, _) if cells.len() == self.header.columns.len() => cells,
+            Source::Text(..) => return Carried::default(),
+            #[cfg(feature = "columnar")]
+            Source::Columns(columns, row) => return Carried::Columns(Arc::clone(&columns.carried), row),
+        };
+        let cells = self.header.places(TableColumn::Carried).filter_map(|at| cells.get(at)).collect();
+        if self.header.form == Form::Ndjson { Carried::Json(cells) } else { Carried::Text(cells) }
     }
 
     /// The time \[s\].
@@ -196,8 +264,11 @@ impl Row<'_> {
     /// A row with more or fewer fields than the header, a cell that does not hold what its column is for, a base that
     /// is both placed by a stance and given, an invalid quaternion. The error gives column, line and place.
     pub fn state(&self, robot: &Robot, defaults: &Defaults) -> Result<State> {
-        let (fields, columns) = (self.cells.len(), self.header.columns.len());
-        if fields != columns {
+        let columns = self.header.columns.len();
+        if let Source::Text(cells, _) = self.source
+            && cells.len() != columns
+        {
+            let fields = cells.len();
             let plural = if fields == 1 { "" } else { "s" };
             let reason = Reason::Inconsistent(format!("the row has {fields} field{plural}, the header {columns}"));
             return Err(Error::new(reason).on(self.line, 1));
@@ -343,7 +414,11 @@ impl Row<'_> {
     }
 
     fn cell(&self, at: usize) -> Result<Cell<'_>> {
-        let field = self.cells.get(at).unwrap_or_default().trim_ascii();
+        let field = match self.source {
+            Source::Text(cells, _) => cells.get(at).unwrap_or_default().trim_ascii(),
+            #[cfg(feature = "columnar")]
+            Source::Columns(columns, row) => return Ok(columns.cell(at, row)),
+        };
         let Ok(text) = std::str::from_utf8(field) else {
             return Err(self.refuse(at, Reason::Syntax("the cell is not UTF-8".into())));
         };
@@ -361,7 +436,12 @@ impl Row<'_> {
 
     /// Puts an error where cell `at` begins.
     fn place(&self, error: Error, at: usize) -> Error {
-        place(error, self.header, self.raw, self.line, at)
+        let raw = match self.source {
+            Source::Text(_, raw) => raw,
+            #[cfg(feature = "columnar")]
+            Source::Columns(..) => b"",
+        };
+        place(error, self.header, raw, self.line, at)
     }
 }
 

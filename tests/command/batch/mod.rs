@@ -6,6 +6,8 @@ use serde_json::json;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::process::{Child, ChildStdin, Command, Stdio};
 
+#[cfg(feature = "columnar")]
+mod columnar;
 mod memory;
 mod refusals;
 mod resume;

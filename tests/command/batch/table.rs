@@ -140,7 +140,7 @@ fn formulas_are_text_in_safe_tables() {
 }
 
 /// A recorded walk, and the same with its rows as flat lines of JSON behind a blank line, so that rows have one line.
-fn walk() -> (String, String) {
+pub(super) fn walk() -> (String, String) {
     let table = read("examples/gait/ramone_walk.csv");
     let mut reader = csv::Reader::from_reader(table.as_bytes());
     let names = reader.headers().expect("a header").clone();
@@ -156,7 +156,7 @@ fn walk() -> (String, String) {
 }
 
 /// What to ask of a walk.
-const WALK_QUESTIONS: [&[&str]; 4] = [
+pub(super) const WALK_QUESTIONS: [&[&str]; 4] = [
     &["--output-format", "csv"],
     &["--output-format", "csv", "--brief"],
     &["--output-format", "csv", "--touchdowns"],
@@ -286,5 +286,19 @@ fn samples_of_a_study_are_a_table_with_tabs_too() {
     for brief in [&[][..], &["--brief"]] {
         let [table, tabs] = ["csv", "tsv"].map(|format| study(&[&[format], brief].concat()));
         assert!(table.lines().count() > 50 && tabs == with_tabs(&table), "{brief:?}");
+    }
+}
+
+#[test]
+#[cfg(not(feature = "columnar"))]
+fn a_build_without_parquet_says_how_to_get_it() {
+    for arguments in [
+        &["batch", RAMONE, "states.parquet"][..],
+        &["batch", RAMONE, "-", "--input-format", "arrow"],
+        &["batch", RAMONE, "examples/gait/ramone_walk.csv", "-o", "x.arrows"],
+        &["sweep", WALKER, "examples/paper/figure_7.json", "-o", "x.parquet"],
+    ] {
+        let refusal = heelstrike(arguments).refusal(2);
+        assert!(refusal.contains("--features columnar") && refusal.contains("no Parquet and no Arrow"), "{refusal}");
     }
 }

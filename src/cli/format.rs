@@ -1,0 +1,101 @@
+//! Formats of states and of their answers.
+
+use super::Failure;
+use super::output::check_ending;
+use crate::read::table::Form;
+#[cfg(feature = "columnar")]
+use crate::write::{ColumnWriter, ColumnarFormat, Columns};
+#[cfg(not(feature = "columnar"))]
+use crate::{Error, Reason};
+use clap::ValueEnum;
+use std::path::Path;
+
+/// The format of an input or output.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum RecordFormat {
+    /// One JSON object per line
+    #[value(alias = "json", alias = "jsonl")]
+    Ndjson,
+    /// A table with a header and commas between columns
+    Csv,
+    /// A table with a header and tabs between columns
+    Tsv,
+    /// A Parquet file
+    Parquet,
+    /// An Arrow IPC file, as Feather; read also as a stream
+    #[value(alias = "feather", alias = "ipc")]
+    Arrow,
+    /// An Arrow IPC stream
+    Arrows,
+}
+
+/// The endings of tables.
+const TABLES: [(&str, RecordFormat); 7] = [
+    ("csv", RecordFormat::Csv),
+    ("tsv", RecordFormat::Tsv),
+    ("parquet", RecordFormat::Parquet),
+    ("arrow", RecordFormat::Arrow),
+    ("feather", RecordFormat::Arrow),
+    ("ipc", RecordFormat::Arrow),
+    ("arrows", RecordFormat::Arrows),
+];
+
+impl RecordFormat {
+    /// The table that a file's ending means.
+    pub fn table(path: &Path) -> Option<Self> {
+        let is = |known: &str| path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(known));
+        TABLES.into_iter().find(|(ending, _)| is(ending)).map(|(_, format)| format)
+    }
+
+    /// What is `chosen` by the option of this name, or by the file's ending; else lines of JSON.
+    pub fn of(path: Option<&Path>, chosen: Option<Self>, option: &str) -> Result<Self, Failure> {
+        if chosen.is_none() {
+            let known = TABLES.map(|(ending, _)| ending);
+            let reason = "states and answers are .ndjson, .csv, .tsv, .parquet or .arrow";
+            check_ending(path, &known, reason, option)?;
+        }
+        let format = chosen.or_else(|| path.and_then(Self::table)).unwrap_or(Self::Ndjson);
+        #[cfg(not(feature = "columnar"))]
+        if !format.is_text() {
+            let error = format.absent();
+            return Err(Failure::Usage(path.map_or(error.clone(), |path| error.in_file(path.display().to_string()))));
+        }
+        Ok(format)
+    }
+
+    /// The refusal of a format that this build does not have.
+    #[cfg(not(feature = "columnar"))]
+    pub fn absent(self) -> Error {
+        let reason = Reason::Unsupported("this build has no Parquet and no Arrow".into());
+        let hint =
+            "build it with `cargo install --path . --features columnar`, or take the command of the Python package";
+        Error::new(reason).hint(hint)
+    }
+
+    /// How records are written.
+    pub fn form(self) -> Form {
+        match self {
+            Self::Ndjson => Form::Ndjson,
+            Self::Csv => Form::Csv,
+            Self::Tsv => Form::Tsv,
+            Self::Parquet | Self::Arrow | Self::Arrows => Form::Columns,
+        }
+    }
+
+    /// Whether it is text.
+    pub fn is_text(self) -> bool {
+        self.form() != Form::Columns
+    }
+
+    /// A writer of these columns, unless they are written as text.
+    #[cfg(feature = "columnar")]
+    pub fn writer(self, columns: &Columns) -> crate::Result<Option<ColumnWriter>> {
+        let format = match self {
+            Self::Ndjson | Self::Csv | Self::Tsv => return Ok(None),
+            Self::Parquet => ColumnarFormat::Parquet,
+            Self::Arrow => ColumnarFormat::Arrow,
+            Self::Arrows => ColumnarFormat::ArrowStream,
+        };
+        ColumnWriter::new(columns, format).map(Some)
+    }
+}

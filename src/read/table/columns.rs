@@ -1,0 +1,159 @@
+//! Reads tables whose columns have types: Parquet, and Arrow's file and stream.
+//!
+//! ```text
+//!     file --[parquet, arrow-ipc]--> batches --cast once to f64, text, whole numbers--> Part --> Row
+//!                                        └── other columns keep their types ──> Carried
+//! ```
+
+use super::header::{Header, Rates, TableColumn};
+use super::records::{Form, Record};
+use super::rows::Row;
+use super::typed::{Typed, kind, unreadable};
+use crate::{Error, Reason, Result, Robot};
+use arrow_array::RecordBatch;
+use arrow_ipc::reader::{FileReader, StreamReader};
+use arrow_schema::{ArrowError, DataType, SchemaRef};
+use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
+use std::fs::File;
+use std::io::{BufReader, Read, Seek};
+use std::sync::Arc;
+
+/// The most rows of a part: they are answered together.
+const TOGETHER: usize = 512;
+
+type Batches = Box<dyn Iterator<Item = std::result::Result<RecordBatch, ArrowError>> + Send>;
+
+/// A table whose columns have types, read part by part.
+pub struct Parts {
+    batches: Batches,
+    schema: SchemaRef,
+    /// The columns of the header, once it is known.
+    columns: Arc<[TableColumn]>,
+    /// Columns that were read and not given yet, from this row of theirs on.
+    ready: Option<(Arc<Typed>, usize)>,
+    /// The number of the next row, from 1.
+    next: usize,
+}
+
+/// Some consecutive rows.
+#[derive(Debug, Clone)]
+pub struct Part {
+    columns: Arc<Typed>,
+    /// The first row in these columns, and how many there are.
+    start: usize,
+    count: usize,
+    /// The number of the first row in the table, from 1.
+    first: usize,
+}
+
+impl Parts {
+    /// A Parquet file.
+    ///
+    /// # Errors
+    /// A file that is none, or that is compressed as is not read here.
+    pub fn parquet(file: File) -> Result<Self> {
+        let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(unreadable)?;
+        let schema = Arc::clone(builder.schema());
+        let batches = builder.with_batch_size(16 * TOGETHER).build().map_err(unreadable)?;
+        Ok(Self::new(Box::new(batches), schema))
+    }
+
+    /// Arrow's file or stream, whichever it is.
+    ///
+    /// # Errors
+    /// As above.
+    pub fn arrow(mut file: File) -> Result<Self> {
+        let mut magic = Vec::new();
+        (&mut file).take(6).read_to_end(&mut magic).and_then(|_| file.rewind()).map_err(unreadable)?;
+        if magic != b"ARROW1" {
+            return Self::arrow_stream(BufReader::new(file));
+        }
+        let reader = FileReader::try_new_buffered(file, None).map_err(unreadable)?;
+        let schema = reader.schema();
+        Ok(Self::new(Box::new(reader), schema))
+    }
+
+    /// Arrow's stream.
+    ///
+    /// # Errors
+    /// As above.
+    pub fn arrow_stream(input: impl Read + Send + 'static) -> Result<Self> {
+        let reader = StreamReader::try_new(input, None).map_err(unreadable)?;
+        let schema = reader.schema();
+        Ok(Self::new(Box::new(reader), schema))
+    }
+
+    fn new(batches: Batches, schema: SchemaRef) -> Self {
+        Self { batches, schema, columns: Arc::new([]), ready: None, next: 1 }
+    }
+
+    /// Reads the columns' names, as [`Header::read`] does, and their types.
+    ///
+    /// # Errors
+    /// As there, and columns that do not hold what they are for; without a line.
+    pub fn header(&mut self, robot: &Robot, rates: Rates, foreign: &[String]) -> Result<Header> {
+        let names = self.schema.fields().iter().map(|field| field.name().trim().to_owned()).collect();
+        let record = Record { bytes: b"", form: Form::Columns };
+        let mut header = Header::named(names, record, robot, rates, foreign).map_err(Error::nowhere)?;
+        for (at, (&column, field)) in header.columns.iter().zip(self.schema.fields()).enumerate() {
+            let expected = match (column, kind(field.data_type())) {
+                (TableColumn::Carried | TableColumn::Ignored, _) | (_, DataType::Null) => continue,
+                (TableColumn::Id, DataType::Int64 | DataType::Utf8) => continue,
+                (TableColumn::Id, _) => "text or whole numbers",
+                (TableColumn::Stance, DataType::Utf8) | (TableColumn::Friction, DataType::Utf8) => continue,
+                (TableColumn::Stance, _) => "text",
+                (_, DataType::Float64 | DataType::Int64) => continue,
+                _ => "numbers",
+            };
+            let (name, found) = (field.name(), field.data_type());
+            let reason = Reason::Inconsistent(format!("\"{name}\" holds {found} in place of {expected}"));
+            return Err(Error::new(reason).at(format!("column {}", at + 1)).hint("convert the column"));
+        }
+        let carried: Vec<usize> = header.places(TableColumn::Carried).collect();
+        let carried = self.schema.project(&carried).map_err(unreadable)?;
+        let id = header.place(TableColumn::Id).map(|at| kind(self.schema.field(at).data_type()));
+        header.types = Some((Arc::new(carried), id == Some(DataType::Int64)));
+        self.columns = header.columns.clone().into();
+        Ok(header)
+    }
+
+    /// Whether no row is left.
+    ///
+    /// # Errors
+    /// Those of reading.
+    pub fn is_empty(&mut self) -> Result<bool> {
+        while self.ready.is_none() {
+            let Some(batch) = self.batches.next() else { return Ok(true) };
+            let batch = batch.map_err(unreadable)?;
+            if batch.num_rows() > 0 {
+                self.ready = Some((Arc::new(Typed::new(&batch, &self.columns)?), 0));
+            }
+        }
+        Ok(false)
+    }
+
+    /// The next rows; `None` at the end.
+    ///
+    /// # Errors
+    /// Those of reading.
+    pub fn part(&mut self) -> Result<Option<Part>> {
+        if self.is_empty()? {
+            return Ok(None);
+        }
+        let Some((columns, start)) = self.ready.take() else { return Ok(None) };
+        let rows = columns.rows();
+        let (count, first) = (TOGETHER.min(rows - start), self.next);
+        self.next += count;
+        if start + count < rows {
+            self.ready = Some((Arc::clone(&columns), start + count));
+        }
+        Ok(Some(Part { columns, start, count, first }))
+    }
+}
+
+impl Part {
+    /// Its rows.
+    pub fn rows<'p>(&'p self, header: &'p Header) -> impl Iterator<Item = Row<'p>> {
+        (0..self.count).map(|at| Row::of_columns(header, &self.columns, self.start + at, self.first + at))
+    }
+}

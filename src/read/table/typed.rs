@@ -1,0 +1,103 @@
+//! Columns with types, cast once as they are needed.
+
+use super::header::TableColumn;
+use super::records::Cell;
+use crate::{Error, Reason, Result};
+use arrow_array::cast::AsArray;
+use arrow_array::types::{Float64Type, Int64Type};
+use arrow_array::{Array, ArrayRef, Float64Array, Int64Array, RecordBatch, StringArray};
+use arrow_cast::cast::{CastOptions, cast_with_options};
+use arrow_schema::DataType;
+use serde_json::Value;
+use std::sync::Arc;
+
+/// Columns as they are needed.
+#[derive(Debug)]
+pub(super) struct Typed {
+    columns: Vec<Column>,
+    /// Those that are carried through.
+    pub carried: Arc<RecordBatch>,
+}
+
+#[derive(Debug)]
+enum Column {
+    Numbers(Float64Array),
+    Integers(Int64Array),
+    Texts(StringArray),
+    Unread,
+}
+
+/// The refusal of a file that cannot be read.
+pub(super) fn unreadable(error: impl std::fmt::Display) -> Error {
+    let text = error.to_string();
+    let refused = Error::new(Reason::Io(format!("cannot be read: {text}")));
+    match ["zstd", "brotli", "lzo"].iter().any(|codec| text.to_lowercase().contains(codec)) {
+        true => refused.hint("write it with the compression snappy, lz4 or gzip, or with none"),
+        false => refused,
+    }
+}
+
+/// What a column of this type is read as: f64, whole numbers, text, null, or as it is.
+pub(super) fn kind(own: &DataType) -> DataType {
+    match own {
+        DataType::Dictionary(_, values) => kind(values),
+        DataType::Utf8 | DataType::LargeUtf8 | DataType::Utf8View => DataType::Utf8,
+        own if own.is_integer() => DataType::Int64,
+        own if own.is_floating() || own.is_decimal() => DataType::Float64,
+        own => own.clone(),
+    }
+}
+
+impl Typed {
+    pub fn new(batch: &RecordBatch, columns: &[TableColumn]) -> Result<Self> {
+        let places = (0..columns.len()).filter(|&at| columns[at] == TableColumn::Carried).collect::<Vec<_>>();
+        let carried = batch.project(&places).map_err(unreadable)?;
+        let typed =
+            columns.iter().zip(batch.columns()).zip(batch.schema_ref().fields()).map(|((column, own), field)| {
+                let to = |to: DataType| -> Result<ArrayRef> {
+                    let exact = CastOptions { safe: false, ..CastOptions::default() };
+                    cast_with_options(own, &to, &exact).map_err(|error| unreadable(error).at(field.name()))
+                };
+                Ok(match (column, kind(own.data_type())) {
+                    (TableColumn::Ignored, _) => Column::Unread,
+                    (TableColumn::Carried, _) if field.name().trim() != "time" => Column::Unread,
+                    (TableColumn::Id, DataType::Int64) => {
+                        Column::Integers(to(DataType::Int64)?.as_primitive::<Int64Type>().clone())
+                    }
+                    (_, DataType::Int64 | DataType::Float64) => {
+                        Column::Numbers(to(DataType::Float64)?.as_primitive::<Float64Type>().clone())
+                    }
+                    (_, DataType::Utf8 | DataType::Null) => Column::Texts(to(DataType::Utf8)?.as_string().clone()),
+                    (TableColumn::Carried, _) => {
+                        to(DataType::Utf8).map_or(Column::Unread, |texts| Column::Texts(texts.as_string().clone()))
+                    }
+                    _ => Column::Unread,
+                })
+            });
+        Ok(Self { columns: typed.collect::<Result<_>>()?, carried: Arc::new(carried) })
+    }
+
+    pub fn rows(&self) -> usize {
+        self.carried.num_rows()
+    }
+
+    pub fn cell(&self, at: usize, row: usize) -> Cell<'_> {
+        match &self.columns[at] {
+            Column::Numbers(numbers) if numbers.is_valid(row) => Cell::Number(numbers.value(row)),
+            Column::Integers(numbers) if numbers.is_valid(row) => Cell::Number(numbers.value(row) as f64),
+            Column::Texts(texts) if texts.is_valid(row) => match texts.value(row).trim() {
+                "" => Cell::Empty,
+                text => Cell::Text(text.into()),
+            },
+            _ => Cell::Empty,
+        }
+    }
+
+    pub fn id(&self, at: usize, row: usize) -> Option<Value> {
+        match &self.columns[at] {
+            Column::Integers(numbers) => numbers.is_valid(row).then(|| numbers.value(row).into()),
+            Column::Texts(texts) => texts.is_valid(row).then(|| texts.value(row).into()),
+            _ => None,
+        }
+    }
+}

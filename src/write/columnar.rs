@@ -1,0 +1,232 @@
+//! Tables of results as columns with types: Parquet, and Arrow's file and stream.
+//!
+//! ```text
+//!     rows of cells --[RowSink]--> Block, one per task --> RecordBatch --[Writer]--> bytes, some row groups at a time
+//! ```
+
+use super::csv::{Cell, Columns, Kind, RowSink};
+use crate::read::table::Carried;
+use crate::{Error, Reason, Result};
+use arrow_array::builder::{BooleanBuilder, Float64Builder, Int64Builder, StringBuilder};
+use arrow_array::{Array, ArrayRef, RecordBatch, new_null_array};
+use arrow_ipc::writer::{FileWriter, StreamWriter};
+use arrow_schema::{DataType, Field, Schema, SchemaRef};
+use arrow_select::concat::concat_batches;
+use arrow_select::interleave::interleave;
+use parquet::arrow::ArrowWriter;
+use parquet::basic::Compression;
+use parquet::errors::ParquetError;
+use parquet::file::properties::{EnabledStatistics, WriterProperties};
+use parquet::schema::types::ColumnPath;
+use std::sync::Arc;
+
+/// So many rows are written together, and to a row group of Parquet.
+const TOGETHER: usize = 1 << 13;
+const ROW_GROUP: usize = 1 << 17;
+
+/// What columns with types are written as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ColumnarFormat {
+    /// Parquet, compressed by Snappy.
+    Parquet,
+    /// Arrow's file, also called Feather.
+    Arrow,
+    /// Arrow's stream.
+    ArrowStream,
+}
+
+/// Rows of results in the making.
+#[derive(Debug)]
+pub struct ColumnBlock {
+    columns: Vec<Column>,
+    rows: usize,
+}
+
+#[derive(Debug)]
+enum Column {
+    Text(StringBuilder),
+    Number(Float64Builder),
+    Integer(Int64Builder),
+    Boolean(BooleanBuilder),
+    /// Cells of these columns: which column, and of each row which of its arrays and where; the first array is null.
+    Carried {
+        which: usize,
+        sources: Vec<Arc<RecordBatch>>,
+        at: Vec<(usize, usize)>,
+    },
+}
+
+impl ColumnBlock {
+    /// No row yet of these columns.
+    pub fn new(columns: &Columns) -> Self {
+        let column = |kind: &Kind| match *kind {
+            Kind::Text => Column::Text(StringBuilder::new()),
+            Kind::Number => Column::Number(Float64Builder::new()),
+            Kind::Integer => Column::Integer(Int64Builder::new()),
+            Kind::Boolean => Column::Boolean(BooleanBuilder::new()),
+            Kind::Carried(which) => Column::Carried { which, sources: Vec::new(), at: Vec::new() },
+        };
+        Self { columns: columns.kinds().iter().map(column).collect(), rows: 0 }
+    }
+
+    fn finish(self, schema: &SchemaRef) -> Result<RecordBatch> {
+        let array = |(column, field): (Column, &Arc<Field>)| -> Result<ArrayRef> {
+            Ok(match column {
+                Column::Text(mut texts) => Arc::new(texts.finish()),
+                Column::Number(mut numbers) => Arc::new(numbers.finish()),
+                Column::Integer(mut numbers) => Arc::new(numbers.finish()),
+                Column::Boolean(mut values) => Arc::new(values.finish()),
+                Column::Carried { which, sources, at } => {
+                    let null = new_null_array(field.data_type(), 1);
+                    let arrays = sources.iter().map(|source| source.column(which).as_ref());
+                    let arrays: Vec<&dyn Array> = std::iter::once(null.as_ref()).chain(arrays).collect();
+                    interleave(&arrays, &at).map_err(unwritable)?
+                }
+            })
+        };
+        let arrays = self.columns.into_iter().zip(schema.fields()).map(array).collect::<Result<_>>()?;
+        RecordBatch::try_new(Arc::clone(schema), arrays).map_err(unwritable)
+    }
+}
+
+impl RowSink for ColumnBlock {
+    fn row(&mut self, _: &Columns, cells: &[Cell]) {
+        self.rows += 1;
+        for (column, cell) in self.columns.iter_mut().zip(cells) {
+            match (column, cell) {
+                (Column::Text(texts), Cell::Text(text)) => texts.append_value(text),
+                (Column::Text(texts), Cell::Carried(carried, which)) => {
+                    let text = carried.text(*which);
+                    texts.append_option((!text.is_empty()).then(|| String::from_utf8_lossy(&text)));
+                }
+                (Column::Text(texts), _) => texts.append_null(),
+                (Column::Number(numbers), Cell::Number(number)) => numbers.append_value(*number),
+                (Column::Number(numbers), Cell::Carried(carried, which)) => {
+                    let text = carried.text(*which);
+                    numbers.append_option(std::str::from_utf8(&text).ok().and_then(|text| text.parse().ok()));
+                }
+                (Column::Number(numbers), _) => numbers.append_null(),
+                (Column::Integer(numbers), Cell::Integer(number)) => numbers.append_value(*number),
+                (Column::Integer(numbers), _) => numbers.append_null(),
+                (Column::Boolean(values), Cell::Boolean(value)) => values.append_value(*value),
+                (Column::Boolean(values), _) => values.append_null(),
+                (Column::Carried { sources, at, .. }, Cell::Carried(Carried::Columns(source, row), _)) => {
+                    if sources.last().is_none_or(|last| !Arc::ptr_eq(last, source)) {
+                        sources.push(Arc::clone(source));
+                    }
+                    at.push((sources.len(), *row));
+                }
+                (Column::Carried { at, .. }, _) => at.push((0, 0)),
+            }
+        }
+    }
+}
+
+/// Writes blocks of rows, in memory that the caller takes from time to time.
+pub struct ColumnWriter {
+    schema: SchemaRef,
+    /// What is not written yet.
+    waiting: Vec<RecordBatch>,
+    rows: usize,
+    writer: Writer,
+}
+
+enum Writer {
+    Parquet(Box<ArrowWriter<Vec<u8>>>),
+    Arrow(Box<FileWriter<Vec<u8>>>),
+    ArrowStream(Box<StreamWriter<Vec<u8>>>),
+}
+
+/// The refusal of a table that the format has no room for.
+fn unwritable(error: impl std::fmt::Display) -> Error {
+    Error::new(Reason::Unsupported(format!("the results cannot be written so: {error}"))).hint("write CSV or NDJSON")
+}
+
+impl ColumnWriter {
+    /// The beginning of a table with these columns.
+    ///
+    /// # Errors
+    /// Columns that are carried through and that the format has no type for.
+    pub fn new(columns: &Columns, format: ColumnarFormat) -> Result<Self> {
+        let field = |(name, kind): (&String, &Kind)| match *kind {
+            Kind::Text => Field::new(name, DataType::Utf8, true),
+            Kind::Number => Field::new(name, DataType::Float64, true),
+            Kind::Integer => Field::new(name, DataType::Int64, true),
+            Kind::Boolean => Field::new(name, DataType::Boolean, true),
+            Kind::Carried(which) => columns.carried_field(which).with_name(name).with_nullable(true),
+        };
+        let fields: Vec<Field> = columns.names().iter().zip(columns.kinds()).map(field).collect();
+        let schema = Arc::new(Schema::new(fields));
+        let writer = match format {
+            ColumnarFormat::Parquet => {
+                let mut properties = WriterProperties::builder()
+                    .set_compression(Compression::SNAPPY)
+                    .set_created_by(concat!("heelstrike ", env!("CARGO_PKG_VERSION")).to_owned())
+                    .set_max_row_group_row_count(Some(ROW_GROUP))
+                    .set_statistics_enabled(EnabledStatistics::Chunk)
+                    .set_dictionary_enabled(false);
+                for (name, _) in columns.names().iter().zip(columns.kinds()).filter(|(_, kind)| **kind == Kind::Text) {
+                    let path = ColumnPath::new(vec![name.clone()]);
+                    properties = properties.set_column_dictionary_enabled(path, true);
+                }
+                let writer = ArrowWriter::try_new(Vec::new(), Arc::clone(&schema), Some(properties.build()));
+                Writer::Parquet(Box::new(writer.map_err(unwritable)?))
+            }
+            ColumnarFormat::Arrow => {
+                Writer::Arrow(Box::new(FileWriter::try_new(Vec::new(), &schema).map_err(unwritable)?))
+            }
+            ColumnarFormat::ArrowStream => {
+                Writer::ArrowStream(Box::new(StreamWriter::try_new(Vec::new(), &schema).map_err(unwritable)?))
+            }
+        };
+        Ok(Self { schema, waiting: Vec::new(), rows: 0, writer })
+    }
+
+    /// Takes a block, and gives the bytes that are known now.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn write(&mut self, block: ColumnBlock) -> Result<Vec<u8>> {
+        self.rows += block.rows;
+        self.waiting.push(block.finish(&self.schema)?);
+        if self.rows < TOGETHER { Ok(Vec::new()) } else { self.flush() }
+    }
+
+    fn flush(&mut self) -> Result<Vec<u8>> {
+        let batch = concat_batches(&self.schema, &std::mem::take(&mut self.waiting)).map_err(unwritable)?;
+        let written = match &mut self.writer {
+            _ if self.rows == 0 => Ok(()),
+            Writer::Parquet(writer) => writer.write(&batch),
+            Writer::Arrow(writer) => writer.write(&batch).map_err(ParquetError::from),
+            Writer::ArrowStream(writer) => writer.write(&batch).map_err(ParquetError::from),
+        };
+        written.map_err(unwritable)?;
+        self.rows = 0;
+        Ok(self.taken())
+    }
+
+    /// The bytes that no one has taken.
+    fn taken(&mut self) -> Vec<u8> {
+        std::mem::take(match &mut self.writer {
+            Writer::Parquet(writer) => writer.inner_mut(),
+            Writer::Arrow(writer) => writer.get_mut(),
+            Writer::ArrowStream(writer) => writer.get_mut(),
+        })
+    }
+
+    /// Ends the table, and gives its last bytes.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn finish(mut self) -> Result<Vec<u8>> {
+        let mut bytes = self.flush()?;
+        let finished = match &mut self.writer {
+            Writer::Parquet(writer) => writer.finish().map(drop),
+            Writer::Arrow(writer) => writer.finish().map_err(ParquetError::from),
+            Writer::ArrowStream(writer) => writer.finish().map_err(ParquetError::from),
+        };
+        finished.map_err(unwritable)?;
+        bytes.append(&mut self.taken());
+        Ok(bytes)
+    }
+}

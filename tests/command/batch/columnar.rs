@@ -1,0 +1,268 @@
+//! Tables whose columns have types: the same answers as those to text, and what a column may hold.
+
+use super::table::{WALK_QUESTIONS, walk};
+use super::*;
+use arrow_array::types::Int8Type;
+use arrow_array::{
+    Array, ArrayRef, BooleanArray, DictionaryArray, Float32Array, Float64Array, Int64Array, NullArray, RecordBatch,
+    StringArray, TimestampSecondArray,
+};
+use arrow_cast::display::array_value_to_string;
+use arrow_ipc::reader::{FileReader, StreamReader};
+use arrow_ipc::writer::{FileWriter, StreamWriter};
+use arrow_schema::DataType;
+use parquet::arrow::ArrowWriter;
+use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
+use std::fs::File;
+use std::sync::Arc;
+
+const ENDINGS: [&str; 3] = ["parquet", "arrow", "arrows"];
+
+/// The file of that ending with these columns, in batches of 40 rows.
+fn written(name: &str, columns: &[(&str, ArrayRef)]) -> String {
+    let nullable = columns.iter().map(|(name, array)| (*name, Arc::clone(array), true));
+    let whole = RecordBatch::try_from_iter_with_nullable(nullable).expect("columns of one length");
+    let schema = whole.schema();
+    let batches = (0..whole.num_rows()).step_by(40).map(|row| whole.slice(row, 40.min(whole.num_rows() - row)));
+    let mut bytes = Vec::new();
+    match name.rsplit_once('.').expect("an ending").1 {
+        "parquet" => {
+            let mut writer = ArrowWriter::try_new(&mut bytes, schema, None).expect("a writer");
+            batches.for_each(|batch| writer.write(&batch).expect("memory"));
+            writer.close().expect("memory");
+        }
+        "arrow" => {
+            let mut writer = FileWriter::try_new(&mut bytes, &schema).expect("a writer");
+            batches.for_each(|batch| writer.write(&batch).expect("memory"));
+            writer.finish().expect("memory");
+        }
+        _ => {
+            let mut writer = StreamWriter::try_new(&mut bytes, &schema).expect("a writer");
+            batches.for_each(|batch| writer.write(&batch).expect("memory"));
+            writer.finish().expect("memory");
+        }
+    }
+    file(name, bytes)
+}
+
+fn batches(path: &str) -> Vec<RecordBatch> {
+    let file = File::open(path).expect("a file");
+    match path.rsplit_once('.').expect("an ending").1 {
+        "parquet" => {
+            let reader = ParquetRecordBatchReaderBuilder::try_new(file).expect("Parquet").build().expect("Parquet");
+            reader.map(|batch| batch.expect("a batch")).collect()
+        }
+        "arrow" => FileReader::try_new(file, None).expect("Arrow").map(|batch| batch.expect("a batch")).collect(),
+        _ => StreamReader::try_new(file, None).expect("Arrow").map(|batch| batch.expect("a batch")).collect(),
+    }
+}
+
+/// The rows of a file as those of the same CSV.
+fn as_csv(path: &str) -> String {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for (at, batch) in batches(path).iter().enumerate() {
+        if at == 0 {
+            let schema = batch.schema();
+            writer.write_record(schema.fields().iter().map(|field| field.name())).expect("memory");
+        }
+        for row in 0..batch.num_rows() {
+            let cell = |column: &ArrayRef| match column.as_any().downcast_ref::<Float64Array>() {
+                Some(numbers) if numbers.is_valid(row) => format!("{:?}", numbers.value(row)),
+                _ => array_value_to_string(column, row).expect("text"),
+            };
+            writer.write_record(batch.columns().iter().map(cell)).expect("memory");
+        }
+    }
+    String::from_utf8(writer.into_inner().expect("memory")).expect("text")
+}
+
+/// The walk's columns: text, or else numbers.
+fn walk_columns() -> Vec<(String, ArrayRef)> {
+    let table = walk().0;
+    let mut reader = csv::Reader::from_reader(table.as_bytes());
+    let names = reader.headers().expect("a header").clone();
+    let rows: Vec<csv::StringRecord> = reader.records().map(|row| row.expect("a row")).collect();
+    let column = |(at, name): (usize, &str)| {
+        let cells = rows.iter().map(|row| row[at].to_owned());
+        let numbers: Result<Vec<f64>, _> = cells.clone().map(|cell| cell.parse()).collect();
+        let texts = || Arc::new(StringArray::from_iter_values(cells)) as ArrayRef;
+        (name.to_owned(), numbers.map_or_else(|_| texts(), |numbers| Arc::new(Float64Array::from(numbers))))
+    };
+    names.iter().enumerate().map(column).collect()
+}
+
+#[test]
+fn columns_are_answered_as_flat_lines_are() {
+    // A flat line has the number of its row, too.
+    let lines = file("walk.ndjson", walk().1.trim_start());
+    let columns = walk_columns();
+    let columns: Vec<(&str, ArrayRef)> = columns.iter().map(|(name, array)| (&**name, Arc::clone(array))).collect();
+    for ending in ENDINGS {
+        let input = written(&format!("walk.{ending}"), &columns);
+        for question in WALK_QUESTIONS {
+            let run = |arguments: &[&str]| heelstrike(&[&["batch", RAMONE, "--friction", "0.6"], arguments].concat());
+            let expected = run(&[&[&*lines], question].concat()).well();
+            let answers = run(&[&[&*input], question].concat()).well();
+            assert!(answers.stdout == expected.stdout && answers.stderr == expected.stderr, "{ending} {question:?}");
+            if question.contains(&"csv") {
+                let output = place(&format!("answers.{ending}"));
+                let more = question.iter().filter(|word| !["--output-format", "csv"].contains(word)).copied();
+                let more: Vec<&str> = more.chain(["-o", &output]).collect();
+                for (input, threads) in [(&lines, "1"), (&input, "1"), (&input, "4")] {
+                    assert_eq!(run(&[&[&**input, "--threads", threads], &more[..]].concat()).stdout, "");
+                    assert!(as_csv(&output) == expected.stdout, "{input} {more:?}");
+                }
+                assert!(std::fs::metadata(output + ".run").is_err());
+            }
+        }
+    }
+    let stream = std::fs::read(place("walk.arrows")).expect("the stream");
+    let always = ["batch", RAMONE, "-", "--friction", "0.6", "--input-format", "arrow"];
+    let expected = heelstrike(&["batch", RAMONE, &lines, "--friction", "0.6"]).well();
+    assert!(heelstrike_reads(&always, stream).well().stdout == expected.stdout);
+}
+
+fn texts(texts: &[Option<&str>]) -> ArrayRef {
+    Arc::new(StringArray::from(texts.to_vec()))
+}
+
+/// A disc that strikes the ground, as columns of many types; rows 3 to 7 are broken.
+fn strikes() -> Vec<(&'static str, ArrayRef)> {
+    let dictionary = |texts: [Option<&str>; 8]| Arc::new(texts.into_iter().collect::<DictionaryArray<Int8Type>>());
+    let z = [Some(0.5), Some(0.5), None, Some(f64::NAN), Some(0.5), Some(0.5), Some(0.5), Some(0.5)];
+    vec![
+        ("id", Arc::new(Int64Array::from(vec![Some(-1), Some(2), Some(3), Some(4), Some(5), Some(6), None, Some(8)]))),
+        ("q_base_z", Arc::new(Float64Array::from(z.to_vec()))),
+        ("v_base_x", Arc::new(Float32Array::from(vec![0.5; 8]))),
+        ("v_base_z", Arc::new(Int64Array::from(vec![-1; 8]))),
+        (
+            "friction",
+            dictionary([
+                Some("0.8"),
+                Some("infinite"),
+                None,
+                None,
+                Some("rough"),
+                Some("-1"),
+                Some("inf"),
+                Some("1e0"),
+            ]),
+        ),
+        ("restitution", Arc::new(NullArray::new(8))),
+        ("foot", dictionary([Some("l"), Some("r"), None, Some("l"), Some("r"), Some("l"), Some("l"), None])),
+        ("when", Arc::new(TimestampSecondArray::from((0..8).collect::<Vec<i64>>()))),
+        (
+            "count",
+            Arc::new(arrow_array::UInt16Array::from((0..8).map(|at| (at % 3 > 0).then_some(at)).collect::<Vec<_>>())),
+        ),
+        ("good", Arc::new(BooleanArray::from(vec![Some(true), None, Some(false), None, None, None, None, Some(true)]))),
+        ("load", Arc::new(Float32Array::from(vec![0.1; 8]))),
+        ("note", texts(&[Some("a, \"b\""), Some(""), None, None, None, None, None, Some("é")])),
+    ]
+}
+
+#[test]
+fn columns_of_any_type_are_carried_and_cells_refused() {
+    for ending in ENDINGS {
+        let input = written(&format!("strikes.{ending}"), &strikes());
+        let output = place(&format!("answers.{ending}"));
+        let brief = ["--brief", "--refused", "ok"];
+        let run = batch(&[&[&*input, "-o", &*output], &brief[..]].concat(), "").well();
+        let stderr = run.stderr.replace(&input, "strikes");
+        insta::allow_duplicates! {
+            insta::assert_snapshot!("columns_of_any_type", format!("{}\n{stderr}", as_csv(&output)));
+        }
+        let table = batch(&[&[&*input, "--output-format", "csv"], &brief[..]].concat(), "").well().stdout;
+        assert_eq!(table, as_csv(&output));
+        let found = &batches(&output)[0];
+        for (name, array) in strikes().iter().skip(6).chain([&strikes()[0]]) {
+            assert_eq!(
+                found.column_by_name(name).expect("a carried column").as_ref(),
+                array.as_ref(),
+                "{name} {ending}"
+            );
+        }
+        let lines = batch(&[&*input, "--refused", "ok"], "").well().lines();
+        assert_eq!(lines.iter().map(|line| &line["line"]).collect::<Vec<_>>(), [1, 2, 3, 4, 5, 6, 7, 8]);
+        let carried = json!({
+            "foot": "l", "when": "1970-01-01T00:00:00", "count": null, "good": true, "load": 0.1, "note": "a, \"b\""
+        });
+        assert_eq!((&lines[0]["id"], &lines[0]["carried"]), (&json!(-1), &carried));
+    }
+}
+
+#[test]
+fn columns_that_do_not_fit_are_refused_as_a_whole() {
+    let numbers: ArrayRef = Arc::new(Float64Array::from(vec![0.5, 0.5]));
+    let words = texts(&[Some("0.5"), None]);
+    let truths: ArrayRef = Arc::new(BooleanArray::from(vec![true, false]));
+    let z = ("q_base_z", Arc::clone(&numbers));
+    let mut refusals = String::new();
+    for (name, columns) in [
+        ("text.parquet", vec![("q_base_z", Arc::clone(&words)), ("v_base_z", Arc::clone(&numbers))]),
+        ("truth.arrow", vec![z.clone(), ("v_base_z", Arc::clone(&truths))]),
+        ("stance.arrow", vec![("v_base_z", Arc::clone(&numbers)), ("stance", Arc::clone(&numbers))]),
+        ("id.parquet", vec![("id", truths), z.clone(), ("v_base_z", Arc::clone(&numbers))]),
+        ("missing.arrows", vec![z.clone()]),
+        ("unknown.parquet", vec![z.clone(), ("v_base_z", Arc::clone(&numbers)), ("q_kne", numbers)]),
+        (
+            "empty.parquet",
+            vec![
+                ("q_base_z", Arc::new(Float64Array::new_null(0)) as ArrayRef),
+                ("v_base_z", Arc::new(Float64Array::new_null(0))),
+            ],
+        ),
+    ] {
+        let input = written(name, &columns);
+        let stderr = batch(&[&input, "--friction", "1"], "").refusal(1);
+        refusals += &stderr.replace(&input, name);
+    }
+    for (name, bytes) in [("none.parquet", &b"q_base_z\n"[..]), ("none.arrow", b"ARROW1"), ("none.arrows", b"")] {
+        let input = file(name, bytes);
+        let stderr = batch(&[&input], "").refusal(1);
+        refusals += &stderr.replace(&input, name);
+    }
+    insta::assert_snapshot!("columns_that_do_not_fit", refusals);
+    // An engine may have an empty part, whose answers have all columns.
+    let output = place("empty-answers.parquet");
+    batch(&[&place("empty.parquet"), "--refused", "ok", "-o", &output], "").well();
+    let read = ParquetRecordBatchReaderBuilder::try_new(File::open(output).expect("a file")).expect("Parquet");
+    assert_eq!(read.schema().field(0).data_type(), &DataType::Utf8);
+    for arguments in [
+        &["-", "--input-format", "parquet"][..],
+        &["x.arrow", "-o", "y", "--resume"],
+        &["x.csv", "--csv-safe", "-o", "x.parquet"],
+    ] {
+        batch(arguments, "").refusal(2);
+    }
+}
+
+#[test]
+fn damaged_parquet_is_refused_without_a_panic() {
+    let mut state = 1_u64;
+    let ending = "parquet";
+    let whole = std::fs::read(written(&format!("whole.{ending}"), &strikes())).expect("a file");
+    for at in 0..60 {
+        let mut bytes = whole.clone();
+        for _ in 0..3 {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let place = (state >> 33) as usize % bytes.len();
+            bytes[place] ^= (state >> 20) as u8;
+        }
+        bytes.truncate(if at % 4 == 0 { bytes.len() * at / 60 } else { bytes.len() });
+        let run = batch(&[&file(&format!("damaged.{ending}"), bytes), "--friction", "1"], "");
+        assert!((0..=2).contains(&run.status) && !run.stderr.contains("panicked"), "{at} {ending} {}", run.stderr);
+    }
+}
+
+#[test]
+fn samples_of_a_study_are_columns_too() {
+    let study = ["sweep", WALKER, "examples/paper/figure_7.json"];
+    let table = heelstrike(&[&study[..], &["--format", "csv"]].concat()).well().stdout;
+    for ending in ENDINGS {
+        let output = place(&format!("samples.{ending}"));
+        heelstrike(&[&study[..], &["-o", &output]].concat()).well();
+        assert_eq!(as_csv(&output), table);
+        assert_eq!(batches(&output)[0].column_by_name("alpha").expect("the parameter").data_type(), &DataType::Float64);
+    }
+}
