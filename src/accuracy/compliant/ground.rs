@@ -91,6 +91,6 @@ impl Suspension {
 
 /// Geometric mean of the contacts' G_nn \[1/kg\], from their logarithms.
 pub(super) fn mean_mobility(delassus: impl Fn(usize, usize) -> f64, contacts: usize) -> f64 {
-    let logarithms = (0..contacts).map(|contact| delassus(2 * contact + 1, 2 * contact + 1).ln());
-    (logarithms.sum::<f64>() / contacts.max(1) as f64).exp()
+    let logarithms = (0..contacts).map(|contact| libm::log(delassus(2 * contact + 1, 2 * contact + 1)));
+    libm::exp(logarithms.sum::<f64>() / contacts.max(1) as f64)
 }
