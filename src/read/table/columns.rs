@@ -16,6 +16,7 @@ use arrow_schema::{ArrowError, DataType, SchemaRef};
 use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 use std::fs::File;
 use std::io::{BufReader, Read, Seek};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
 /// The most rows of a part: they are answered together.
@@ -68,7 +69,7 @@ impl Parts {
         if magic != b"ARROW1" {
             return Self::arrow_stream(BufReader::new(file));
         }
-        let reader = FileReader::try_new_buffered(file, None).map_err(unreadable)?;
+        let reader = guarded(|| FileReader::try_new_buffered(file, None))?.map_err(unreadable)?;
         let schema = reader.schema();
         Ok(Self::new(Box::new(reader), schema))
     }
@@ -78,7 +79,7 @@ impl Parts {
     /// # Errors
     /// As above.
     pub fn arrow_stream(input: impl Read + Send + 'static) -> Result<Self> {
-        let reader = StreamReader::try_new(input, None).map_err(unreadable)?;
+        let reader = guarded(|| StreamReader::try_new(input, None))?.map_err(unreadable)?;
         let schema = reader.schema();
         Ok(Self::new(Box::new(reader), schema))
     }
@@ -123,7 +124,7 @@ impl Parts {
     /// Those of reading.
     pub fn is_empty(&mut self) -> Result<bool> {
         while self.ready.is_none() {
-            let Some(batch) = self.batches.next() else { return Ok(true) };
+            let Some(batch) = guarded(|| self.batches.next())? else { return Ok(true) };
             let batch = batch.map_err(unreadable)?;
             if batch.num_rows() > 0 {
                 self.ready = Some((Arc::new(Typed::new(&batch, &self.columns)?), 0));
@@ -149,6 +150,12 @@ impl Parts {
         }
         Ok(Some(Part { columns, start, count, first }))
     }
+}
+
+/// What a reader gives; arrow's own panic on some damaged files.
+fn guarded<R>(read: impl FnOnce() -> R) -> Result<R> {
+    // Nothing is asked of a reader again that has failed.
+    catch_unwind(AssertUnwindSafe(read)).map_err(|_| unreadable("the file is damaged"))
 }
 
 impl Part {
