@@ -359,7 +359,7 @@ mod tests {
                         let error = (exact - Interval::from_f64(own.value)).to_f64().abs();
                         let is_beyond = error > own.error();
                         assert!(!is_beyond, "{:?}: {error:e} > {:e}", leaf.modes, own.error());
-                        // Contacts at rest feel nothing of each other.
+                        // What an elimination leaves without an error is exactly zero.
                         assert!(own.error != 0.0 || own.value == 0.0 || leaf.modes == [Mode::Separate; 3]);
                     }
                 }

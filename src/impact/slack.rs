@@ -101,9 +101,8 @@ impl Scale {
     pub fn delassus(&self, problem: &ContactProblem, errors: Errors<'_>) -> impl Fn(usize, usize) -> Rounded {
         let relative = if self.is_far_from_underflow() { errors.delassus } else { f64::INFINITY };
         move |row, column| {
-            let (value, size) = (problem.delassus(row, column), self.mobility[row] * self.mobility[column]);
-            // A product with zero would make an error of what is infinite.
-            Rounded { value, error: if relative == 0.0 { 0.0 } else { relative * size } }
+            let error = relative * (self.mobility[row] * self.mobility[column]);
+            Rounded { value: problem.delassus(row, column), error }
         }
     }
 
@@ -114,8 +113,9 @@ impl Scale {
             let own = errors.velocity.map_or(0.0, |errors| errors[contact][row % 2]);
             let error = match problem.restitution()[contact] {
                 bouncing if row % 2 == 1 && bouncing != 0.0 => {
-                    // Of the bounce, its rounding and that of the sum.
-                    own * (1.0 + bouncing) + f64::EPSILON * (problem.bounce(contact).abs() + value.abs())
+                    // Of the bounce, its rounding and that of the sum; it may underflow.
+                    let rounding = f64::EPSILON * (problem.bounce(contact).abs() + value.abs()) + f64::MIN_POSITIVE;
+                    own * (1.0 + bouncing) + if problem.velocity_before()[contact][1] < 0.0 { rounding } else { 0.0 }
                 }
                 _ => own,
             };

@@ -46,7 +46,10 @@ impl Condition {
     pub fn scale(&self, mobility: [f64; 2]) -> f64 {
         let own = mobility[self.inequality.row()];
         match self.function {
-            Function::ConeMinus(mu) | Function::ConePlus(mu) => 1.0 / libm::hypot(mu / mobility[1], 1.0 / mobility[0]),
+            Function::ConeMinus(mu) | Function::ConePlus(mu) => {
+                let size = libm::hypot(mu / mobility[1], 1.0 / mobility[0]);
+                if size.is_finite() { 1.0 / size } else { mobility[1] / mu }
+            }
             _ if self.inequality.is_strict() => 1.0 / own,
             _ => own,
         }

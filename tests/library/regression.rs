@@ -133,6 +133,16 @@ fn a_sign_that_rounding_hides_is_read_exactly() {
     assert_eq!(modes(&rod(0.8_f64.next_down())), [[Mode::SlidePlus]]);
 }
 
+#[test]
+fn friction_at_the_end_of_f64_has_its_signs_and_margins() {
+    // The pivot of a slide overflows, which left no impulse and with it an outcome.
+    let found = solve(&[1., 3., 3., 9.], [[-2., 1.]], [mu(1e308)], [0.0]);
+    assert_eq!((found.verdict, found.proven), (Verdict::NoImpact, true));
+    // The cone is all of the half-plane above: the margin is that of L_n sqrt(G_nn) = 0.1 / sqrt(0.5).
+    let found = solve(&[1., 0., 0., 0.5], [[1., -0.1]], [mu(1.7e308)], [0.0]);
+    assert!(found.outcomes[0].margin.is_some_and(|margin| near(margin, 0.1 / 0.5_f64.sqrt())), "{found:?}");
+}
+
 // Feet at rest.
 
 #[test]
