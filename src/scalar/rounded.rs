@@ -4,9 +4,9 @@ use super::{Ordered, Real, Sign};
 
 /// A number that lies within `error` of `value`: a [`Ball`](super::Ball) that checks nothing on its way.
 ///
-/// Errors are rounded to nearest, and [`SLACK`] covers what they lose themselves. A result beyond f64 has an error that is
-/// infinite or NaN, which leaves the sign undecided. A known number times an exact zero is one. Source: Higham 2002,
-/// chapter 3.
+/// Errors are rounded to nearest, and one part in a million covers what they lose themselves. A result beyond f64 has an
+/// error that is infinite or NaN, which leaves the sign undecided. A known number times an exact zero is one. Source:
+/// Higham 2002, chapter 3.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Rounded {
     pub value: f64,
