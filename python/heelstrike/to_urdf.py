@@ -105,9 +105,13 @@ def convert(path: str) -> str:
     return ET.tostring(robot, encoding="unicode") + "\n"
 
 
-if __name__ == "__main__":
+def _main() -> None:
     if len(sys.argv) != 3:
         raise SystemExit("usage: python -m heelstrike.to_urdf MODEL.sdf|MODEL.xml ROBOT.urdf")
     text = convert(sys.argv[1])
     with open(sys.argv[2], "w", encoding="utf-8") as file:
         file.write(text)
+
+
+if __name__ == "__main__":
+    _main()
