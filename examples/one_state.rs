@@ -1,4 +1,4 @@
-//! Every outcome of one state, with the library: `cargo run --release --example one_state`.
+//! Every outcome of one state, with the library: `cargo run --example one_state`.
 
 use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::state::{Defaults, State};

@@ -1,6 +1,6 @@
 //! A loop over a pose: how the outcomes of a touchdown change with the angle between the legs.
 //!
-//! `cargo run --release --example sweep_pose`
+//! `cargo run --example sweep_pose`
 
 use heelstrike::impact::Friction;
 use heelstrike::pipeline::{Options, Pipeline};

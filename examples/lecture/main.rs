@@ -1,5 +1,5 @@
 //! The lecture's biped in sustained contact, and Painleve's rod over angle and friction, checked and drawn:
-//! `cargo run --release --example lecture [DIRECTORY]`.
+//! `cargo run --example lecture [DIRECTORY]`.
 
 mod biped;
 mod rod;

@@ -1,5 +1,5 @@
 //! Every figure and table of the paper that shows collisions, drawn again and compared with what the paper says of it:
-//! `cargo run --release --example paper [DIRECTORY]`.
+//! `cargo run --example paper [DIRECTORY]`.
 //!
 //! ```text
 //!     figures: study or state, robot, claims --[exhibit]--> regions or outcomes --[along, map, cases]--> findings, printed

@@ -30,21 +30,15 @@ pub(super) struct Reference<'a> {
     columns: Vec<Vec<UnitMotion>>,
 }
 
-/// A joint's motion for a unit rate of its column, and all that it moves.
+/// A joint's motion for a unit rate of its column, and the momentum of all that it moves; both at the root's origin.
 struct UnitMotion {
     body: usize,
-    axis: MotionAxis,
-    /// The joint's origin from the root's \[m\].
-    origin: Vector<Interval>,
-    /// All bodies beyond the joint, about its origin.
-    moved: Inertia<Interval>,
+    angular_velocity: Interval,
+    /// Of the point at the root's origin.
+    velocity: Vector<Interval>,
+    angular_momentum: Interval,
+    momentum: Vector<Interval>,
     rotor: Interval,
-}
-
-#[derive(Clone, Copy)]
-enum MotionAxis {
-    Revolute(Interval),
-    Prismatic(Vector<Interval>),
 }
 
 impl<'a> Reference<'a> {
@@ -130,16 +124,13 @@ impl UnitMotion {
     /// The same to the bits of the scope: those of the whole chain are not needed for one entry.
     fn rounded(&self) -> Self {
         let round = |number: Interval| number * Interval::one();
-        let Inertia { mass, first, second } = self.moved;
         Self {
-            axis: match self.axis {
-                MotionAxis::Revolute(rate) => MotionAxis::Revolute(round(rate)),
-                MotionAxis::Prismatic(rate) => MotionAxis::Prismatic(rate.map(round)),
-            },
-            origin: self.origin.map(round),
-            moved: Inertia { mass: round(mass), first: first.map(round), second: round(second) },
+            body: self.body,
+            angular_velocity: round(self.angular_velocity),
+            velocity: self.velocity.map(round),
+            angular_momentum: round(self.angular_momentum),
+            momentum: self.momentum.map(round),
             rotor: round(self.rotor),
-            ..*self
         }
     }
 
@@ -147,15 +138,7 @@ impl UnitMotion {
     ///
     /// Not by a walk to the root as [`mass_matrix`](crate::dynamics::mass_matrix) does it, but by the places of both.
     fn inertia(&self, below: &Self) -> Interval {
-        let Inertia { mass, first, second } = self.moved;
-        let (linear, angular) = match self.axis {
-            MotionAxis::Revolute(rate) => (first.perpendicular() * rate, rate * second),
-            MotionAxis::Prismatic(rate) => (rate * mass, first.perpendicular().dot(rate)),
-        };
-        let entry = match below.axis {
-            MotionAxis::Revolute(rate) => rate * (angular + (self.origin - below.origin).perpendicular().dot(linear)),
-            MotionAxis::Prismatic(rate) => rate.dot(linear),
-        };
+        let entry = self.angular_momentum * below.angular_velocity + self.momentum.dot(below.velocity);
         if std::ptr::eq(self, below) { entry + self.rotor } else { entry }
     }
 }
@@ -176,26 +159,31 @@ fn columns(computation: &Computation<Interval>) -> Vec<Vec<UnitMotion>> {
     let mut columns: Vec<Vec<UnitMotion>> = (0..plan.columns()).map(|_| Vec::new()).collect();
     for (index, body) in plan.bodies.iter().enumerate() {
         let Some(column) = body.column else { continue };
-        let mut add = |column: usize, axis| {
+        let (origin, Inertia { mass, first, second }) = (origins[index], composite[index]);
+        let mut add = |column: usize, angular_velocity, velocity, angular_momentum, momentum: Vector<Interval>| {
             columns[column].push(UnitMotion {
                 body: index,
-                axis,
-                origin: origins[index],
-                moved: composite[index],
+                angular_velocity,
+                velocity,
+                angular_momentum: angular_momentum + origin.perpendicular().dot(momentum),
+                momentum,
                 rotor: body.rotor,
             });
         };
+        let mut slide = |column, rate: Vector<Interval>| {
+            add(column, Interval::zero(), rate, first.perpendicular().dot(rate), rate * mass);
+        };
         match body.motion {
-            JointMotion::Root => {
-                for (axis, direction) in Vector::axes().into_iter().enumerate() {
-                    add(axis, MotionAxis::Prismatic(direction));
-                }
-                add(column, MotionAxis::Revolute(Interval::one()));
-            }
-            JointMotion::Revolute { rate, .. } => add(column, MotionAxis::Revolute(rate)),
-            JointMotion::Prismatic { .. } => add(column, MotionAxis::Prismatic(workspace.direction[index])),
-            JointMotion::Fixed => {}
+            JointMotion::Root => Vector::axes().into_iter().enumerate().for_each(|(axis, rate)| slide(axis, rate)),
+            JointMotion::Prismatic { .. } => slide(column, workspace.direction[index]),
+            JointMotion::Revolute { .. } | JointMotion::Fixed => {}
         }
+        let rate = match body.motion {
+            JointMotion::Root => Interval::one(),
+            JointMotion::Revolute { rate, .. } => rate,
+            JointMotion::Prismatic { .. } | JointMotion::Fixed => continue,
+        };
+        add(column, rate, -(origin.perpendicular() * rate), rate * second, first.perpendicular() * rate);
     }
     columns
 }
