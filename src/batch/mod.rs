@@ -251,7 +251,9 @@ impl Answerer<'_> {
         if let Some(columns) = columns {
             columns.append_result(&report, around.carried, block.rows())?;
         } else {
-            let fields = header.zip(around.carried).into_iter().flat_map(|(header, carried)| carried.by_name(header));
+            let fields = header.zip(around.carried).into_iter().flat_map(|(header, carried)| {
+                carried.by_name(header).filter(|(name, _)| !detail.brief || header.is_foreign(name))
+            });
             let fields: Vec<_> = fields.map(|(name, value)| (name.into(), value)).collect();
             report.carried = (!fields.is_empty()).then_some(CarriedFields(fields));
             report.append_json(detail, &mut block.out);

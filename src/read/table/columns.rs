@@ -106,8 +106,13 @@ impl Parts {
                 (_, DataType::Float64 | DataType::Int64) => continue,
                 _ => "numbers",
             };
-            let (name, found) = (field.name(), field.data_type());
-            let reason = Reason::Inconsistent(format!("\"{name}\" holds {found} in place of {expected}"));
+            let found = match kind(field.data_type()) {
+                DataType::Utf8 => "text".to_owned(),
+                DataType::Int64 | DataType::Float64 => "numbers".to_owned(),
+                DataType::Boolean => "true and false".to_owned(),
+                other => format!("values of the type {other}"),
+            };
+            let reason = Reason::Inconsistent(format!("\"{}\" must hold {expected}, not {found}", field.name()));
             return Err(Error::new(reason).at(format!("column {}", at + 1)).hint("convert the column"));
         }
         let carried: Vec<usize> = header.places(TableColumn::Carried).collect();

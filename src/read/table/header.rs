@@ -46,6 +46,7 @@ const COLUMN_LIMIT: usize = 100_000;
 pub struct Header {
     pub(crate) names: Vec<String>,
     pub(crate) columns: Vec<TableColumn>,
+    foreign: Vec<String>,
     missing: Vec<String>,
     pub(crate) form: Form,
     pub(crate) time: Option<usize>,
@@ -129,6 +130,7 @@ impl Header {
         let mut header = Self {
             names,
             columns,
+            foreign: foreign.to_owned(),
             missing: Vec::new(),
             form: record.form,
             time,
@@ -217,6 +219,11 @@ impl Header {
     /// Names of the columns that are copied to the results.
     pub fn carried(&self) -> impl Iterator<Item = &str> {
         self.places(TableColumn::Carried).map(|at| self.names[at].as_str())
+    }
+
+    /// Whether a column is copied to all results because it was named as foreign.
+    pub fn is_foreign(&self, name: &str) -> bool {
+        self.foreign.iter().any(|foreign| foreign == name)
     }
 
     /// The columns of a kind.

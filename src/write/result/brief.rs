@@ -3,7 +3,7 @@
 use super::Report;
 #[cfg(feature = "schema")]
 use super::id::Id;
-use super::recorded::Touchdown;
+use super::recorded::{CarriedFields, Touchdown};
 use super::refused::ErrorObject;
 use crate::Mode;
 use crate::impact::{Family, Next, OpenCombinations, Outcome, Verdict};
@@ -72,6 +72,10 @@ pub struct Brief<'a> {
     /// Lists of modes with many velocities, all of which are outcomes; only if there are some.
     #[serde(default, skip_serializing_if = "<[Family]>::is_empty")]
     pub families: Cow<'a, [Family]>,
+    /// Fields of the table that are named as foreign.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<std::collections::BTreeMap<String, Value>>"))]
+    pub carried: Option<CarriedFields<'a>>,
     /// Why there are no outcomes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<ErrorObject>,
@@ -97,6 +101,7 @@ impl Report<'_> {
             outcomes: self.outcomes.is_some().then(|| in_brief.collect()),
             open: self.open,
             families: self.families.clone(),
+            carried: self.carried.clone(),
             error: self.error.clone(),
         }
     }

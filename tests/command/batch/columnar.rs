@@ -192,6 +192,33 @@ fn columns_of_any_type_are_carried_and_cells_refused() {
 }
 
 #[test]
+fn many_rows_are_read_together_and_none_is_lost() {
+    const ROWS: i64 = 1300;
+    let rough = |row: i64| (row % 3 > 0).then_some("0.5");
+    let columns: [(&str, ArrayRef); 5] = [
+        ("id", Arc::new(Int64Array::from_iter_values(0..ROWS))),
+        ("q_base_z", Arc::new(Float64Array::from(vec![0.5; ROWS as usize]))),
+        ("v_base_x", Arc::new(Float64Array::from_iter_values((0..ROWS).map(|row| row as f64 / 1000.0)))),
+        ("v_base_z", Arc::new(Float64Array::from(vec![-1.0; ROWS as usize]))),
+        ("friction", texts(&(0..ROWS).map(rough).collect::<Vec<_>>())),
+    ];
+    let line = |row: i64| {
+        let v = row as f64 / 1000.0;
+        json!({"id": row, "q_base_z": 0.5, "v_base_x": v, "v_base_z": -1.0, "friction": rough(row)}).to_string() + "\n"
+    };
+    let lines = file("many.ndjson", (0..ROWS).map(line).collect::<String>());
+    let input = written("many.parquet", &columns);
+    let run = |input: &str| batch(&[input, "--friction", "0.1", "--threads", "2"], "").well().stdout;
+    let (expected, found) = (run(&lines), run(&input));
+    assert!(expected.lines().count() == ROWS as usize && found == expected);
+    let output = place("many.arrow");
+    batch(&[&input, "--friction", "0.1", "-o", &output], "").well();
+    let errors: usize =
+        batches(&output).iter().map(|rows| rows.column_by_name("error").expect("errors").null_count()).sum();
+    assert_eq!(errors, ROWS as usize, "what is empty is null");
+}
+
+#[test]
 fn columns_that_do_not_fit_are_refused_as_a_whole() {
     let numbers: ArrayRef = Arc::new(Float64Array::from(vec![0.5, 0.5]));
     let words = texts(&[Some("0.5"), None]);

@@ -189,6 +189,13 @@ fn a_column_that_resembles_a_missing_one_is_refused() {
     ] {
         batch(&[&arguments, more].concat(), table(&format!("{given},{columns}"))).text();
     }
+    // In brief what was named is copied alone.
+    for (brief, carried) in [(&[][..], json!({"Time": "0.5", "phase": "0.5"})), (&["--brief"], json!({"Time": "0.5"}))]
+    {
+        let asked = [&arguments[..], &["--foreign", "Time"], brief].concat();
+        let line = &batch(&asked, table(&format!("{given},v_base_z,Time,phase"))).lines()[0];
+        assert_eq!(line["carried"], carried, "{line}");
+    }
     // An acceleration and a force are not the velocity that the table lacks.
     batch(&arguments, table(&format!("{given},a_base_z,tau_base_z"))).well();
     let absent = batch(&[&arguments[..], &["--foreign", "nobody"]].concat(), table(given)).refusal(1);
