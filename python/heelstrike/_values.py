@@ -10,7 +10,7 @@ import os
 from collections.abc import Mapping
 from typing import Any
 
-from ._core import Robot
+from ._core import Answers, Robot
 
 
 class Result(dict[str, Any]):
@@ -36,6 +36,11 @@ def _text(path: str | os.PathLike[str]) -> str:
 def robot(text: str, path: os.PathLike[str], options: dict[str, Any] | None) -> Robot:
     """A robot of another process."""
     return Robot._again(text, path, options)
+
+
+def answers(data: bytes) -> Answers:
+    """Answers of another process."""
+    return Answers._again(data)
 
 
 def _plain(value: Any) -> Any:
@@ -77,10 +82,9 @@ def problem(delassus: Any, velocity: Any, friction: Any, restitution: Any) -> st
 
 
 def to_csv(table: Any) -> bytes:
-    """A table as CSV: a path, a data frame, an Arrow table, or columns by name."""
+    """A table as CSV: a path of text, a data frame, an Arrow table, or columns by name."""
     if isinstance(table, (str, os.PathLike)):
-        with open(table, "rb") as file:
-            return file.read()
+        return read(table)
     if hasattr(table, "to_csv"):
         return str(table.to_csv(index=False)).encode()
     if hasattr(table, "to_pydict"):

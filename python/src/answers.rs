@@ -1,13 +1,18 @@
 //! The arrays of a batch, made for Python when they are first asked for.
 
+use crate::values::refused;
 use heelstrike::pipeline::Aspect;
 use heelstrike::state::NamedContact;
-use heelstrike::write::{Arrays, Columns, RowKind, Texts};
-use numpy::{Element, PyArray1, PyArrayMethods};
-use pyo3::exceptions::PyAttributeError;
+use heelstrike::{
+    Verdict,
+    write::{Arrays, Columns, RowKind, Texts},
+};
+use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods};
+use pyo3::exceptions::{PyAttributeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use pyo3::types::PyList;
+use pyo3::types::{PyBytes, PyList};
+use serde::{Deserialize, Serialize};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// A list that becomes an array.
@@ -22,7 +27,7 @@ struct TextColumn {
     list: PyOnceLock<Py<PyAny>>,
 }
 
-impl<T: Element> Column<T> {
+impl<T: Element + Clone> Column<T> {
     fn new(list: Vec<T>) -> Self {
         Self { list: list.into(), array: PyOnceLock::new() }
     }
@@ -36,6 +41,14 @@ impl<T: Element> Column<T> {
             )
         };
         self.array.get_or_try_init(py, made).map(|array| array.clone_ref(py))
+    }
+
+    /// Another list of the same.
+    fn copy(&self, py: Python<'_>) -> PyResult<Vec<T>> {
+        match self.array.get(py) {
+            Some(array) => Ok(array.bind(py).cast::<PyArrayDyn<T>>()?.to_vec()?),
+            None => Ok(self.list.lock().unwrap_or_else(PoisonError::into_inner).clone()),
+        }
     }
 }
 
@@ -59,11 +72,11 @@ pub struct Answers {
 }
 
 /// What the answers to all states have in common.
+#[derive(Serialize, Deserialize)]
 pub struct Table {
     pub aspect: Aspect,
     pub coordinates: Vec<String>,
-    contacts: Vec<String>,
-    columns: Vec<String>,
+    columns: Columns,
     /// No answer yet.
     pub empty: Arrays,
 }
@@ -71,13 +84,12 @@ pub struct Table {
 impl Table {
     /// That of a robot's feet and contacts that states name.
     pub fn new(aspect: Aspect, robot: &heelstrike::Robot, feet: &[NamedContact], named: &[&str]) -> Self {
-        let columns = Columns::without_lines(robot, feet, named, &[], RowKind::of(aspect));
+        let columns = Columns::without_lines(robot, feet, named, &[], RowKind::of(aspect)).numbered();
         Self {
             aspect,
             coordinates: robot.coordinates().map(str::to_owned).collect(),
-            contacts: columns.contacts().map(str::to_owned).collect(),
-            columns: columns.names().to_vec(),
             empty: Arrays::new(&columns),
+            columns,
         }
     }
 }
@@ -101,6 +113,24 @@ impl Answers {
             texts: [arrays.error, arrays.notes, arrays.border, arrays.families]
                 .map(|texts| TextColumn { texts, list: PyOnceLock::new() }),
         }
+    }
+
+    /// A copy of all.
+    fn copy(&self, py: Python<'_>) -> PyResult<Arrays> {
+        let mut arrays = self.table.empty.none();
+        arrays.verdict = self.verdict.copy(py)?;
+        arrays.all_proven = self.all_proven.copy(py)?;
+        arrays.offsets = self.offsets.copy(py)?;
+        arrays.modes = self.modes.copy(py)?;
+        arrays.impulse = self.impulse.copy(py)?;
+        arrays.velocity_after = self.velocity_after.copy(py)?;
+        arrays.margin = self.margin.copy(py)?;
+        arrays.index = self.index.copy(py)?;
+        arrays.proven = self.proven.copy(py)?;
+        arrays.family = self.family.copy(py)?;
+        let texts = self.texts.each_ref().map(|column| column.texts.clone());
+        [arrays.error, arrays.notes, arrays.border, arrays.families] = texts;
+        Ok(arrays)
     }
 
     /// Refuses a name that belongs to the other question.
@@ -136,13 +166,13 @@ impl Answers {
     /// Names of the contacts that the robot's feet can make: columns of `modes` and `impulse`.
     #[getter]
     fn contacts(&self) -> &[String] {
-        &self.table.contacts
+        self.table.columns.contacts()
     }
 
     /// Names of the columns of `to_arrow` and `to_pandas`.
     #[getter]
     fn columns(&self) -> &[String] {
-        &self.table.columns
+        self.table.columns.names()
     }
 
     /// Of each state the `Verdict`, (n,) of uint8.
@@ -166,21 +196,21 @@ impl Answers {
     /// Of each outcome and contact the `Mode`, (m, contacts) of int8; OPEN if the contact is not closed.
     #[getter]
     fn modes(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.modes.array(py, &[self.outcomes, self.table.contacts.len()])
+        self.modes.array(py, &[self.outcomes, self.table.columns.contacts().len()])
     }
 
     /// Of each outcome and contact [tangential, normal] [N s], (m, contacts, 2); NaN if the contact is not closed.
     #[getter]
     fn impulse(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.of(Aspect::Impact, "impulse")?;
-        self.impulse.array(py, &[self.outcomes, self.table.contacts.len(), 2])
+        self.impulse.array(py, &[self.outcomes, self.table.columns.contacts().len(), 2])
     }
 
     /// Of each outcome and contact [tangential, normal] [N], (m, contacts, 2); NaN if the contact is not closed.
     #[getter]
     fn force(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.of(Aspect::Forces, "force")?;
-        self.impulse.array(py, &[self.outcomes, self.table.contacts.len(), 2])
+        self.impulse.array(py, &[self.outcomes, self.table.columns.contacts().len(), 2])
     }
 
     /// Of each outcome v after the impact, (m, nq) in the order of `coordinates` [m/s, rad/s].
@@ -250,8 +280,36 @@ impl Answers {
         self.states
     }
 
-    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
-        slf.py().import("heelstrike._tables")?.call_method1("summary", (slf,))?.extract()
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let mut counts = [0; Arrays::REFUSED as usize + 1];
+        self.verdict.copy(py)?.into_iter().for_each(|verdict| counts[usize::from(verdict)] += 1);
+        let names = Verdict::ALL.map(Verdict::name).into_iter().chain(["refused"]);
+        let verdicts = counts.into_iter().zip(names).filter(|(count, _)| *count > 0);
+        let verdicts: Vec<String> = verdicts.map(|(count, name)| format!("{count} {name}")).collect();
+        let list = |names: &[String]| if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+        let contacts = list(self.table.columns.contacts());
+        Ok(format!("Answers({} states: {}; contacts {contacts})", self.states, list(&verdicts)))
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let bytes = postcard::to_stdvec(&(&*self.table, self.copy(py)?));
+        let bytes = bytes.map_err(|error| PyValueError::new_err(error.to_string()))?;
+        let again = py.import("heelstrike._values")?.getattr("answers")?;
+        Ok((again, (PyBytes::new(py, &bytes),)).into_pyobject(py)?.into_any())
+    }
+
+    #[staticmethod]
+    fn _again(bytes: &[u8]) -> PyResult<Self> {
+        let read: Result<(Table, Arrays), _> = postcard::from_bytes(bytes);
+        let (table, arrays) = read.map_err(|error| PyValueError::new_err(error.to_string()))?;
+        Ok(Self::new(Arc::new(table), arrays))
+    }
+
+    /// All as Arrow's stream.
+    fn _stream<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let arrays = self.copy(py)?;
+        let made = py.detach(|| arrays.arrow_stream(&self.table.columns));
+        Ok(PyBytes::new(py, &made.map_err(refused)?))
     }
 
     /// A pyarrow.Table with a row per outcome, and one for a state without outcome: the columns that `heelstrike batch`

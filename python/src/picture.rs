@@ -1,9 +1,10 @@
 //! Pictures of answers as SVG, and the answers as text for people.
 
 use crate::robot::{Asked, Model};
-use crate::study::{Work, studied, threads};
+use crate::study::{Work, studied};
 use crate::values::refused;
 use crate::watch::without_python;
+use heelstrike::cli::threads;
 use heelstrike::draw::robot::picture;
 use heelstrike::draw::sweep;
 use heelstrike::pipeline::Aspect;
@@ -27,7 +28,7 @@ pub fn answer(py: Python<'_>, model: &Model, kind: &str, question: &str, frictio
     let Model { robot, options, .. } = model;
     let made = || {
         if kind == "sweep" {
-            let work = Work { friction, threads: threads(None), budget: None };
+            let work = Work { friction, threads: threads(0), budget: None };
             let drawn = studied(model, question, work, |study, findings, workers| {
                 let text = Regions::new(study.study, findings).text(&robot.name, &Palette::default());
                 (sweep::of(study, findings, workers).svg(), text)

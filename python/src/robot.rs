@@ -285,11 +285,8 @@ impl Robot {
         threads: Option<usize>,
         scene: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Answers> {
-        Rows::read(slf.get(), [q, v], friction, restitution, contacts, scene)?.answer(
-            slf.py(),
-            &slf.get().impacts,
-            threads,
-        )
+        let asker = &slf.get().impacts;
+        Rows::read(slf.get(), asker, [q, v], friction, restitution, contacts, scene)?.answer(slf.py(), asker, threads)
     }
 
     /// The contact forces and accelerations in sustained contact: of one state as `impact`, of rows as `impacts`.
@@ -312,8 +309,9 @@ impl Robot {
             }
             return Self::one(slf, q, Aspect::Forces, friction, Detail::default(), false);
         };
-        let rows = Rows::read(slf.get(), [q, v], friction, restitution, contacts, scene)?;
-        Ok(Bound::new(slf.py(), rows.answer(slf.py(), &slf.get().forces, threads)?)?.into_any())
+        let asker = &slf.get().forces;
+        let rows = Rows::read(slf.get(), asker, [q, v], friction, restitution, contacts, scene)?;
+        Ok(Bound::new(slf.py(), rows.answer(slf.py(), asker, threads)?)?.into_any())
     }
 
     /// Outcomes against one or two parameters: regions, borders and samples.
@@ -334,7 +332,7 @@ impl Robot {
 
     /// The impacts at the touchdowns of a recording, as `heelstrike batch --touchdowns` writes them.
     ///
-    /// `table` is a path of a CSV file, a data frame, an Arrow table or a dictionary of columns: `time` [s],
+    /// `table` is a path (CSV, TSV, Parquet, Arrow), a data frame, an Arrow table or a dictionary of columns: `time` [s],
     /// `q_base_x`, `q_base_z`, `q_base_pitch`, `q_<joint>` [m, rad], and rates likewise with `v_` unless `velocity` is
     /// "central" or "backward". `at` is "crossing" or "row", `touching` strike, slow:SPEED,HEIGHT or near:HEIGHT;
     /// `simulated` takes z = 0 as the ground. Raises Refused for the table; a refused touchdown has an `error`.
@@ -393,7 +391,7 @@ impl Robot {
         let model = Model::read(text, path, options)?;
         let asker = |aspect| {
             let table = Arc::new(Table::new(aspect, &model.robot, &model.options.feet, &[]));
-            Asker { table, kept: Mutex::default() }
+            Asker { table, kept: Mutex::default(), last: Mutex::default() }
         };
         let options = options.map(|options| options.copy().map(Bound::unbind)).transpose()?;
         // Another process may run in another folder.

@@ -2,11 +2,11 @@
 
 use crate::answers::{Answers, Table};
 use crate::robot::{Model, Robot, friction};
-use crate::study::threads;
 use crate::values::{refused, to_json};
 use crate::watch::{budget, look, without_python};
 use heelstrike::batch::{Sink, TaskSource, run};
 use heelstrike::budget::TotalBudget;
+use heelstrike::cli::threads;
 use heelstrike::pipeline::Options;
 use heelstrike::state::NamedContact;
 use heelstrike::write::Arrays;
@@ -14,7 +14,7 @@ use heelstrike::{Defaults, Error, Friction, Pipeline, Reason, State};
 use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList, PyTuple};
+use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 use self_cell::self_cell;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -36,6 +36,16 @@ pub struct Asker {
     pub table: Arc<Table>,
     /// Pipelines that no call is using.
     pub kept: Mutex<Vec<Kept>>,
+    /// Of the last call whose rows had fields in common.
+    pub last: Mutex<Option<Arc<Common>>>,
+}
+
+/// What all rows of a call have in common.
+pub struct Common {
+    /// As Python gave it.
+    fields: Py<PyAny>,
+    state: State,
+    table: Arc<Table>,
 }
 
 /// States as rows of arrays.
@@ -45,6 +55,7 @@ pub struct Rows<'py> {
     v: PyReadonlyArrayDyn<'py, f64>,
     /// What all rows have in common.
     common: State,
+    table: Arc<Table>,
     friction: Option<PyReadonlyArrayDyn<'py, f64>>,
     restitution: Option<PyReadonlyArrayDyn<'py, f64>>,
 }
@@ -91,6 +102,57 @@ fn array<'py>(what: &str, value: &Bound<'py, PyAny>, columns: Option<usize>) -> 
     Ok(own.readonly())
 }
 
+impl Asker {
+    /// What `fields` of a state mean, which is computed again only if they are others than those of the last call.
+    fn common(&self, model: &Model, fields: &Bound<'_, PyDict>) -> PyResult<Arc<Common>> {
+        let py = fields.py();
+        // Python runs below, and may let another thread ask meanwhile.
+        let last = self.last.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        if let Some(last) = last.filter(|last| same(last.fields.bind(py), fields)) {
+            return Ok(last);
+        }
+        for name in ["position", "velocity", "id", "uncertainty"] {
+            if fields.contains(name)? {
+                return Err(PyTypeError::new_err(format!("rows have no common \"{name}\"")));
+            }
+        }
+        let state = State::from_json(&to_json(fields)?, &model.robot, &Defaults::default()).map_err(refused)?;
+        let of_contacts = |contacts: &[NamedContact]| {
+            let named = names(&model.robot, contacts);
+            let named: Vec<&str> = named.iter().map(String::as_str).collect();
+            Arc::new(Table::new(self.table.aspect, &model.robot, &model.options.feet, &named))
+        };
+        let table = state.scene.contacts.as_deref().map_or_else(|| Arc::clone(&self.table), of_contacts);
+        let fields = py.import("copy")?.call_method1("deepcopy", (fields,))?.unbind();
+        let common = Arc::new(Common { fields, state, table });
+        *self.last.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::clone(&common));
+        Ok(common)
+    }
+}
+
+/// Whether both are the same and of Python's own types.
+fn same(a: &Bound<'_, PyAny>, b: &Bound<'_, PyAny>) -> bool {
+    // Copies have these in common that cannot change.
+    if a.is(b) {
+        return true;
+    }
+    if !a.get_type().is(b.get_type()) {
+        return false;
+    }
+    if let (Ok(a), Ok(b)) = (a.cast_exact::<PyDict>(), b.cast_exact::<PyDict>()) {
+        let is_in = |(name, own)| b.get_item(name).ok().flatten().is_some_and(|other| same(&own, &other));
+        return a.len() == b.len() && a.iter().all(is_in);
+    }
+    if let (Ok(a), Ok(b)) = (a.cast_exact::<PyList>(), b.cast_exact::<PyList>()) {
+        return a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(&a, &b));
+    }
+    let plain = a.is_exact_instance_of::<PyString>()
+        || a.is_exact_instance_of::<PyFloat>()
+        || a.is_exact_instance_of::<PyInt>()
+        || a.is_exact_instance_of::<PyBool>();
+    plain && a.eq(b).unwrap_or(false)
+}
+
 /// An argument that is a number for all rows, a number per row, or something else that a state may have.
 enum Argument<'py> {
     Rows(PyReadonlyArrayDyn<'py, f64>),
@@ -99,6 +161,10 @@ enum Argument<'py> {
 
 impl<'py> Argument<'py> {
     fn read(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Self> {
+        // To ask a dictionary whether it is a number takes a microsecond.
+        if value.is_instance_of::<PyDict>() {
+            return Ok(Self::Value(value.clone()));
+        }
         let is_list = value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>();
         let is_array = || Ok::<_, PyErr>(is_list || value.hasattr("shape")? && !value.getattr("shape")?.is_empty()?);
         let number = value.extract::<f64>().is_ok();
@@ -109,6 +175,7 @@ impl<'py> Argument<'py> {
 impl<'py> Rows<'py> {
     pub fn read(
         robot: &Robot,
+        asker: &Asker,
         [q, v]: [&Bound<'py, PyAny>; 2],
         mu: Option<&Bound<'py, PyAny>>,
         restitution: Option<&Bound<'py, PyAny>>,
@@ -121,16 +188,12 @@ impl<'py> Rows<'py> {
         if q.shape() != v.shape() {
             return Err(PyValueError::new_err(format!("q has {} rows and v {}", q.shape()[0], v.shape()[0])));
         }
-        let mut fields = None;
+        let mut fields = scene.cloned();
         let fields_of =
             |fields: &mut Option<Bound<'py, PyDict>>| fields.get_or_insert_with(|| PyDict::new(q.py())).clone();
-        if let Some(scene) = scene {
-            fields_of(&mut fields).update(scene.as_mapping())?;
-        }
         if let Some(contacts) = contacts {
             fields_of(&mut fields).set_item("contacts", contacts)?;
         }
-        let mut common = State::zero(&model.robot);
         let (mut friction_of_all, mut restitution_of_all) = (None, None);
         let (mut friction_rows, mut restitution_rows) = (None, None);
         match mu.map(|mu| Argument::read("friction", mu)).transpose()? {
@@ -149,14 +212,13 @@ impl<'py> Rows<'py> {
             Some(Argument::Value(value)) => restitution_of_all = Some(restituted(value.extract()?).map_err(refused)?),
             None => {}
         }
-        if let Some(fields) = &fields {
-            for name in ["position", "velocity", "id", "uncertainty"] {
-                if fields.contains(name)? {
-                    return Err(PyTypeError::new_err(format!("rows have no common \"{name}\"")));
-                }
+        let (mut common, table) = match &fields {
+            None => (State::zero(&model.robot), Arc::clone(&asker.table)),
+            Some(fields) => {
+                let known = asker.common(model, fields)?;
+                (known.state.clone(), Arc::clone(&known.table))
             }
-            common = State::from_json(&to_json(fields)?, &model.robot, &Defaults::default()).map_err(refused)?;
-        }
+        };
         common.scene.friction.default = friction_of_all.or(common.scene.friction.default);
         common.scene.restitution.default = restitution_of_all.or(common.scene.restitution.default);
         let rows = q.shape()[0];
@@ -165,20 +227,22 @@ impl<'py> Rows<'py> {
                 return Err(PyValueError::new_err(format!("{what} has {} entries for {rows} states", given.len())));
             }
         }
-        Ok(Self { model: Arc::clone(model), q, v, common, friction: friction_rows, restitution: restitution_rows })
+        Ok(Self {
+            model: Arc::clone(model),
+            q,
+            v,
+            common,
+            table,
+            friction: friction_rows,
+            restitution: restitution_rows,
+        })
     }
 
     /// Answers all rows.
     pub fn answer(self, py: Python<'py>, asker: &Asker, count: Option<usize>) -> PyResult<Answers> {
-        let Self { model, q, v, common, friction, restitution } = self;
+        let Self { model, q, v, common, table, friction, restitution } = self;
         let rows = q.shape()[0];
-        let of_contacts = |contacts: &[NamedContact]| {
-            let named = names(&model.robot, contacts);
-            let named: Vec<&str> = named.iter().map(String::as_str).collect();
-            Arc::new(Table::new(asker.table.aspect, &model.robot, &model.options.feet, &named))
-        };
-        let table = common.scene.contacts.as_deref().map_or_else(|| Arc::clone(&asker.table), of_contacts);
-        let threads = if rows <= TOGETHER { 1 } else { threads(count).min(rows.div_ceil(TOGETHER)) };
+        let threads = if rows <= TOGETHER { 1 } else { threads(count.unwrap_or(0)).min(rows.div_ceil(TOGETHER)) };
         let numbers = Numbers {
             coordinates: &table.coordinates,
             q: q.as_slice()?,
@@ -225,7 +289,7 @@ struct Worker<'p> {
 }
 
 impl<'p> Worker<'p> {
-    fn new(model: &Arc<Model>, Asker { table, kept }: &'p Asker, state: State) -> Self {
+    fn new(model: &Arc<Model>, Asker { table, kept, .. }: &'p Asker, state: State) -> Self {
         let known = kept.lock().unwrap_or_else(PoisonError::into_inner).pop();
         let new = || {
             let asked = |model: &Arc<Model>| Options { aspect: table.aspect, ..model.options.clone() };
@@ -244,6 +308,9 @@ impl<'p> Worker<'p> {
             })
         });
         out.push(answer.as_ref().map_err(Error::clone));
+        if let Ok(impact) = answer {
+            kept.with_dependent_mut(|_, pipeline| pipeline.recycle(impact));
+        }
     }
 }
 

@@ -3,20 +3,22 @@
 use crate::robot::{Robot, friction};
 use crate::values::{from_json, refused, to_json, warn};
 use crate::watch::{budget, interrupted, raised, shared, without_python};
-use heelstrike::batch::{Batch, Chunks, Question, Recording, RowOrigin, TaskSource, samples};
+use heelstrike::batch::{Batch, Chunks, Question, Recording, RowOrigin, TaskSource, samples, samples_of_parts};
 use heelstrike::budget::TotalBudget;
-use heelstrike::cli::{Seconds, seconds};
+use heelstrike::cli::{RecordFormat, Seconds, seconds, threads};
 use heelstrike::error::Location;
-use heelstrike::gait::{self, At, Difference, Heights, Sampled, Touching};
+use heelstrike::gait::{self, At, Difference, Heights, Sampled, Thresholds, Touching};
 use heelstrike::impact::{AnalysisOptions, Scratch};
 use heelstrike::read::Problem;
-use heelstrike::read::table::{Form, Header, Rates};
+use heelstrike::read::table::{Form, Header, Parts, Rates};
 use heelstrike::sweep::{Findings, RobotStudy, Solver, Workers};
+use heelstrike::write::notes;
 use heelstrike::write::sweep::{Regions, SampleRecord};
-use heelstrike::write::{append_line, notes};
 use heelstrike::{Defaults, Detail, Error, Friction, Reason, Report, Study};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use std::fs::File;
+use std::path::PathBuf;
 use std::sync::Mutex;
 use std::time::Duration;
 
@@ -62,11 +64,6 @@ pub fn limit(value: &Bound<'_, PyAny>) -> PyResult<Seconds> {
     seconds(&text).map_err(|expected| PyValueError::new_err(format!("budget: {expected} or None, not {text}")))
 }
 
-pub fn threads(threads: Option<usize>) -> usize {
-    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-    threads.filter(|&threads| threads > 0).unwrap_or_else(cores)
-}
-
 pub fn sweep<'py>(
     robot: &Bound<'py, Robot>,
     study: &Bound<'py, PyAny>,
@@ -76,15 +73,13 @@ pub fn sweep<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let py = robot.py();
     let text = to_json(study)?;
-    let work = Work { friction: mu.map(friction).transpose()?, threads: threads(count), budget };
+    let work = Work { friction: mu.map(friction).transpose()?, threads: threads(count.unwrap_or(0)), budget };
     let made = |model: &RobotStudy, findings: &Findings, workers: Workers| {
         let mut out = Vec::new();
         if raised() {
             return out;
         }
-        append_line(&mut out, &Regions::new(model.study, findings));
-        out.truncate(out.len() - b"}\n".len());
-        out.extend(b",\"samples\":[");
+        Regions::new(model.study, findings).append_head(&mut out);
         let answer = |solver: &mut Solver, index: usize| {
             let mut sample = Vec::new();
             SampleRecord::new(model, index).append_json(solver, Detail::default(), &mut sample);
@@ -137,32 +132,59 @@ pub fn touchdowns<'py>(
     recorded: Recorded,
 ) -> PyResult<Bound<'py, PyAny>> {
     let py = robot.py();
-    let text: Vec<u8> = py.import("heelstrike._values")?.call_method1("to_csv", (table,))?.extract()?;
+    let path = table.extract::<PathBuf>().ok();
+    let format = path.as_deref().and_then(RecordFormat::table);
+    let table = match (path, format) {
+        (Some(path), Some(format)) if !format.is_text() => {
+            Table::Columns(format.parts(File::open(path)?).map_err(refused)?)
+        }
+        _ => {
+            let text = py.import("heelstrike._values")?.call_method1("to_csv", (table,))?;
+            Table::Text(text.extract()?, format.map_or(Form::Csv, RecordFormat::form))
+        }
+    };
     let defaults = Defaults { friction: mu.map(friction).transpose()?, ..Defaults::default() };
     let model = &robot.get().model;
-    let (out, notes) = without_python(py, || found(model, &text, defaults, &recorded))?.map_err(refused)?;
+    let (out, notes) = without_python(py, || found(model, table, defaults, &recorded))?.map_err(refused)?;
     warn(py, notes)?;
     from_json(py, &out, None)
+}
+
+/// What a recording is read from.
+enum Table {
+    Text(Vec<u8>, Form),
+    Columns(Parts),
 }
 
 /// The answers to the touchdowns of a table, as a JSON list, and what a reader should know of them.
 fn found(
     model: &crate::robot::Model,
-    text: &[u8],
+    table: Table,
     defaults: Defaults,
     recorded: &Recorded,
 ) -> heelstrike::Result<(Vec<u8>, Vec<String>)> {
     let Recorded { velocity, at, touching, heights } = recorded;
     let robot = &model.robot;
-    let mut chunks = Chunks::of_table(text, Form::Csv);
-    let (line, record) = chunks.first()?.ok_or_else(|| Error::new(Reason::Missing("a header".into())))?;
     let rates = if velocity.is_some() { Rates::Time } else { Rates::Columns };
-    let header = Header::read(&record, Form::Csv, robot, rates, &[]).map_err(|error| match error.location() {
-        Some(Location { line: own, column }) => error.on(line + own - 1, column),
-        None => error,
-    })?;
-    let header = header.with_time()?;
-    chunks.expect_columns(header.count());
+    let header;
+    let mut rows: Box<dyn Iterator<Item = Sampled<RowOrigin>> + Send> = match table {
+        Table::Columns(mut parts) => {
+            header = parts.header(robot, rates, &[])?.with_time()?;
+            Box::new(samples_of_parts(parts, &header, robot, &defaults))
+        }
+        Table::Text(ref text, form) => {
+            let mut chunks = Chunks::of_table(&text[..], form);
+            let (line, record) = chunks.first()?.ok_or_else(|| Error::new(Reason::Missing("a header".into())))?;
+            let read = Header::read(&record, form, robot, rates, &[]).map_err(|error| match error.location() {
+                Some(Location { line: own, column }) => error.on(line + own - 1, column),
+                None => error,
+            });
+            header = read?.with_time()?;
+            chunks.expect_columns(header.count());
+            Box::new(samples(chunks, &header, robot, &defaults))
+        }
+    };
+    rows = Box::new(rows.take_while(|_| !interrupted()));
     let question = Question {
         robot,
         options: model.options.clone(),
@@ -174,8 +196,6 @@ fn found(
         keyframes: false,
     };
     let dropped = Mutex::default();
-    let mut rows: Box<dyn Iterator<Item = Sampled<RowOrigin>> + Send> =
-        Box::new(samples(chunks, &header, robot, &defaults).take_while(|_| !interrupted()));
     if header.is_spatial() {
         rows = Box::new(gait::sagittal(rows, &dropped));
     }
@@ -184,11 +204,12 @@ fn found(
     }
     let rows = gait::find(rows, robot, &model.options.feet, *at, *touching)?.meaning(*heights);
     let (mut source, mut batch, mut lines) = (Recording::new(rows), Batch::new(&question), Vec::new());
-    let mut own_friction = 0;
+    let (mut own_friction, mut answered) = (0, 0);
     while let Some(states) = source.next()? {
         let block = batch.samples(states);
         lines.extend(block.out);
         own_friction += block.summary.own_friction;
+        answered += block.summary.states;
         if interrupted() {
             break;
         }
@@ -196,7 +217,9 @@ fn found(
     drop(source);
     let dropped = dropped.into_inner().unwrap_or_default();
     let of_table = notes::missing(&header).into_iter().chain(notes::left_out(&header, &dropped));
-    let notes = of_table.chain(notes::own_friction(own_friction, "state")).collect();
+    let nothing = || Thresholds::of(robot, &model.options.feet).nothing_found(*heights);
+    let notes =
+        of_table.chain(notes::own_friction(own_friction, "state")).chain((answered == 0).then(nothing)).collect();
     let lines: Vec<&[u8]> = lines.trim_ascii_end().split(|&byte| byte == b'\n').collect();
     Ok(([b"[", &*lines.join(&b','), b"]"].concat(), notes))
 }

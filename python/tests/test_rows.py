@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import pickle
 import subprocess
 
 import numpy as np
@@ -160,7 +161,7 @@ def test_contacts_and_scene_are_those_of_a_state(ramone, walk):
 def test_any_number_of_threads_and_rows_gives_the_same(ramone, walk):
     q, v = walk(1000)
     one = ramone.impacts(q, v, friction=0.3, place="lowest", threads=1)
-    for threads in (2, 5, 0, None):
+    for threads in (2, 5, 0, None, 10**9):
         other = ramone.impacts(q, v, friction=0.3, place="lowest", threads=threads)
         for name in ("verdict", "offsets", "modes", "impulse", "velocity_after", "margin", "index", "proven"):
             assert getattr(one, name).tobytes() == getattr(other, name).tobytes()
@@ -184,6 +185,36 @@ def test_lists_and_unaligned_arrays_are_converted(ramone, walk):
     assert not unaligned.flags.aligned and found.velocity_after.tobytes() == expected.velocity_after.tobytes()
     rough = [ramone.impacts(q, v, friction=mu, place="lowest").impulse.tobytes() for mu in ("inf", "infinite", np.inf)]
     assert len(set(rough)) == 1
+
+
+@pytest.mark.parametrize("aspect", ["impacts", "forces"])
+def test_answers_go_to_other_processes(ramone, walk, aspect):
+    q, v = walk(50)
+    q[3, 1] = np.nan
+    answers = getattr(ramone, aspect)(q, v, friction=0.4, place="lowest", contacts=[{"link": "torso"}])
+    fresh = pickle.loads(pickle.dumps(answers))
+    names = [name for name in dir(answers) if not name.startswith(("_", "to_")) and hasattr(answers, name)]
+    assert {"verdict", "offsets", "modes", "error"} < set(names)
+    for again in (fresh, pickle.loads(pickle.dumps(answers))):
+        assert repr(again) == repr(answers) and again.to_arrow().equals(answers.to_arrow())
+        for name in names:
+            np.testing.assert_array_equal(getattr(again, name), getattr(answers, name))
+
+
+def test_fields_of_a_state_are_read_again_if_they_change(ramone, walk):
+    q, v = walk(3)
+    ground, answers = {"slope": 0.1}, {}
+    for slope in (0.1, 0.2, True):
+        ground["slope"] = slope
+        if slope is True:
+            with pytest.raises(heelstrike.Refused, match="slope"):
+                ramone.impacts(q, v, friction=0.5, place="lowest", ground=ground)
+        else:
+            for _ in range(2):
+                answers[slope] = ramone.impacts(q, v, friction=0.5, place="lowest", ground=ground).impulse.tobytes()
+    assert answers[0.1] != answers[0.2]
+    other = heelstrike.Robot(ROOT / "urdf/ramone.urdf").impacts(q, v, friction=0.5, place="lowest", ground={"slope": 0.2})
+    assert other.impulse.tobytes() == answers[0.2]
 
 
 def test_texts_are_made_once(ramone, walk):

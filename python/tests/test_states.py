@@ -131,7 +131,7 @@ def test_sweep_is_that_of_the_command(tmp_path):
     assert heelstrike.Robot(urdf).sweep(json.loads(study.read_text()), threads=1) == sweep
 
 
-def test_touchdowns_are_those_of_the_command(ramone):
+def test_touchdowns_are_those_of_the_command(ramone, tmp_path):
     pandas = pytest.importorskip("pandas")
     table = ROOT / "examples/gait/ramone_walk.csv"
     lines = command("batch", URDF, table, "--touchdowns", "--friction", 0.8, "--quiet")
@@ -140,6 +140,15 @@ def test_touchdowns_are_those_of_the_command(ramone):
     frame = pandas.read_csv(table)
     assert ramone.touchdowns(frame, friction=0.8) == found
     assert ramone.touchdowns({name: frame[name].to_numpy() for name in frame}, friction=0.8) == found
+    frame.to_csv(tmp_path / "walk.tsv", sep="\t", index=False)
+    assert ramone.touchdowns(tmp_path / "walk.tsv", friction=0.8) == found
+    for ending in ("parquet", "feather"):
+        file = tmp_path / f"walk.{ending}"
+        getattr(frame, f"to_{ending}")(file, compression="lz4")
+        lines = command("batch", URDF, file, "--touchdowns", "--friction", 0.8, "--quiet")
+        assert ramone.touchdowns(str(file), friction=0.8) == [json.loads(line) for line in lines.splitlines()]
+    with pytest.warns(UserWarning, match="no touchdown found: a foot must descend"):
+        assert ramone.touchdowns(frame[:3], friction=0.8) == []
     with pytest.raises(TypeError, match="a table is a path.*not a list"):
         ramone.touchdowns([[0.0]])
     with pytest.raises(heelstrike.Refused, match="time"):

@@ -48,15 +48,8 @@ pub struct Summary {
     pub missing_columns: Vec<String>,
 }
 
-/// The verdicts in their order, in the words of the text.
-const VERDICTS: [(Verdict, &str); 6] = [
-    (Verdict::Unique, "unique"),
-    (Verdict::Ambiguous, "ambiguous"),
-    (Verdict::None, "without outcome"),
-    (Verdict::Undecided, "undecided"),
-    (Verdict::NoImpact, "without impact"),
-    (Verdict::NoContact, "without contact"),
-];
+/// The verdicts in the words of the text.
+const WORDS: [&str; 6] = ["unique", "ambiguous", "without outcome", "undecided", "without impact", "without contact"];
 
 /// How many states have which verdict; written as an object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -64,7 +57,7 @@ pub struct Verdicts([u64; 6]);
 
 impl Serialize for Verdicts {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(VERDICTS.iter().zip(self.0).map(|((verdict, _), count)| (verdict, count)))
+        serializer.collect_map(Verdict::ALL.iter().zip(self.0))
     }
 }
 
@@ -128,9 +121,7 @@ impl Summary {
     pub fn count(&mut self, state: impl Fn() -> StateRef, impact: &Impact, analysis: &Analysis) {
         self.states += 1;
         self.question = impact.aspect();
-        for ((verdict, _), count) in VERDICTS.iter().zip(&mut self.verdicts.0) {
-            *count += u64::from(*verdict == analysis.verdict);
-        }
+        self.verdicts.0[analysis.verdict as usize] += 1;
         self.beyond_budget += u64::from(analysis.open.is_some_and(|open| open.beyond_budget));
         self.resting += u64::from(impact.resting.contains(&true));
         self.near(&state, &analysis.outcomes);
@@ -244,8 +235,8 @@ const SHOWN: usize = 5;
 impl fmt::Display for Summary {
     /// A few lines for people.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let verdicts = VERDICTS.iter().zip(self.verdicts.0).map(|((_, words), count)| (count, *words));
-        let counts = verdicts.chain([(self.refused, "refused")]).filter(|(count, _)| *count > 0);
+        let counts =
+            self.verdicts.0.into_iter().zip(WORDS).chain([(self.refused, "refused")]).filter(|(count, _)| *count > 0);
         let counts = counts.map(|(count, what)| format!("{count} {what}"));
         let plural = if self.states == 1 { "" } else { "s" };
         writeln!(f, "{} state{plural}: {}", self.states, counts.collect::<Vec<_>>().join(", "))?;

@@ -224,10 +224,9 @@ impl Args {
             return Ok(States::Text(chunks));
         }
         #[cfg(feature = "columnar")]
-        return Ok(States::Columns(match format {
-            _ if self.states == Path::new("-") => Parts::arrow_stream(io::stdin())?,
-            RecordFormat::Parquet => Parts::parquet(input::file(&self.states)?)?,
-            _ => Parts::arrow(input::file(&self.states)?)?,
+        return Ok(States::Columns(match self.states == Path::new("-") {
+            true => Parts::arrow_stream(io::stdin())?,
+            false => format.parts(input::file(&self.states)?)?,
         }));
         #[cfg(not(feature = "columnar"))]
         Err(format.absent())

@@ -4,15 +4,19 @@ use super::Failure;
 use super::output::check_ending;
 use crate::read::table::Form;
 #[cfg(feature = "columnar")]
+use crate::read::table::Parts;
+#[cfg(feature = "columnar")]
 use crate::write::{ColumnWriter, ColumnarFormat, Columns};
 #[cfg(not(feature = "columnar"))]
 use crate::{Error, Reason};
 use clap::ValueEnum;
+#[cfg(feature = "columnar")]
+use std::fs::File;
 use std::path::Path;
 
 /// The format of an input or output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum RecordFormat {
+pub enum RecordFormat {
     /// One JSON object per line
     #[value(alias = "json", alias = "jsonl")]
     Ndjson,
@@ -48,7 +52,7 @@ impl RecordFormat {
     }
 
     /// What is `chosen` by the option of this name, or by the file's ending; else lines of JSON.
-    pub fn of(path: Option<&Path>, chosen: Option<Self>, option: &str) -> Result<Self, Failure> {
+    pub(super) fn of(path: Option<&Path>, chosen: Option<Self>, option: &str) -> Result<Self, Failure> {
         if chosen.is_none() {
             let known = TABLES.map(|(ending, _)| ending);
             let reason = "states and answers are .ndjson, .csv, .tsv, .parquet or .arrow";
@@ -85,6 +89,15 @@ impl RecordFormat {
     /// Whether it is text.
     pub fn is_text(self) -> bool {
         self.form() != Form::Columns
+    }
+
+    /// The table in a file that is no text.
+    ///
+    /// # Errors
+    /// As [`Parts`] has them.
+    #[cfg(feature = "columnar")]
+    pub fn parts(self, file: File) -> crate::Result<Parts> {
+        if self == Self::Parquet { Parts::parquet(file) } else { Parts::arrow(file) }
     }
 
     /// A writer of these columns, unless they are written as text.

@@ -28,8 +28,9 @@ mod accuracy;
 mod reference;
 
 pub use clock::work_time;
+pub use format::RecordFormat;
 pub use meshes::Meshes;
-pub use options::{Seconds, from_zero, seconds};
+pub use options::{Seconds, from_zero, seconds, threads};
 
 use crate::error::excerpt::Excerpt;
 use crate::error::visible;

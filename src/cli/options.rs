@@ -208,16 +208,23 @@ pub(super) fn choice<T: Copy + Send + Sync + 'static>(choices: Choices<T>) -> im
 #[derive(Debug, clap::Args)]
 pub(super) struct ThreadOptions {
     /// How many threads compute; 0 means one per core
-    #[arg(long, value_name = "NUMBER", default_value_t = 0, value_parser = clap::value_parser!(u16).range(..=1024))]
+    #[arg(long, value_name = "NUMBER", default_value_t = 0, value_parser = clap::value_parser!(u16).range(..=MOST_THREADS))]
     threads: u16,
 }
 
 impl ThreadOptions {
     pub fn count(&self) -> usize {
-        match self.threads {
-            0 => available_parallelism().map_or(1, usize::from),
-            threads => threads.into(),
-        }
+        threads(self.threads.into())
+    }
+}
+
+const MOST_THREADS: i64 = 1024;
+
+/// So many threads, but at most 1,024; one per core for 0.
+pub fn threads(count: usize) -> usize {
+    match count {
+        0 => available_parallelism().map_or(1, usize::from),
+        count => count.min(MOST_THREADS as usize),
     }
 }
 

@@ -109,22 +109,19 @@ impl RecordingOptions {
             samples = Box::new(gait::rates(samples, difference));
         }
         if self.touchdowns {
-            let heights = if self.simulated { Heights::True } else { Heights::Recorded };
             let found = gait::find(samples, robot, feet, self.at, self.touching)?;
-            samples = Box::new(found.with(thresholds).meaning(heights));
+            samples = Box::new(found.with(thresholds).meaning(self.heights()));
         }
         Ok(samples)
     }
 
     /// What to say if there are no touchdowns.
-    pub fn nothing_found(&self, Thresholds { drop, ground, slow, .. }: Thresholds) -> String {
-        let descended = format!("no touchdown found: a foot must descend {drop:.4} m or more");
-        match self.simulated {
-            true => format!("{descended} and cross z = 0 (see --drop)"),
-            false => format!(
-                "{descended}, faster than {slow:.4} m/s, to at most {ground:.4} m above the ground (see --drop, \
-                 --ground-height)"
-            ),
-        }
+    pub fn nothing_found(&self, thresholds: Thresholds) -> String {
+        let flags = if self.simulated { "--drop" } else { "--drop, --ground-height" };
+        format!("{} (see {flags})", thresholds.nothing_found(self.heights()))
+    }
+
+    fn heights(&self) -> Heights {
+        if self.simulated { Heights::True } else { Heights::Recorded }
     }
 }

@@ -18,8 +18,8 @@ use crate::draw::sweep as picture;
 use crate::sweep::{Findings, Regime, RobotStudy, Solver, Study, Workers, letter};
 #[cfg(feature = "columnar")]
 use crate::write::ColumnBlock;
+use crate::write::notes;
 use crate::write::sweep::{Regions, SampleRecord, columns};
-use crate::write::{append_line, notes};
 use crate::{Error, Reason};
 use clap::ValueEnum;
 use std::io::Write;
@@ -175,10 +175,8 @@ pub(super) fn run(args: &Args) -> Completion {
         }
         SweepFormat::Json => {
             let mut head = Vec::new();
-            append_line(&mut head, &regions);
-            // The samples are the last field of the object.
-            writer.write_all(head.strip_suffix(b"}\n").unwrap_or(&head))?;
-            writer.write_all(b",\"samples\":[")?;
+            regions.append_head(&mut head);
+            writer.write_all(&head)?;
             let append = |solver: &mut Solver, sample: &SampleRecord, out: &mut Vec<u8>| {
                 out.extend(if sample.index == 0 { "" } else { "," }.bytes());
                 sample.append_json(solver, args.detail.detail(), out)

@@ -116,6 +116,18 @@ impl Thresholds {
         let part = (Feet::new(robot, feet).size() / SMALL).min(1.0);
         Self { drop: 0.012 * part, slow: 0.05 * part, ground: 0.02 * part, above: 0.002 * part, together: 1e-6 * part }
     }
+
+    /// What to say of a recording without a touchdown.
+    pub fn nothing_found(&self, heights: Heights) -> String {
+        let Self { drop, slow, ground, .. } = self;
+        let descended = format!("no touchdown found: a foot must descend {drop:.4} m or more");
+        match heights {
+            Heights::True => format!("{descended} and cross z = 0"),
+            Heights::Recorded => {
+                format!("{descended}, faster than {slow:.4} m/s, to at most {ground:.4} m above the ground")
+            }
+        }
+    }
 }
 
 /// A state of a recording.

@@ -5,6 +5,7 @@ use crate::planar::{Pair, Vector};
 use crate::state::Named;
 use serde::{Deserialize, Serialize};
 use std::fmt;
+use std::sync::LazyLock;
 
 /// The answer in one word; [`Analysis`] has an example.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -23,6 +24,18 @@ pub enum Verdict {
     NoImpact,
     /// Nothing touches the ground.
     NoContact,
+}
+
+impl Verdict {
+    /// All verdicts, in their order.
+    pub const ALL: [Self; 6] =
+        [Self::Unique, Self::Ambiguous, Self::None, Self::Undecided, Self::NoImpact, Self::NoContact];
+
+    /// As it is written in results.
+    pub fn name(self) -> &'static str {
+        static NAMES: LazyLock<[String; 6]> = LazyLock::new(|| Verdict::ALL.map(|verdict| verdict.to_string()));
+        &NAMES[self as usize]
+    }
 }
 
 impl fmt::Display for Verdict {

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 use std::fmt;
+use std::sync::LazyLock;
 
 /// How a contact ends; strict, so that every velocity after it has exactly one list of modes (paper, section 2).
 ///
@@ -29,6 +30,12 @@ pub enum Mode {
 impl Mode {
     /// All modes, in the order in which combinations are tried.
     pub const ALL: [Mode; 4] = [Mode::Separate, Mode::Stick, Mode::SlidePlus, Mode::SlideMinus];
+
+    /// As it is written in results.
+    pub fn name(self) -> &'static str {
+        static NAMES: LazyLock<[String; 4]> = LazyLock::new(|| Mode::ALL.map(|mode| mode.to_string()));
+        &NAMES[self as usize]
+    }
 
     /// The signs of the velocity after, [c_t, xi_n]; `None` of an entry that the mode leaves open.
     pub fn velocity(self) -> [Option<Ordering>; 2] {

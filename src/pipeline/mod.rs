@@ -36,11 +36,11 @@ use crate::reductions::Reductions;
 use crate::robot::Robot;
 use crate::scalar::Magnitude;
 use crate::state::{NamedContact, Scene, State, check_length};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// What is asked about a state.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(inline))]
 #[serde(rename_all = "snake_case")]
 pub enum Aspect {

@@ -4,14 +4,16 @@ use super::csv::{border, families, no_column, notes};
 use super::{Columns, ErrorObject};
 use crate::impact::CONTACT_LIMIT;
 use crate::{Impact, Result};
+use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::sync::Arc;
 
 /// The answers to many states. Lists per state have one entry for each; lists per outcome one for each outcome of each
 /// state, and state `k` has those from `offsets[k]` to `offsets[k + 1]`. Matrices are row by row.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Arrays {
-    /// The contacts of a matrix's columns.
+    /// The contacts of a matrix's columns; read back, there are no more answers to come.
+    #[serde(skip)]
     contacts: Arc<[String]>,
     /// Per state: the verdict as a number, in the order of [`Verdict`](crate::Verdict); [`Arrays::REFUSED`] of a
     /// refused state.
@@ -46,12 +48,13 @@ pub struct Arrays {
 }
 
 /// Texts of a few entries of a list, of which many are the same.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Texts {
     /// Entries of the list with a text, and which text.
     pub at: Vec<(usize, usize)>,
     /// Each text once.
     pub known: Vec<String>,
+    #[serde(skip)]
     places: HashMap<String, usize>,
 }
 
@@ -66,6 +69,13 @@ impl Texts {
             self.known.len() - 1
         });
         self.at.push((at, place));
+    }
+
+    /// That of an entry; empty if it has none.
+    #[cfg(feature = "columnar")]
+    pub(super) fn get(&self, entry: usize) -> &str {
+        let found = self.at.binary_search_by_key(&entry, |&(at, _)| at);
+        found.map_or("", |found| &self.known[self.at[found].1])
     }
 
     /// Adds those of a list that follows behind `before` entries.
@@ -84,7 +94,7 @@ impl Arrays {
 
     /// No answer yet; those to come are of contacts and coordinates that have these `columns`.
     pub fn new(columns: &Columns) -> Self {
-        Self::of(columns.contacts().map(str::to_owned).collect())
+        Self::of(columns.contacts().into())
     }
 
     /// No answer yet, of the same contacts.

@@ -21,7 +21,7 @@ use parquet::schema::types::ColumnPath;
 use std::sync::Arc;
 
 /// So many rows are written together, and to a row group of Parquet.
-const TOGETHER: usize = 1 << 13;
+pub(super) const TOGETHER: usize = 1 << 13;
 const ROW_GROUP: usize = 1 << 17;
 
 /// What columns with types are written as.
@@ -165,7 +165,9 @@ impl ColumnWriter {
                     .set_max_row_group_row_count(Some(ROW_GROUP))
                     .set_statistics_enabled(EnabledStatistics::Chunk)
                     .set_dictionary_enabled(false);
-                for (name, _) in columns.names().iter().zip(columns.kinds()).filter(|(_, kind)| **kind == Kind::Text) {
+                let named = columns.names().iter().zip(columns.kinds());
+                // Ids are all different.
+                for (name, _) in named.filter(|(name, kind)| **kind == Kind::Text && *name != "id") {
                     let path = ColumnPath::new(vec![name.clone()]);
                     properties = properties.set_column_dictionary_enabled(path, true);
                 }

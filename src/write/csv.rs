@@ -7,9 +7,10 @@ use crate::read::table::{Carried, Form, Header, prefixed};
 use crate::state::NamedContact;
 use crate::write::{Refused, Report, words};
 use crate::{Error, Mode, Outcome, Reason, Result, Robot};
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::borrow::Cow;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 
 /// The columns between those that name the state and those of the contacts.
 const FIRST: [&str; 4] = ["verdict", "outcome", "margin", "proven"];
@@ -36,15 +37,15 @@ const LAST: [&str; 5] = ["border", "family", "families", "error", "notes"];
 /// column whose name the output already has gets the prefix `in_`. Forces have `f_<contact>_t, f_<contact>_n` for the
 /// impulses and `a_<coordinate>` for the velocities after. In brief there are no impulses, velocities after, `border` and
 /// `notes`.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Columns {
     names: Vec<String>,
     kinds: Vec<Kind>,
     /// How many columns name the state.
-    named: usize,
-    /// Which contact has which three columns.
-    contacts: HashMap<String, usize>,
-    coordinates: usize,
+    pub(super) named: usize,
+    /// The contacts that have columns, in their order.
+    contacts: Vec<String>,
+    pub(super) coordinates: usize,
     kind: RowKind,
     carried: usize,
     /// Whether it has columns for what follows an impact.
@@ -55,11 +56,12 @@ pub struct Columns {
     form: Form,
     /// The columns that are carried through, if they have types.
     #[cfg(feature = "columnar")]
+    #[serde(skip)]
     types: Option<arrow_schema::SchemaRef>,
 }
 
 /// What the cells of a column hold.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Kind {
     /// Text.
     Text,
@@ -116,7 +118,7 @@ impl RowSink for Vec<u8> {
 }
 
 /// What a row of results is about.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum RowKind {
     /// A state of the input.
     State,
@@ -137,16 +139,16 @@ impl RowKind {
 }
 
 /// A row in the making; cells that are not set stay empty.
-struct Cells<'c>(Vec<Cell<'c>>);
+pub(super) struct Cells<'c>(pub Vec<Cell<'c>>);
 
 impl<'c> Cells<'c> {
     /// Sets a cell to text; an empty one stays empty.
-    fn text(&mut self, at: usize, text: impl Into<Cow<'c, str>>) {
+    pub fn text(&mut self, at: usize, text: impl Into<Cow<'c, str>>) {
         let text = text.into();
         self.0[at] = if text.is_empty() { Cell::Empty } else { Cell::Text(text) };
     }
 
-    fn number(&mut self, at: usize, number: f64) {
+    pub fn number(&mut self, at: usize, number: f64) {
         self.0[at] = Cell::Number(number);
     }
 }
@@ -238,7 +240,6 @@ impl Columns {
         }
         let last = LAST.into_iter().zip([Text, Boolean, Text, Text, Text]);
         columns.extend(last.map(|(name, kind)| (name.to_owned(), kind)));
-        let contacts = contacts.into_iter().zip(0..).collect();
         let (names, kinds) = columns.into_iter().unzip();
         Self {
             names,
@@ -255,6 +256,12 @@ impl Columns {
             #[cfg(feature = "columnar")]
             types: None,
         }
+    }
+
+    /// The same of states whose ids are numbers.
+    pub fn numbered(mut self) -> Self {
+        self.kinds[0] = Kind::Integer;
+        self
     }
 
     /// The same with columns `next_verdict` and `next_modes`, behind `proven`: the forces just after each outcome, in
@@ -312,9 +319,8 @@ impl Columns {
     }
 
     /// The contacts that have columns, in their order.
-    pub fn contacts(&self) -> impl Iterator<Item = &str> {
-        let modes = self.names[self.contacts_start()..self.velocities()].iter().step_by(self.of_contact());
-        modes.filter_map(|name| name.strip_prefix("mode_"))
+    pub fn contacts(&self) -> &[String] {
+        &self.contacts
     }
 
     pub fn append_header(&self, out: &mut Vec<u8>) {
@@ -325,7 +331,7 @@ impl Columns {
     /// the state names it and the robot has no such foot.
     pub fn append_result(&self, report: &Report, carried: Option<&Carried>, out: &mut dyn RowSink) -> Result<()> {
         let mut cells = self.cells(report.id.as_deref(), report.line, carried);
-        cells.0[self.named] = report.verdict.map_or(Cell::Empty, |verdict| Cell::Text(verdict.to_string().into()));
+        cells.0[self.named] = report.verdict.map_or(Cell::Empty, |verdict| Cell::Text(verdict.name().into()));
         cells.0[self.named + 3] = report.proven.map_or(Cell::Empty, Cell::Boolean);
         if let Some(touchdown) = report.touchdown.as_ref().filter(|_| self.kind == RowKind::Touchdown) {
             let start = self.velocities() + self.coordinates;
@@ -374,7 +380,7 @@ impl Columns {
     }
 
     /// A row with the id, the line and what is carried through.
-    fn cells<'c>(&self, id: Option<&Value>, line: Option<usize>, carried: Option<&'c Carried>) -> Cells<'c> {
+    pub(super) fn cells<'c>(&self, id: Option<&Value>, line: Option<usize>, carried: Option<&'c Carried>) -> Cells<'c> {
         let mut cells = Cells(vec![Cell::Empty; self.names.len()]);
         match (id, self.kinds[0]) {
             (Some(Value::Number(id)), Kind::Integer) => cells.0[0] = id.as_i64().map_or(Cell::Empty, Cell::Integer),
@@ -395,15 +401,15 @@ impl Columns {
         cells.0[self.named + 2] = outcome.margin.map_or(Cell::Empty, Cell::Number);
         cells.0[self.named + 3] = Cell::Boolean(outcome.proven);
         for ((&place, mode), impulse) in places.iter().zip(&outcome.modes).zip(&outcome.impulse) {
-            cells.text(place, mode.to_string());
+            cells.text(place, mode.name());
             if !self.brief {
                 impulse.iter().zip(place + 1..).for_each(|(&entry, at)| cells.number(at, entry));
             }
         }
         if let Some(Next { verdict, modes, .. }) = outcome.next.as_ref().filter(|_| self.next) {
-            let name = |mode: &Option<Mode>| mode.map_or_else(|| "open".to_owned(), |mode| mode.to_string());
+            let name = |mode: &Option<Mode>| mode.map_or("open", Mode::name);
             let modes = modes.iter().map(|own| own.iter().map(name).collect::<Vec<_>>().join("/"));
-            cells.text(self.named + FIRST.len(), verdict.to_string());
+            cells.text(self.named + FIRST.len(), verdict.name());
             cells.text(self.named + FIRST.len() + 1, modes.collect::<Vec<_>>().join("; "));
         }
         let velocities = outcome.velocity().take(self.coordinates);
@@ -430,36 +436,34 @@ impl Columns {
     }
 
     /// The first of the last columns.
-    fn last(&self) -> usize {
+    pub(super) fn last(&self) -> usize {
         self.names.len() - LAST.len() + if self.brief { 2 } else { 0 }
     }
 
     /// Among the last columns the one that says whether the outcome is of a family.
-    fn family(&self) -> usize {
+    pub(super) fn family(&self) -> usize {
         self.last() + usize::from(!self.brief)
     }
 
     /// The first column of a velocity.
-    fn velocities(&self) -> usize {
+    pub(super) fn velocities(&self) -> usize {
         self.contacts_start() + self.of_contact() * self.contacts.len()
     }
 
     /// The first column of a contact.
-    fn contacts_start(&self) -> usize {
+    pub(super) fn contacts_start(&self) -> usize {
         self.named + FIRST.len() + if self.next { NEXT.len() } else { 0 }
     }
 
     /// How many columns a contact has.
-    fn of_contact(&self) -> usize {
+    pub(super) fn of_contact(&self) -> usize {
         if self.brief { 1 } else { 3 }
     }
 
     /// The first of a contact's columns.
     fn place(&self, contact: &str) -> Result<usize> {
-        self.contacts
-            .get(contact)
-            .map(|at| self.contacts_start() + self.of_contact() * at)
-            .ok_or_else(|| no_column(contact))
+        let at = self.contacts.iter().position(|known| known == contact).ok_or_else(|| no_column(contact))?;
+        Ok(self.contacts_start() + self.of_contact() * at)
     }
 }
 
@@ -501,7 +505,7 @@ pub(super) fn border(outcome: &Outcome) -> String {
 
 /// The modes of the families that have outcome `at` as a corner, as one cell.
 pub(super) fn families(families: &[Family], at: usize) -> String {
-    let modes = |family: &Family| family.modes.iter().map(Mode::to_string).collect::<Vec<_>>().join("/");
+    let modes = |family: &Family| family.modes.iter().map(|mode| mode.name()).collect::<Vec<_>>().join("/");
     let of_outcome = families.iter().filter(|family| family.corners.contains(&at));
     of_outcome.map(modes).collect::<Vec<_>>().join("; ")
 }

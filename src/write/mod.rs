@@ -22,6 +22,8 @@ mod csv;
 #[cfg(feature = "columnar")]
 mod columnar;
 mod arrays;
+#[cfg(feature = "columnar")]
+mod stream;
 mod inspection;
 pub mod notes;
 pub mod sweep;

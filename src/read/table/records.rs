@@ -7,10 +7,11 @@
 //! ```
 
 use super::flat;
+use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
 /// How the records of a table are written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Form {
     /// Fields with commas between them.
     #[default]

@@ -9,7 +9,7 @@ use crate::gait::spatial::{Spatial, project};
 use crate::law::Friction;
 use crate::read::json::{id_in, id_of};
 use crate::robot::Base;
-use crate::state::{ByLink, Defaults, Scene, State};
+use crate::state::{ByLink, Defaults, State};
 use crate::{Error, Reason, Result, Robot};
 #[cfg(feature = "columnar")]
 use arrow_array::{Array, RecordBatch};
@@ -275,8 +275,9 @@ impl Row<'_> {
         }
         let stance = self.stance(robot)?;
         let place_lowest = defaults.place_lowest && stance.is_none();
-        let scene = Scene { stance, place_lowest, loops: defaults.loops.clone(), ..Scene::default() };
-        let mut state = State { id: self.id(), scene, ..State::zero(robot) };
+        let mut state = State { id: self.id(), ..State::zero(robot) };
+        (state.scene.stance, state.scene.place_lowest) = (stance, place_lowest);
+        state.scene.loops.clone_from(&defaults.loops);
         let mut friction = None;
         for (at, &column) in self.header.columns.iter().enumerate() {
             match column {
@@ -293,7 +294,7 @@ impl Row<'_> {
                         state.scene.restitution = ByLink::everywhere(self.restitution(at)?);
                     }
                 }
-                TableColumn::Id if self.is_given(at)? && self.id().is_none() => {
+                TableColumn::Id if state.id.is_none() && self.is_given(at)? => {
                     return Err(self
                         .refuse(at, Reason::WrongKind { expected: "a string or a number", found: "something else" }));
                 }

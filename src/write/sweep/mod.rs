@@ -12,7 +12,7 @@ mod text;
 pub(super) use samples::RefusedSample;
 pub use samples::{SampleRecord, columns};
 
-use super::ErrorObject;
+use super::{ErrorObject, append_line};
 use crate::pipeline::Aspect;
 use crate::sweep::{
     Area, BorderCurve, CELLS, Findings, Map, Parameter, Regime, Region, RegionBorder, Study, Survey, WATCHED_CONTACTS,
@@ -118,6 +118,13 @@ impl<'a> Regions<'a> {
             Findings::Along(survey) => Self::Along(Sweep::new(study, survey)),
             Findings::Map(map) => Self::Map(MapSweep::new(study, map)),
         }
+    }
+
+    /// The object up to its samples, with commas between them, behind which `]}` ends it.
+    pub fn append_head(&self, out: &mut Vec<u8>) {
+        append_line(out, self);
+        out.truncate(out.len().saturating_sub(b"}\n".len()));
+        out.extend(b",\"samples\":[");
     }
 }
 
