@@ -58,6 +58,10 @@ struct Facet<T> {
 impl<T: Ordered> Hull<'_, T> {
     /// A corner of S that is farthest in a direction.
     fn farthest(&self, direction: &[T]) -> Result<Vec<T>, Unsettled> {
+        T::keeping(|| self.farthest_of(direction))
+    }
+
+    fn farthest_of(&self, direction: &[T]) -> Result<Vec<T>, Unsettled> {
         let rank = 0..self.image.len();
         let axis = |own| rank.clone().map(|at| if at == own { T::one() } else { T::zero() }).collect();
         let axes = rank.clone().map(axis);
@@ -152,8 +156,11 @@ impl<T: Ordered> Hull<'_, T> {
     fn normals(&self, through: &[usize]) -> Result<Vec<Vec<T>>, Unsettled> {
         let equation =
             |&corner: &usize| extended(&difference(&self.corners[corner], &self.corners[through[0]]), T::zero());
-        let equations = through.iter().skip(1).map(equation).collect();
-        Ok(solve(self.image.len(), equations)?.ok_or(Unsettled)?.directions)
+        let found = T::keeping(|| {
+            let equations = through.iter().skip(1).map(equation).collect();
+            Ok(solve(self.image.len(), equations)?.ok_or(Unsettled)?.directions.concat())
+        })?;
+        Ok(found.chunks(self.image.len()).map(<[T]>::to_vec).collect())
     }
 
     /// How far a point lies beyond a facet, in a scale of its own.

@@ -77,7 +77,7 @@ impl FamiliesPass<'_, '_> {
             let corner = if let Some(place) = self.collected.place_of(&modes) {
                 Corner::Isolated(place)
             } else {
-                let outcome = Equations::of(exact, scale, &modes).outcome_at(&velocity)?;
+                let outcome = T::freeing(|| Equations::of(exact, scale, &modes).outcome_at(&velocity))?;
                 family.is_sharp &= outcome.numbers.are_sharp;
                 let own = self.pending.iter().find(|other| other.modes == modes).unwrap_or(pending);
                 Corner::OfFamily(own.number, outcome)

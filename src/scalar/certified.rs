@@ -49,6 +49,16 @@ impl<B: Ordered> Ordered for Certified<B> {
         B::freeing(work)
     }
 
+    fn keeping<E>(work: impl FnOnce() -> Result<Vec<Self>, E>) -> Result<Vec<Self>, E> {
+        let mut residues = Vec::new();
+        let enclosures = B::keeping(|| {
+            let kept = work()?;
+            residues.extend(kept.iter().map(|number| number.residue));
+            Ok(kept.into_iter().map(|number| number.enclosure).collect())
+        })?;
+        Ok(enclosures.into_iter().zip(residues).map(|(enclosure, residue)| Self { enclosure, residue }).collect())
+    }
+
     fn error(self) -> f64 {
         self.enclosure.error()
     }

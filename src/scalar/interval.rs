@@ -201,6 +201,12 @@ impl Ordered for Interval {
         Self::scope(STORE.with_borrow(|store| store.bits), work)
     }
 
+    fn keeping<E>(work: impl FnOnce() -> Result<Vec<Self>, E>) -> Result<Vec<Self>, E> {
+        let kept: Vec<Option<Enclosed>> =
+            Self::freeing(|| work().map(|kept| kept.into_iter().map(Self::value).collect()))?;
+        Ok(kept.into_iter().map(Self::keep).collect())
+    }
+
     fn error(self) -> f64 {
         self.value().map_or(f64::INFINITY, |value| value.radius.to_f64())
     }
@@ -437,5 +443,8 @@ mod tests {
         let before = count();
         let sign = Interval::scope(99, || (outside * Interval::from_f64(-1.5)).sign());
         assert_eq!((sign, count()), (Sign::Negative, before));
+        let product = || Ok::<_, ()>(vec![outside * Interval::from_f64(-1.5) * Interval::from_f64(4.0)]);
+        let kept = Interval::keeping(product).unwrap();
+        assert_eq!((kept[0].to_f64(), count().0), (-12.0, before.0 + 1));
     }
 }

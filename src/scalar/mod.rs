@@ -131,6 +131,11 @@ pub trait Ordered: Real {
         work()
     }
 
+    /// The same for numbers of which only what `work` returns is kept.
+    fn keeping<E>(work: impl FnOnce() -> Result<Vec<Self>, E>) -> Result<Vec<Self>, E> {
+        work()
+    }
+
     /// How far the number may be from [`Ordered::to_f64`], that rounding excepted; infinite if nothing is known.
     fn error(self) -> f64;
 }
