@@ -5,6 +5,7 @@ use crate::study::{Work, studied};
 use crate::values::refused;
 use crate::watch::without_python;
 use heelstrike::cli::threads;
+use heelstrike::draw::Forward;
 use heelstrike::draw::robot::picture;
 use heelstrike::draw::sweep;
 use heelstrike::pipeline::Aspect;
@@ -19,7 +20,7 @@ type Shown = (Option<String>, String);
 pub fn robot(model: &Model) -> Shown {
     let Model { robot, options, .. } = model;
     let text = Inspection::new(robot, &options.feet).text(&Palette::default(), false);
-    (picture::robot(robot, &options.feet).svg(), text)
+    (picture::robot(robot, &options.feet, Forward::Along).svg(), text)
 }
 
 /// Answers a question again, which was a state or a study, and shows it.
@@ -31,7 +32,7 @@ pub fn answer(py: Python<'_>, model: &Model, kind: &str, question: &str, frictio
             let work = Work { friction, threads: threads(0), budget: None };
             let drawn = studied(model, question, work, |study, findings, workers| {
                 let text = Regions::new(study.study, findings).text(&robot.name, &Palette::default());
-                (sweep::of(study, findings, workers).svg(), text)
+                (sweep::of(study, findings, Forward::Along, workers).svg(), text)
             });
             return Ok(drawn?.0);
         }
@@ -40,7 +41,10 @@ pub fn answer(py: Python<'_>, model: &Model, kind: &str, question: &str, frictio
         let shown = model.answer(question, asked, |state, impact, report| {
             let subject = Subject::of_state(robot, state, impact);
             let text = text(report, &subject, Detail::default(), &Palette::default());
-            (picture::impact(robot, &options.feet, state, impact).and_then(|picture| picture.svg()), text)
+            (
+                picture::impact(robot, &options.feet, state, impact, Forward::Along).and_then(|picture| picture.svg()),
+                text,
+            )
         });
         Ok(shown?.1)
     };

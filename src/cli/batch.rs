@@ -8,7 +8,7 @@ use super::options::{
 };
 use super::origin::{Asked, Origin};
 use super::output::{NewFile, apart, spare, writable};
-use super::picture::PlotOptions;
+use super::picture::{MirrorOptions, PlotOptions};
 use super::recording::{RecordingOptions, Samples};
 use super::resume::BatchOutput;
 use super::robot::RobotOptions;
@@ -16,6 +16,7 @@ use super::sink::{OutputSink, note_part};
 use super::{Answered, Completion, Failure, input, progress};
 use crate::batch::{self, Batch, Chunks, Question, Recording, Summary};
 use crate::budget::TotalBudget;
+use crate::draw::page::Gait;
 use crate::error::Location;
 use crate::error::excerpt::Excerpt;
 use crate::gait::{Dropped, Thresholds};
@@ -88,6 +89,8 @@ pub struct Args {
     summary: Option<PathBuf>,
     #[command(flatten)]
     plot: PlotOptions<true>,
+    #[command(flatten)]
+    mirror: MirrorOptions,
     /// Whether refused states make the exit status 1
     #[arg(long, value_name = "HOW", value_parser = choice(ON_REFUSED), default_value = "fail", help_heading = "Output")]
     refused: Answered,
@@ -148,6 +151,7 @@ pub(super) fn run(args: &Args) -> Completion {
     let mut output = args.begin(&question, (input_format, format), &head, origin)?;
     let ((answered, refused), begun) = (output.kept(), output.is_empty()?);
     let mut sink = OutputSink::new(output, &name, &progress);
+    sink.gait = Gait::new(args.mirror.forward());
     if begun {
         sink.write(&head)?;
     }

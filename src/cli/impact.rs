@@ -5,7 +5,7 @@ use super::options::{
     BudgetOptions, ContactOptions, DetailOptions, LoopOptions, NextOption, SceneOptions, pipeline_options,
 };
 use super::output::{Format, OutputOptions};
-use super::picture::PlotOptions;
+use super::picture::{MirrorOptions, PlotOptions};
 use super::robot::RobotOptions;
 use super::stream::{SUMMED_UP, answer_all, append};
 use super::{Completion, Failure, input};
@@ -52,6 +52,8 @@ pub(super) struct StateArgs {
     #[command(flatten)]
     plot: PlotOptions<false>,
     #[command(flatten)]
+    mirror: MirrorOptions,
+    #[command(flatten)]
     output: OutputOptions,
 }
 
@@ -88,7 +90,7 @@ impl StateArgs {
             own_friction += u64::from(defaults.friction.is_some() && state.scene.friction.default != defaults.friction);
             let impact = pipeline.answer(&state)?;
             if plotted {
-                drawn = picture::impact(&robot, &feet, &state, &impact);
+                drawn = picture::impact(&robot, &feet, &state, &impact, self.mirror.forward());
             }
             let report = Report::of_state(&robot, &state, &impact, detail)?;
             append(&report, &Subject::of_state(&robot, &state, &impact), detail, palette, out);

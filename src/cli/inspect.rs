@@ -3,7 +3,7 @@
 use super::diagnostic::with_flags;
 use super::input::InputFile;
 use super::output::OutputOptions;
-use super::picture::PlotOptions;
+use super::picture::{MirrorOptions, PlotOptions};
 use super::robot::RobotOptions;
 use super::stream::only_document;
 use super::{Completion, Failure};
@@ -33,6 +33,8 @@ pub struct Args {
     #[command(flatten)]
     plot: PlotOptions<false>,
     #[command(flatten)]
+    mirror: MirrorOptions,
+    #[command(flatten)]
     output: OutputOptions,
 }
 
@@ -46,8 +48,8 @@ pub(super) fn run(args: &Args) -> Completion {
     let inspection = Inspection::new(&robot, &feet);
     if args.plot.path().is_some() {
         let picture = match &args.state {
-            Some(path) => picture::posed(&robot, &feet, &pose(path, &robot, &feet)?),
-            None => picture::robot(&robot, &feet),
+            Some(path) => picture::posed(&robot, &feet, &pose(path, &robot, &feet)?, args.mirror.forward()),
+            None => picture::robot(&robot, &feet, args.mirror.forward()),
         };
         args.plot.draw(&picture, "the robot has no place in the plane")?;
     }

@@ -2,9 +2,9 @@
 
 use super::Failure;
 use super::output::{NewFile, apart, spare, writable};
-use crate::draw::Picture;
 use crate::draw::page::Page;
 use crate::draw::plot::Rendered;
+use crate::draw::{Forward, Picture};
 use crate::{Error, Reason};
 use std::path::{Path, PathBuf};
 
@@ -19,6 +19,21 @@ pub(super) struct PlotOptions<const PAGES: bool> {
         "Draw a picture to this file, which is replaced; .svg or .png"
     })]
     plot: Option<PathBuf>,
+}
+
+/// Which way is forward in a picture of a robot.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Output")]
+pub(super) struct MirrorOptions {
+    /// Mirror the picture: forward is along -x, and drawn to the right
+    #[arg(long, requires = "plot")]
+    mirror: bool,
+}
+
+impl MirrorOptions {
+    pub fn forward(&self) -> Forward {
+        if self.mirror { Forward::Against } else { Forward::Along }
+    }
 }
 
 impl<const PAGES: bool> PlotOptions<PAGES> {

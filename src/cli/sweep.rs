@@ -8,7 +8,7 @@ use super::options::{
     pipeline_options,
 };
 use super::output::{Output, writable};
-use super::picture::PlotOptions;
+use super::picture::{MirrorOptions, PlotOptions};
 use super::progress;
 use super::robot::{RobotOptions, caution};
 use super::{Answered, Completion, Failure};
@@ -54,6 +54,8 @@ pub struct Args {
     output: Option<PathBuf>,
     #[command(flatten)]
     plot: PlotOptions<true>,
+    #[command(flatten)]
+    mirror: MirrorOptions,
     /// Text lists regions, JSON regions and samples, tables samples [default: by the output's ending, else text]
     #[arg(long, value_enum, help_heading = "Output")]
     format: Option<SweepFormat>,
@@ -160,10 +162,12 @@ pub(super) fn run(args: &Args) -> Completion {
     let regimes = findings.regimes();
     if args.plot.path().is_some() {
         progress.inc_length(picture::work(&model, &findings) as u64);
-        let picture = budget.within(|| picture::of(&model, &findings, workers))?;
+        let picture = budget.within(|| picture::of(&model, &findings, args.mirror.forward(), workers))?;
         let stops = Stops::new(&model, &findings);
         progress.inc_length(if args.plot.is_page() { stops.count() as u64 } else { 0 });
-        let page = |rendered| budget.within(|| Page::of_study(&model, &findings, &stops, rendered, workers));
+        let page = |rendered| {
+            budget.within(|| Page::of_study(&model, &findings, &stops, rendered, args.mirror.forward(), workers))
+        };
         args.plot.draw_or_page(&picture, "no region was found", page)?;
     }
     let mut output = Output::open(args.output.as_deref())?;

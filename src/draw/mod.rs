@@ -2,6 +2,8 @@
 
 #[cfg(feature = "plot")]
 pub mod plot;
+#[cfg(feature = "plot")]
+mod forward;
 pub mod robot;
 #[cfg(feature = "plot")]
 pub mod sweep;
@@ -10,6 +12,8 @@ mod accuracy;
 #[cfg(feature = "plot")]
 pub mod page;
 
+#[cfg(feature = "plot")]
+pub use forward::Forward;
 #[cfg(feature = "plot")]
 pub use plot::Picture;
 pub use robot::Drawing;
@@ -63,6 +67,13 @@ impl Keyframe {
         });
         let drawing = Some(Drawing::of_impact(robot, feet, state, impact));
         Self { drawing, answer, notes: impact.notes.clone() }
+    }
+
+    /// Mirrors it if forward is along -x.
+    #[cfg(feature = "plot")]
+    fn face(&mut self, forward: Forward) {
+        self.drawing.iter_mut().for_each(|drawing| drawing.face(forward));
+        self.answer.iter_mut().for_each(|answer| forward.outcomes(&mut answer.outcomes));
     }
 
     pub fn refused(error: Error) -> Self {

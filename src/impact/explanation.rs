@@ -53,7 +53,7 @@ fn region(beta: f64, gamma: f64) -> ImpulseRegion {
 }
 
 /// The angle of the vector with its tangential part reversed, in -pi..pi.
-fn mirrored(gamma: f64) -> f64 {
+pub(crate) fn mirrored(gamma: f64) -> f64 {
     if gamma >= 0.0 { PI - gamma } else { -PI - gamma }
 }
 

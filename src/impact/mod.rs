@@ -31,6 +31,8 @@ pub use crate::law::{Friction, Inequality, Law, Mode};
 pub use analysis::{CONTACT_LIMIT, Scratch, analyze, too_many_contacts};
 pub use collected::{AnalysisOptions, EXPLAINED, ListedRejections};
 pub(crate) use digits::{DIGITS, is_known};
+#[cfg(feature = "plot")]
+pub(crate) use explanation::mirrored;
 pub use inequalities::Inequalities;
 pub use outcome::{
     Analysis, AtZero, Border, Effort, Explanation, Family, ImpulseRegion, Motion, Next, OpenCombinations, Outcome,

@@ -59,7 +59,9 @@ impl FromStr for Friction {
 
 impl fmt::Display for Friction {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
+        match *self {
+            // Far from one its zeros would be all that is seen.
+            Friction::Finite(mu) if mu != 0.0 && !(1e-5..1e16).contains(&mu) => f.pad(&format!("{mu:e}")),
             Friction::Finite(mu) => mu.fmt(f),
             Friction::Infinite => f.pad("infinite"),
         }

@@ -47,6 +47,15 @@ impl Mode {
         }
     }
 
+    /// The mode with the tangent reversed.
+    pub fn mirrored(self) -> Self {
+        match self {
+            Mode::SlidePlus => Mode::SlideMinus,
+            Mode::SlideMinus => Mode::SlidePlus,
+            Mode::Separate | Mode::Stick => self,
+        }
+    }
+
     /// The mode of a closed contact whose tangential velocity has this sign.
     pub fn closed(velocity: Ordering) -> Self {
         match velocity {

@@ -107,7 +107,7 @@ fn a_picture_names_the_cases_or_explains_its_marks() {
         ("largest error of G", 1),
         ("largest error of impulses and velocities after", 1),
     ] {
-        assert_eq!(few.matches(text).count(), times, "{text}");
+        assert_eq!(few.matches(&format!(">{text}<")).count(), times, "{text}");
     }
     let many = drawn("friction");
     assert!(many.contains("each mark is one of 13 cases by one method"));

@@ -175,6 +175,46 @@ fn only_regions_are_drawn_where_nothing_touches() {
 }
 
 #[test]
+fn touchdowns_are_marks_by_foot_and_mode() {
+    let states: Vec<String> = [0.4, 1.4]
+        .map(|alpha: f64| {
+            let position = json!({"base": {"pitch": -alpha}, "joints": {"hip": -2.0 * alpha}});
+            let velocity = json!({"base": {"pitch": -1}});
+            json!({"stance": "left_leg", "position": position, "velocity": velocity, "friction": 5}).to_string()
+        })
+        .to_vec();
+    let states = file("touchdowns.ndjson", states.join("\n"));
+    let path = place("touchdowns.svg");
+    assert_eq!(heelstrike(&["batch", WALKER, &states, "--plot", &path]).status, 0);
+    let svg = read(&path);
+    // One outcome, then three: the marks of two feet in each, and two keys. Who sticks needs friction, twice the same.
+    let discs = |color: &str| svg.matches(&format!(r##"r="4" fill="{color}"/>"##)).count();
+    assert_eq!([discs("#0072b2"), discs("#d55e00")], [1 + 1 + 1, 4 + 3 + 1], "{svg}");
+    for text in ["minimalistic: 2 of 2 states have impulses", "margin", "slides backward", "lifts off"] {
+        assert!(svg.contains(&format!(">{text}<")), "{text}: {svg}");
+    }
+}
+
+#[test]
+fn a_slide_without_an_arrow_has_its_number() {
+    let svg = svg(&["impact", RAMONE, "examples/ramone.json"], "small_slide");
+    assert!(svg.contains(">left_foot \u{2192} 3.79e-5 m/s<"), "{svg}");
+    assert!(svg.contains("viewBox=") && svg.contains("<title>ramone (alpha = 0.5): Exactly one outcome.</title>"));
+}
+
+#[test]
+fn a_mirror_reverses_what_is_forward() {
+    let mirrored = svg(&["impact", RAMONE, "examples/ramone.json", "--mirror"], "mirrored");
+    assert!(mirrored.contains("left_foot slides backward, right_foot sticks"), "{mirrored}");
+    assert!(mirrored.contains("(mirrored: forward is \u{2212}x)<"), "{mirrored}");
+    let sweep = ["sweep", "urdf/ramone_paper.urdf", "examples/paper/table_1.json"];
+    let [ahead, behind] = [svg(&sweep, "ahead"), svg(&[&sweep[..], &["--mirror"]].concat(), "behind")];
+    let [forward, backward] = ["B, E: left_foot slides forward", "B, E: left_foot slides backward"];
+    assert!(ahead.contains(forward) && behind.contains(backward) && !behind.contains(forward));
+    assert_eq!(heelstrike(&["impact", RAMONE, "examples/ramone.json", "--mirror"]).status, 2, "it needs a picture");
+}
+
+#[test]
 fn pictures_have_a_known_ending() {
     heelstrike(&[&MINIMALISTIC[..], &["--plot", "picture.pdf"]].concat()).refusal(2);
     let own = file("own.svg", "{}");

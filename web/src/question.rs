@@ -2,7 +2,7 @@
 
 use heelstrike::budget::SharedBudget;
 use heelstrike::draw::page::{Page, Stops};
-use heelstrike::draw::{Keyframe, sweep};
+use heelstrike::draw::{Forward, Keyframe, sweep};
 use heelstrike::planar::Vector;
 use heelstrike::robot::{Base, Reduction};
 use heelstrike::sweep::{Findings, RobotStudy, Workers};
@@ -19,7 +19,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 /// How long an answer may take.
-const LONGEST: Duration = Duration::from_secs(2);
+const LONGEST: Duration = Duration::from_secs(1);
 
 /// What the clock goes on by when it is read, which is how long the work between two readings takes.
 const READING: Duration = Duration::from_millis(2);
@@ -196,8 +196,9 @@ impl Model {
         let swept = || {
             let findings = Findings::of(&model, workers);
             let text = Regions::new(study, &findings).text(&robot.name, &Palette::default());
-            let rendered = sweep::of(&model, &findings, workers).render().unwrap_or_default();
-            let page = Page::of_study(&model, &findings, &Stops::new(&model, &findings), rendered, workers);
+            let rendered = sweep::of(&model, &findings, Forward::Along, workers).render().unwrap_or_default();
+            let page =
+                Page::of_study(&model, &findings, &Stops::new(&model, &findings), rendered, Forward::Along, workers);
             json(&Swept { text, svg: page.svg(), page: &page })
         };
         SharedBudget::new(budget()).within(swept).map_err(|spent| study.beyond(spent))

@@ -2,6 +2,7 @@
 
 use super::{Interned, PageState};
 use crate::draw::KeyframeAnswer;
+use crate::draw::plot::significant;
 use crate::draw::robot::{Arrow, Drawing, DrawnBody, DrawnContact, DrawnShape, Extent, picture};
 use crate::planar::{Pair, Vector};
 use crate::write::words::Wording;
@@ -212,18 +213,13 @@ impl PageDrawing {
         Self {
             bodies: drawing.bodies.iter().map(body).collect(),
             bones: drawing.bodies.iter().enumerate().flat_map(bones).collect(),
-            joints: drawing.joints.iter().map(at).collect(),
+            joints: drawing.joints.iter().chain(&drawing.loops).map(at).collect(),
             ground: drawing.ground.iter().map(at).collect(),
             contacts: drawing.contacts.iter().map(contact).collect(),
             applied: drawing.applied.iter().map(arrow).collect(),
             middle: at(&((low + high) * 0.5)),
         }
     }
-}
-
-/// With so many significant digits.
-fn significant(value: f64, digits: usize) -> f64 {
-    format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
 }
 
 /// The vector with five digits in each entry.

@@ -1,16 +1,19 @@
 //! The states of a batch, their margins as a picture, and their page.
 
 use super::{MOST, Page, PageAxis, PageRegion, PageState};
-use crate::draw::ListedKeyframe;
 use crate::draw::plot::{
-    self, Band, Color, LegendEntry, LegendKey, Mark, Panel, Picture, PlotAxis, PlotShape, Rendered, Stroke,
+    self, Band, Color, LegendEntry, LegendKey, Mark, Panel, Picture, PlotAxis, PlotShape, Rendered,
 };
+use crate::draw::{Forward, KeyframeAnswer, ListedKeyframe};
+use crate::error::visible;
+use crate::pipeline::Aspect;
 use crate::write::words;
 use crate::{Mode, Verdict};
 
 /// States in their order, at most [`MOST`] of them: of more every second, third ... one is kept.
 #[derive(Debug, Clone, Default)]
 pub struct Gait {
+    forward: Forward,
     states: Vec<ListedKeyframe>,
     halvings: u32,
     count: usize,
@@ -23,8 +26,14 @@ struct GaitRun<'g> {
 }
 
 impl Gait {
-    pub fn push(&mut self, state: ListedKeyframe) {
+    /// Without states.
+    pub fn new(forward: Forward) -> Self {
+        Self { forward, ..Self::default() }
+    }
+
+    pub fn push(&mut self, mut state: ListedKeyframe) {
         if self.count.is_multiple_of(1 << self.halvings) {
+            state.keyframe.face(self.forward);
             self.states.push(state);
         }
         self.count += 1;
@@ -54,18 +63,82 @@ impl Gait {
         runs.collect()
     }
 
+    /// Margins and needed friction of the contacts of every impact.
     pub fn picture(&self, robot: &str) -> Picture {
         let (name, order) = self.order();
         let runs = self.runs(&order);
         let label = if name == "time" { "time [s]" } else { name };
-        let shapes = runs.iter().flat_map(GaitRun::shapes).collect();
-        let axes = Panel::new(PlotAxis::new(label), PlotAxis::new("margin"));
-        let looks = LOOKS.iter().filter(|look| runs.iter().any(|run| run.look().answer == look.answer));
-        Picture {
-            title: format!("{robot}: margins of all outcomes; marks are single states"),
-            rows: vec![vec![Panel { size: (640.0, 260.0), bands: bands(&runs), shapes, ..axes }]],
-            legend: looks.map(|look| LegendEntry::new(look.words, LegendKey::Fill(look.fill))).collect(),
+        let span = plot::range(order.iter().copied()).unwrap_or_default();
+        let room = if span.0 < span.1 { 0.04 * (span.1 - span.0) } else { 0.5 };
+        let range = (span.0 - room, span.1 + room);
+        let x = PlotAxis { range: Some(range), ..PlotAxis::new(label) };
+        let contacts = |(_, state, _): (_, &ListedKeyframe, _)| Some(state.keyframe.drawing.as_ref()?.contacts.len());
+        let count: usize = self.impacts().filter_map(contacts).sum();
+        let beside = BESIDE.min(0.8 * WIDTH / count as f64);
+        let size = plot::MARK.min(0.5 * beside).max(1.5);
+        let (feet, marks) = self.marks(&order, beside * (range.1 - range.0) / WIDTH);
+        let values: [(&str, MarkValue); 2] =
+            [("margin", |mark| mark.margin), ("friction needed", |mark| mark.friction)];
+        let panel = |(quantity, value)| panel(quantity, x.clone(), &marks, size, value);
+        let mut panels: Vec<Panel> = values.into_iter().filter_map(panel).collect();
+        if panels.is_empty() {
+            let y = PlotAxis { bare: true, ..PlotAxis::default() };
+            panels.push(Panel { size: (WIDTH, 60.0), ..Panel::new(x, y) });
         }
+        let aspect = self.impacts().next().map_or(Aspect::default(), |(.., answer)| answer.aspect);
+        let given = words::Wording::of(aspect).drawn.given.0;
+        let last = panels.len() - 1;
+        for (at, panel) in panels.iter_mut().enumerate() {
+            (panel.bands, panel.x.bare) = (bands(&runs), at < last);
+        }
+        let looks = LOOKS.iter().filter(|look| runs.iter().any(|run| run.look().answer == look.answer));
+        let entry = |name: &str, key| LegendEntry::new(name, key);
+        let feet = feet.iter().enumerate();
+        let legend = feet.map(|(foot, name)| entry(name, LegendKey::Mark(Mark::Circle, FEET[foot % FEET.len()])));
+        let shapes = MODES.iter().filter(|(mode, ..)| marks.iter().any(|mark| mark.mode == *mode));
+        let legend = legend.chain(shapes.map(|(_, shape, words)| entry(words, LegendKey::Mark(*shape, Color::Gray))));
+        Picture {
+            title: format!(
+                "{robot}: {} of {} states have {given}s{}",
+                self.impacts().count(),
+                self.states.len(),
+                self.forward.remark()
+            ),
+            rows: panels.into_iter().map(|panel| vec![panel]).collect(),
+            legend: legend.chain(looks.map(|look| entry(look.words, LegendKey::Fill(look.fill)))).collect(),
+        }
+    }
+
+    /// States with an outcome that is not rest, with their numbers.
+    fn impacts(&self) -> impl Iterator<Item = (usize, &ListedKeyframe, &KeyframeAnswer)> {
+        self.states.iter().enumerate().filter_map(|(number, state)| {
+            let answer = state.keyframe.answer.as_ref().ok()?;
+            let happens = !matches!(answer.verdict, Verdict::NoImpact | Verdict::NoContact | Verdict::None);
+            happens.then_some((number, state, answer))
+        })
+    }
+
+    /// The feet, and the contacts of every impact; those of one outcome stand `beside` each other.
+    fn marks(&self, order: &[f64], beside: f64) -> (Vec<String>, Vec<GaitMark>) {
+        let (mut feet, mut marks): (Vec<String>, Vec<GaitMark>) = (Vec::new(), Vec::new());
+        for (number, state, answer) in self.impacts() {
+            let contacts = state.keyframe.drawing.as_ref().map_or(&[][..], |drawing| &drawing.contacts);
+            let middle = 0.5 * contacts.len().saturating_sub(1) as f64;
+            for outcome in &answer.outcomes {
+                for (at, (contact, &mode)) in contacts.iter().zip(&outcome.modes).enumerate() {
+                    // Contacts of one link are link/0, link/1 ...
+                    let link = contact.name.rsplit_once('/').filter(|(_, count)| count.parse::<u32>().is_ok());
+                    let link = visible(link.map_or(&*contact.name, |(link, _)| link)).into_owned();
+                    let known = feet.iter().position(|foot| *foot == link);
+                    let foot = known.unwrap_or(feet.len());
+                    feet.extend(known.is_none().then_some(link));
+                    let place = order[number] + beside * (at as f64 - middle);
+                    let friction = outcome.friction_needed.get(at).copied().flatten();
+                    marks.push(GaitMark { foot, mode, at: place, margin: outcome.margin, friction });
+                }
+            }
+        }
+        (feet, marks)
     }
 
     pub fn page(&self, robot: &str, rendered: Rendered) -> Page {
@@ -127,49 +200,78 @@ impl GaitRun<'_> {
         let answer = self.states[0].keyframe.answer.as_ref().ok().map(|answer| answer.verdict);
         LOOKS.iter().find(|look| look.answer == answer).unwrap_or(&LOOKS[0])
     }
+}
 
-    /// A line for each outcome, or a mark for a single state.
-    fn shapes(&self) -> Vec<PlotShape> {
-        let StateLook { answer, color, mark, .. } = *self.look();
-        let marks = |points| PlotShape::Marks { points, mark, color, size: plot::MARK };
-        if answer.is_none() {
-            return vec![marks(self.at.iter().map(|&at| (at, 0.0)).collect())];
-        }
-        let curve = |outcome: usize| -> Vec<plot::PlotPoint> {
-            let margin = |state: &ListedKeyframe| state.keyframe.answer.as_ref().ok()?.outcomes.get(outcome)?.margin;
-            self.at.iter().zip(self.states).map(|(&at, state)| (at, margin(state).unwrap_or(f64::NAN))).collect()
-        };
-        let outcomes = self.states[0].keyframe.answer.as_ref().map_or(0, |answer| answer.outcomes.len());
-        let shape = |outcome: usize| match self.states {
-            [_] => marks(curve(outcome)),
-            _ => PlotShape::Line { points: curve(outcome), stroke: Stroke::solid(color, 1.6) },
-        };
-        (0..outcomes).map(shape).collect()
-    }
+/// A contact in an outcome: the number of its foot, how it ends and where it is along x.
+struct GaitMark {
+    foot: usize,
+    mode: Mode,
+    at: f64,
+    margin: Option<f64>,
+    friction: Option<f64>,
+}
+
+/// What a panel shows of a mark.
+type MarkValue = fn(&GaitMark) -> Option<f64>;
+
+/// The width inside of the axes, and between the contacts of one outcome \[px\].
+const WIDTH: f64 = 640.0;
+const BESIDE: f64 = 9.0;
+/// Values whose largest is so many times their least need a logarithmic axis.
+const DECADES: f64 = 50.0;
+
+/// The colors of feet, in turn.
+const FEET: [Color; 6] = [Color::Blue, Color::Vermilion, Color::Green, Color::Purple, Color::Black, Color::Orange];
+
+/// The marks of modes.
+const MODES: [(Mode, Mark, &str); 4] = [
+    (Mode::Separate, Mark::Triangle, "lifts off"),
+    (Mode::Stick, Mark::Circle, "sticks"),
+    (Mode::SlidePlus, Mark::Right, "slides forward"),
+    (Mode::SlideMinus, Mark::Left, "slides backward"),
+];
+
+/// A quantity of contacts; `None` if none has a value.
+fn panel(label: &str, x: PlotAxis, marks: &[GaitMark], size: f64, value: MarkValue) -> Option<Panel> {
+    let finite = |mark: &GaitMark| value(mark).filter(|value| value.is_finite());
+    let (_, most) = plot::range(marks.iter().filter_map(finite))?;
+    let positive = plot::range(marks.iter().filter_map(finite).filter(|value| *value > 0.0));
+    let negative = marks.iter().filter_map(finite).any(|value| value < 0.0);
+    let least = positive.map(|(least, _)| least).filter(|least| !negative && most > DECADES * least);
+    // Zero has no place on a logarithmic axis.
+    let zero = least.map(|least| 0.1 * least);
+    let place = |value: f64| zero.map_or(value, |zero| value.max(zero));
+    let has_zero = zero.is_some() && marks.iter().filter_map(finite).any(|value| value == 0.0);
+    let points = marks.iter().filter_map(|mark| Some(((mark.foot, mark.mode), (mark.at, place(finite(mark)?)))));
+    let shape = |((foot, mode), points)| {
+        let mark = MODES.iter().find(|look| look.0 == mode).map_or(Mark::Cross, |look| look.1);
+        PlotShape::Marks { points, mark, color: FEET[foot % FEET.len()], size }
+    };
+    let shapes = words::grouped(points).into_iter().map(shape).collect();
+    let y = PlotAxis { logarithmic: zero.is_some(), ..PlotAxis::new(label) };
+    let title = if has_zero { "\nthe lowest marks are zero".to_owned() } else { String::new() };
+    Some(Panel { title, size: (WIDTH, 180.0), shapes, ..Panel::new(x, y) })
 }
 
 struct StateLook {
     /// `None` if they are refused.
     answer: Option<Verdict>,
     words: &'static str,
-    /// Of lines and marks.
-    color: Color,
     /// Of bands, and of the track behind the slider.
     fill: Color,
-    mark: Mark,
 }
 
 static LOOKS: [StateLook; 7] = {
-    const fn look(answer: Option<Verdict>, words: &'static str, color: Color, fill: Color, mark: Mark) -> StateLook {
-        StateLook { answer, words, color, fill, mark }
+    const fn look(answer: Option<Verdict>, words: &'static str, fill: Color) -> StateLook {
+        StateLook { answer, words, fill }
     }
     [
-        look(Some(Verdict::Unique), "unique", Color::Blue, Color::Tint(3), Mark::Circle),
-        look(Some(Verdict::Ambiguous), "ambiguous", Color::Vermilion, Color::Tint(1), Mark::Diamond),
-        look(Some(Verdict::None), "none", Color::Black, Color::Tint(5), Mark::Star),
-        look(Some(Verdict::Undecided), "undecided", Color::Purple, Color::Tint(5), Mark::Triangle),
-        look(Some(Verdict::NoImpact), "no impact", Color::Green, Color::Tint(2), Mark::Circle),
-        look(Some(Verdict::NoContact), "no contact", Color::Gray, Color::White, Mark::Ring),
-        look(None, "refused", Color::Black, Color::Pale, Mark::Cross),
+        look(Some(Verdict::Unique), "unique", Color::Tint(0)),
+        look(Some(Verdict::Ambiguous), "ambiguous", Color::Tint(1)),
+        look(Some(Verdict::None), "none", Color::Tint(5)),
+        look(Some(Verdict::Undecided), "undecided", Color::Tint(11)),
+        look(Some(Verdict::NoImpact), "no impact", Color::Tint(2)),
+        look(Some(Verdict::NoContact), "no contact", Color::White),
+        look(None, "refused", Color::Pale),
     ]
 };

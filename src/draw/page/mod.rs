@@ -24,6 +24,8 @@ use serde::Serialize;
 use serde_json::value::RawValue;
 use std::collections::HashMap;
 
+/// The beginning of this page and of the live one.
+const HEAD: &str = include_str!("head.html");
 const TEMPLATE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
 /// In the order in which they need each other.
@@ -122,7 +124,8 @@ impl Page {
     pub fn html(&self) -> String {
         // As text of HTML.
         let title = self.title.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
-        let parts: [(&str, &str); 6] = [
+        let parts: [(&str, &str); 7] = [
+            ("{head}", HEAD),
             ("{title}", &title),
             ("{style}", STYLE),
             ("{heading}", &title),

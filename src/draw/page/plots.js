@@ -7,12 +7,8 @@ class Plots {
     this.picture = element.querySelector("svg");
     this.cursors = [];
     if (!this.picture) return;
-    const [width, height] = ["width", "height"].map((side) => this.picture.getAttribute(side));
-    this.picture.setAttribute("viewBox", `0 0 ${width} ${height}`);
     this.picture.removeAttribute("width");
     this.picture.removeAttribute("height");
-    this.picture.setAttribute("role", "img");
-    this.picture.setAttribute("aria-label", `Plots of ${data.title}`);
     this.cursors = data.windows.map((window) => this.cursor(window));
     this.picture.append(...this.cursors.flatMap((cursor) => cursor.lines));
     const pick = (event) => {

@@ -5,9 +5,9 @@
 //! ```
 
 use super::{MOST, Page, PageAxis, PageRegion, PageState};
-use crate::draw::Keyframe;
 use crate::draw::plot::{Color, Rendered};
 use crate::draw::sweep::{fills_along, fills_of_map};
+use crate::draw::{Forward, Keyframe};
 use crate::state::State;
 use crate::sweep::{Findings, Map, Parameter, RESOLUTION, Regime, Region, RobotStudy, Solver, Survey, Workers};
 use crate::write::sweep::{MapRegion, MapSweep, RegionRecord, Sweep};
@@ -79,15 +79,23 @@ impl Stops {
 
 impl Page {
     /// The page of a study: what was found, the stops, its picture; `workers` count each stop.
-    pub fn of_study(model: &RobotStudy, found: &Findings, stops: &Stops, rendered: Rendered, workers: Workers) -> Self {
+    pub fn of_study(
+        model: &RobotStudy,
+        found: &Findings,
+        stops: &Stops,
+        rendered: Rendered,
+        forward: Forward,
+        workers: Workers,
+    ) -> Self {
         let parameters = model.study.parameters();
         let look = |solver: &mut _, index| look(model, solver, &stops.point(index));
         let seen = workers.map(stops.count(), || Solver::new(model), look);
-        let (regions, notes) = match found {
+        let (regions, notes) = match &forward.findings(found) {
             Findings::Along(survey) => along(Sweep::new(model.study, survey), survey),
             Findings::Map(map) => areas(MapSweep::new(model.study, map), map),
         };
-        let state = |(index, (keyframe, regime)): (usize, (Keyframe, Regime))| {
+        let state = |(index, (mut keyframe, regime)): (usize, (Keyframe, Regime))| {
+            keyframe.face(forward);
             let region = match found {
                 Findings::Along(survey) => {
                     let at = stops.point(index)[0];
@@ -100,7 +108,7 @@ impl Page {
         };
         let states: Vec<PageState> = seen.into_iter().enumerate().map(state).collect();
         let names: Vec<&str> = parameters.iter().map(|parameter| parameter.name.as_str()).collect();
-        let title = format!("{} against {}", model.robot.name, names.join(" and "));
+        let title = format!("{} against {}{}", model.robot.name, names.join(" and "), forward.remark());
         let axis = |(name, values): (&str, &Vec<f64>)| PageAxis { name: name.to_owned(), values: values.clone() };
         let axes = names.into_iter().zip(&stops.values).map(axis).collect();
         let notes = stops.note(parameters).into_iter().chain(notes).collect();

@@ -201,6 +201,11 @@ impl Span {
     }
 }
 
+/// With so many significant digits.
+pub(in crate::draw) fn significant(value: f64, digits: usize) -> f64 {
+    format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
+}
+
 /// The first of 1, 2, 5, 10 ... that is not less.
 fn step(least: f64) -> f64 {
     let unit = libm::pow(10.0, libm::floor(libm::log10(least)));

@@ -36,6 +36,9 @@ impl Stroke {
 
 #[derive(Debug)]
 pub(super) struct Canvas {
+    /// What it is, and what it shows, for people who do not see it.
+    pub title: String,
+    pub description: String,
     pub size: Pixel,
     pub layer: PlotLayer,
 }
@@ -86,10 +89,9 @@ pub(super) enum Anchor {
 pub(super) const RIM: f64 = 1.5;
 
 impl TextLine {
-    /// A black text without a rim; without what XML cannot hold, and without its middle if it is very long.
+    /// A black text without a rim, and without its middle if it is very long.
     pub fn new(at: Pixel, content: &str, size: u32, anchor: Anchor) -> Self {
-        let printable = |letter: &char| !letter.is_control() && !matches!(letter, '\u{fffe}' | '\u{ffff}');
-        let content = font::drawn(content).chars().filter(printable).collect();
+        let content = font::drawn(content).into_owned();
         Self { at, content, size, anchor, color: Color::Black, rim: false, upward: false }
     }
 
@@ -155,8 +157,12 @@ impl Canvas {
             }
         }
         let (width, height, white) = (Short(self.size.0), Short(self.size.1), Color::White.hex());
-        let size = format!(r#"xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}""#);
-        let head = format!(r#"<svg {size} font-family="{}" stroke-linejoin="round">"#, font::FAMILY);
+        let size = format!(r#"width="{width}" height="{height}" viewBox="0 0 {width} {height}" role="img""#);
+        let [title, description] = [&self.title, &self.description].map(|text| escaped(text));
+        let head = format!(
+            r#"<svg xmlns="http://www.w3.org/2000/svg" {size} font-family="{}" stroke-linejoin="round"><title>{title}</title><desc>{description}</desc>"#,
+            font::FAMILY
+        );
         let paper = format!(r#"<rect width="100%" height="100%" fill="{white}"/>"#);
         format!("{head}{paper}{}{}</svg>", clips.concat(), self.layer)
     }
@@ -227,9 +233,15 @@ impl Display for TextLine {
             let (white, width) = (Color::White.hex(), 2.0 * RIM);
             write!(out, r#" stroke="{white}" stroke-width="{width}" paint-order="stroke""#)?;
         }
-        let content = self.content.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
-        write!(out, ">{content}</text>")
+        write!(out, ">{}</text>", escaped(&self.content))
     }
+}
+
+/// As text of XML, without what that cannot hold.
+fn escaped(text: &str) -> String {
+    let printable = |letter: &char| !letter.is_control() && !matches!(letter, '\u{fffe}' | '\u{ffff}');
+    let text: String = text.chars().filter(printable).collect();
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 /// A number with two decimals at most: nobody sees a hundredth of a pixel.

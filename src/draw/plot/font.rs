@@ -42,13 +42,18 @@ const TEXT: usize = 4000;
 const TAIL: usize = 40;
 
 /// The text without its middle if it is longer than it is drawn.
-pub(super) fn shortened(text: &str, most: usize) -> Cow<'_, str> {
+fn shortened(text: &str, most: usize) -> Cow<'_, str> {
     if text.chars().nth(most).is_none() {
         return text.into();
     }
     let head: String = text.chars().take(most - TAIL - 1).collect();
     let tail = text.char_indices().nth_back(TAIL - 1).map_or("", |(start, _)| &text[start..]);
     format!("{head}…{tail}").into()
+}
+
+/// A text as it is drawn.
+pub(super) fn readable(text: &str) -> Cow<'_, str> {
+    shortened(text, TEXT)
 }
 
 /// A line as it is drawn.
@@ -68,7 +73,7 @@ pub(super) fn width(text: &str, size: u32) -> f64 {
 /// The text in lines of at most `room` \[px\], broken at spaces; a longer word keeps its own line.
 pub(super) fn lines(text: &str, size: u32, room: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
-    for paragraph in shortened(text, TEXT).lines() {
+    for paragraph in readable(text).lines() {
         let mut line = String::new();
         for word in paragraph.split(' ').map(drawn) {
             let longer = if line.is_empty() { word.clone().into_owned() } else { format!("{line} {word}") };

@@ -13,13 +13,20 @@ pub struct LegendEntry {
     pub key: LegendKey,
 }
 
-/// The sign of a line, a mark, an area or an arrow, whose length is in units of the first panel's x axis.
-#[derive(Debug, Clone, Copy)]
+/// The sign of a line, a mark, an area, or an arrow or a distance, whose length is in units of the first panel's x
+/// axis.
+#[derive(Debug, Clone)]
 pub enum LegendKey {
     Line(Stroke),
     Mark(Mark, Color),
     Fill(Color),
-    Arrow { stroke: Stroke, length: f64 },
+    /// A line in areas of these colors, side by side.
+    LineIn(Stroke, Vec<Color>),
+    Arrow {
+        stroke: Stroke,
+        length: f64,
+    },
+    Length(f64),
 }
 
 impl LegendEntry {
@@ -112,25 +119,37 @@ fn total(columns: &[Column]) -> f64 {
 }
 
 impl LegendKey {
-    fn width(self, scale: f64) -> f64 {
+    fn width(&self, scale: f64) -> f64 {
         match self {
-            Self::Line(_) => KEY,
+            Self::Line(_) | Self::LineIn(..) => KEY,
             Self::Mark(..) => 0.4 * KEY,
             Self::Fill(_) => 0.6 * KEY,
-            Self::Arrow { length, .. } => length * scale,
+            Self::Arrow { length, .. } | Self::Length(length) => length * scale,
         }
     }
 
     /// Draws it from a pixel on, at most `most` wide, in whose middle a mark is.
-    fn draw(self, (x, y): Pixel, scale: f64, most: f64, out: &mut PlotLayer) {
+    fn draw(&self, (x, y): Pixel, scale: f64, most: f64, out: &mut PlotLayer) {
         let width = self.width(scale);
-        match self {
+        let rectangle = |x, width, fill, out: &mut PlotLayer| {
+            out.rectangle((x, y - 6.0), (width, 12.0), Some(fill), Some(Stroke::solid(Color::Gray, 0.8)));
+        };
+        match *self {
             Self::Line(stroke) => out.line(vec![(x, y), (x + width, y)], stroke),
             Self::Mark(mark, color) => mark.draw((x + 0.5 * most, y), color, MARK, out),
-            Self::Fill(color) => {
-                out.rectangle((x, y - 6.0), (width, 12.0), Some(color), Some(Stroke::solid(Color::Gray, 0.8)));
+            Self::Fill(color) => rectangle(x, width, color, out),
+            Self::LineIn(stroke, ref fills) => {
+                let part = width / fills.len() as f64;
+                let parts = fills.iter().enumerate();
+                parts.for_each(|(at, &fill)| rectangle(x + part * at as f64, part, fill, out));
+                out.line(vec![(x, y), (x + width, y)], stroke);
             }
             Self::Arrow { stroke, .. } => arrow((x, y), (x + width, y), stroke, out),
+            Self::Length(_) => {
+                let end = |x: f64| vec![(x, y - 4.0), (x, y + 4.0)];
+                let bar = vec![vec![(x, y), (x + width, y)], end(x), end(x + width)];
+                out.lines(bar, Stroke::solid(Color::Black, 1.2));
+            }
         }
     }
 }

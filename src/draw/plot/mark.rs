@@ -11,6 +11,9 @@ pub enum Mark {
     Ring,
     Square,
     Triangle,
+    /// Triangles that point along x, and against it.
+    Right,
+    Left,
     /// A square on its corner.
     Diamond,
     Star,
@@ -49,6 +52,8 @@ impl Mark {
             }
             Self::Square => corners(&[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)]),
             Self::Triangle => corners(&[(-1.0, -0.8), (1.0, -0.8), (0.0, 1.0)]),
+            Self::Right => corners(&[(-0.8, -1.0), (-0.8, 1.0), (1.0, 0.0)]),
+            Self::Left => corners(&[(0.8, -1.0), (0.8, 1.0), (-1.0, 0.0)]),
             Self::Diamond => corners(&[(0.0, -1.2), (1.2, 0.0), (0.0, 1.2), (-1.2, 0.0)]),
             Self::Star => {
                 let spike = |at: i32| {

@@ -21,6 +21,7 @@ mod shape;
 mod panel;
 mod legend;
 
+pub(in crate::draw) use axis::significant;
 pub use axis::{PlotAxis, range};
 pub use canvas::{Dash, Stroke};
 pub use color::Color;
@@ -136,7 +137,24 @@ impl Picture {
         let is_scaled = |window: &PlotWindow| {
             [window.x, window.y].into_iter().all(|(low, high)| low.is_finite() && high.is_finite() && low < high)
         };
-        (layer.is_placed() && windows.iter().all(is_scaled)).then_some((Canvas { size, layer }, windows))
+        let description = self.description(rows.iter().flatten());
+        let [title, description] = [&self.title, &description].map(|text| font::readable(text).into_owned());
+        let canvas = Canvas { title, description, size, layer };
+        (canvas.layer.is_placed() && windows.iter().all(is_scaled)).then_some((canvas, windows))
+    }
+
+    /// What the panels and the legend say, in sentences.
+    fn description<'p>(&self, panels: impl Iterator<Item = &'p PlacedPanel<'p>>) -> String {
+        let axes = |Panel { x, y, .. }: &Panel| {
+            Some(format!("{} against {}", y.label, x.label)).filter(|_| !y.label.is_empty() && !x.label.is_empty())
+        };
+        let panel = |placed: &PlacedPanel| {
+            let title = Some(placed.panel.title.replace('\n', ", ")).filter(|title| !title.is_empty());
+            title.into_iter().chain(axes(placed.panel)).collect::<Vec<_>>().join(": ")
+        };
+        let legend = self.legend.iter().map(|entry| entry.name.replace('\n', ", "));
+        let sentences = panels.map(panel).chain(legend).filter(|sentence| !sentence.is_empty());
+        sentences.map(|sentence| sentence + ".").collect::<Vec<_>>().join(" ")
     }
 }
 

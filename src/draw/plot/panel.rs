@@ -100,7 +100,7 @@ impl Panel {
 /// A panel whose axes have their place on the screen.
 #[derive(Debug)]
 pub(super) struct PlacedPanel<'p> {
-    panel: &'p Panel,
+    pub panel: &'p Panel,
     pub area: PlotArea,
 }
 

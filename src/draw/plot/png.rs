@@ -1,4 +1,4 @@
-//! A picture as pixels (the only user of tiny-skia).
+//! A picture as pixels (the only user of tiny-skia and png).
 
 use super::canvas::{Anchor, Canvas, CanvasOutline, Element, PlotLayer, RIM, Stroke, TextLine};
 use super::color::Color;
@@ -9,6 +9,9 @@ use ttf_parser::OutlineBuilder;
 
 /// How much larger it is than the SVG says.
 const SCALE: f32 = 2.0;
+
+/// Pixels of a meter of paper: 192 per inch, as an SVG has 96.
+const DENSITY: u32 = 7559;
 
 /// The most pixels, of four bytes each.
 const MOST: u64 = 1 << 26;
@@ -21,7 +24,21 @@ pub(super) fn png(canvas: &Canvas) -> Result<Vec<u8>> {
     let mut pixels = pixels.ok_or_else(|| refused(&format!("of {width} x {height} pixels")))?;
     pixels.fill(tiny_skia::Color::WHITE);
     Brush { pixels: &mut pixels, place: Transform::from_scale(SCALE, SCALE), clip: None }.layer(&canvas.layer);
-    pixels.encode_png().map_err(|error| refused(&error.to_string()))
+    encoded(&pixels, &canvas.title).map_err(|error| refused(&error.to_string()))
+}
+
+/// As PNG, of which no pixel is transparent.
+fn encoded(pixels: &Pixmap, title: &str) -> std::result::Result<Vec<u8>, png::EncodingError> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, pixels.width(), pixels.height());
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_pixel_dims(Some(png::PixelDimensions { xppu: DENSITY, yppu: DENSITY, unit: png::Unit::Meter }));
+    encoder.add_itxt_chunk("Title".to_owned(), title.to_owned())?;
+    let colors: Vec<u8> = pixels.data().chunks_exact(4).flat_map(|pixel| &pixel[..3]).copied().collect();
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&colors)?;
+    writer.finish()?;
+    Ok(bytes)
 }
 
 /// What paints a layer.

@@ -24,7 +24,7 @@ pub enum PlotShape {
     /// A line of text with its middle at a point, with a white rim that keeps it readable over lines.
     Text { at: PlotPoint, text: String, size: u32 },
     /// Names of points, which keep clear of each other, and may stand rather below their points than above.
-    Names { names: Vec<(PlotPoint, String)>, below: bool },
+    Names { names: Vec<(PlotPoint, String)>, below: bool, color: Color },
 }
 
 impl PlotShape {
@@ -40,10 +40,26 @@ impl PlotShape {
         }
     }
 
-    /// Where it has marks, which no name may cover.
+    /// Where it has marks or thick lines, which no name may cover.
     pub(super) fn marked(&self, area: &PlotArea) -> Vec<TextBox> {
-        let Self::Marks { points, size, .. } = self else { return Vec::new() };
-        points.iter().filter_map(|&point| Some(TextBox::around(area.place(point)?, *size))).collect()
+        match self {
+            Self::Marks { points, size, .. } => {
+                points.iter().filter_map(|&point| Some(TextBox::around(area.place(point)?, *size))).collect()
+            }
+            Self::Line { points, stroke } if stroke.width >= THICK => {
+                let placed: Vec<Pixel> = points.iter().filter_map(|&point| area.place(point)).collect();
+                let along = |pair: &[Pixel]| {
+                    let ([from, to], half) = ([pair[0], pair[1]], 0.5 * stroke.width);
+                    let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+                    let pieces = (libm::hypot(dx, dy) / THICK).min(MOST).ceil().max(1.0);
+                    let at =
+                        move |piece: usize| (from.0 + dx * piece as f64 / pieces, from.1 + dy * piece as f64 / pieces);
+                    (0..=pieces as usize).map(move |piece| TextBox::around(at(piece), half))
+                };
+                placed.windows(2).flat_map(along).collect()
+            }
+            _ => Vec::new(),
+        }
     }
 
     /// Draws it into `out`; names keep clear of what is `taken`.
@@ -86,14 +102,17 @@ impl PlotShape {
                 let at = (x, TextLine::baseline(y, *size));
                 out.text(TextLine { rim: true, ..TextLine::new(at, text, *size, Anchor::Middle) });
             }
-            Self::Names { names, below } => {
+            Self::Names { names, below, color } => {
                 let names = names.iter().filter_map(|(point, name)| Some((area.place(*point)?, name)));
-                names.for_each(|(at, name)| draw_name(at, name, *below, area, taken, out));
+                names.for_each(|(at, name)| draw_name((at, name), *below, *color, area, taken, out));
             }
         }
     }
 }
 
+/// Names keep clear of lines that are so wide, at points so far apart \[px\], of which a line has at most so many.
+const THICK: f64 = 4.0;
+const MOST: f64 = 400.0;
 /// Height of the font \[px\].
 const SIZE: u32 = 11;
 /// From a point to its name \[px\].
@@ -105,7 +124,14 @@ const RINGS: i32 = 8;
 const FAR: f64 = 20.0;
 
 /// Draws a name next to its point, rather above or rather `below` it, clear of what is `taken`.
-fn draw_name(at: Pixel, name: &str, below: bool, area: &PlotArea, taken: &mut Vec<TextBox>, out: &mut PlotLayer) {
+fn draw_name(
+    (at, name): (Pixel, &str),
+    below: bool,
+    color: Color,
+    area: &PlotArea,
+    taken: &mut Vec<TextBox>,
+    out: &mut PlotLayer,
+) {
     let width = font::width(name, SIZE);
     let is_free = |place: &TextBox| place.is_within(area.size()) && !taken.iter().any(|other| other.meets(place));
     let free = places(at, width, below).find(is_free);
@@ -117,7 +143,7 @@ fn draw_name(at: Pixel, name: &str, below: bool, area: &PlotArea, taken: &mut Ve
         out.line(vec![at, near], Stroke::solid(Color::Gray, 0.6));
     }
     let baseline = (left, TextLine::baseline(place.middle.1, SIZE));
-    out.text(TextLine { rim: true, ..TextLine::new(baseline, name, SIZE, Anchor::Start) });
+    out.text(TextLine { rim: true, color, ..TextLine::new(baseline, name, SIZE, Anchor::Start) });
 }
 
 /// Places for a name so wide, the nearest first.
@@ -145,8 +171,8 @@ mod tests {
         let axis = PlotAxis { range: Some((0.0, 1.0)), ..PlotAxis::default() };
         let span = || Span::new(&axis, std::iter::empty(), 300.0);
         let area = PlotArea { x: span(), y: span() };
-        let names =
-            PlotShape::Names { names: (0..12).map(|at| ((0.5, 0.5), format!("link_{at}"))).collect(), below: false };
+        let names = (0..12).map(|at| ((0.5, 0.5), format!("link_{at}"))).collect();
+        let names = PlotShape::Names { names, below: false, color: Color::Black };
         let mut taken = vec![TextBox::around((150.0, 150.0), 4.0)];
         names.draw(&area, &mut taken, &mut PlotLayer::default());
         assert_eq!(taken.len(), 13);

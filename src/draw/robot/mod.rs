@@ -27,8 +27,10 @@ pub struct Drawing {
     pub aspect: Aspect,
     /// Rigid bodies, in the robot's order.
     pub bodies: Vec<DrawnBody>,
-    /// Where joints are, and where loops are closed.
+    /// Where joints are.
     pub joints: Vec<Vector<f64>>,
+    /// Where loops are closed: their points a.
+    pub loops: Vec<Vector<f64>>,
     /// The ground's surface from left to right, as far as the drawing reaches; empty without a ground.
     pub ground: Vec<Vector<f64>>,
     pub contacts: Vec<DrawnContact>,
@@ -65,10 +67,12 @@ pub struct DrawnContact {
     pub velocity_before: Vector<f64>,
 }
 
-/// The impulse of the ground on each contact \[N s\], and its velocity after the impact \[m/s\].
+/// The impulse of the ground on each contact and of each loop on its point a \[N s\], and the contacts' velocities after
+/// the impact \[m/s\].
 #[derive(Debug, Clone)]
 pub struct DrawnOutcome {
     pub impulse: Vec<Vector<f64>>,
+    pub loop_impulse: Vec<Vector<f64>>,
     pub velocity_after: Vec<Vector<f64>>,
 }
 
@@ -122,7 +126,7 @@ impl Drawing {
         for pin in &scene.loops {
             let ends = [pin.a, pin.b].map(|end| (robot.links[end.link].body, in_world(end.link, end.offset)));
             ends.into_iter().for_each(|(body, point)| drawing.bodies[body].bones.push(point));
-            drawing.joints.push(ends[0].1);
+            drawing.loops.push(ends[0].1);
         }
         let turned = |pairs: &[Pair<f64>]| -> Vec<Vector<f64>> {
             impact.contacts.iter().zip(pairs).map(|(contact, &pair)| contact.ground.apply(pair.into())).collect()
@@ -133,8 +137,12 @@ impl Drawing {
         };
         drawing.contacts = impact.contacts.iter().zip(turned(&impact.velocity_before)).map(contact).collect();
         let outcomes = impact.analysis.iter().flat_map(|analysis| &analysis.outcomes);
-        let effects = outcomes.map(|outcome| [&outcome.impulse, &outcome.velocity_after].map(|pairs| turned(pairs)));
-        drawing.outcomes = effects.map(|[impulse, velocity_after]| DrawnOutcome { impulse, velocity_after }).collect();
+        let drawn = outcomes.map(|outcome| DrawnOutcome {
+            impulse: turned(&outcome.impulse),
+            loop_impulse: outcome.loop_impulse.clone().unwrap_or_default(),
+            velocity_after: turned(&outcome.velocity_after),
+        });
+        drawing.outcomes = drawn.collect();
         let arrow = |by: &AppliedImpulse| Arrow { point: in_world(by.link, by.offset), vector: by.vector };
         drawing.aspect = impact.aspect();
         drawing.applied = scene.impulses.iter().map(arrow).collect();
@@ -149,10 +157,12 @@ impl Drawing {
         Extent::of(bodies.chain(contacts))
     }
 
-    /// The greatest impulse of all outcomes, and of those that the state applies \[N s\].
+    /// The greatest impulse of all outcomes, those of loops included, and of those that the state applies \[N s\].
     pub fn greatest_impulse(&self) -> f64 {
         let applied = self.applied.iter().map(|applied| &applied.vector);
-        greatest(self.outcomes.iter().flat_map(|outcome| &outcome.impulse).chain(applied))
+        greatest(
+            self.outcomes.iter().flat_map(|outcome| outcome.impulse.iter().chain(&outcome.loop_impulse)).chain(applied),
+        )
     }
 
     /// The greatest velocity of a contact before the impact and after it, on one scale \[m/s\]; of forces its velocity,

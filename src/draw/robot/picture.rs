@@ -1,22 +1,29 @@
 //! A robot in its pose as a picture: one panel per outcome, or the robot alone with its names.
 
-use super::{Drawing, DrawnBody, DrawnContact, DrawnOutcome, DrawnShape, Extent, between};
+use super::{Arrow, Drawing, DrawnBody, DrawnContact, DrawnOutcome, DrawnShape, Extent, between};
 use crate::contact::Placement;
+use crate::draw::Forward;
 use crate::draw::plot::{
-    Color, Dash, LegendEntry, LegendKey, Mark, Panel, Picture, PlotAxis, PlotPoint, PlotShape, Stroke,
+    Color, Dash, LegendEntry, LegendKey, Mark, Panel, Picture, PlotAxis, PlotPoint, PlotShape, Stroke, significant,
 };
+use crate::error::visible;
 use crate::pipeline::Aspect;
 use crate::planar::Vector;
+use crate::robot::{Body, ParentJoint};
 use crate::state::{NamedContact, State};
 use crate::write::table::number;
 use crate::write::words::{self, DrawnNames, Wording};
-use crate::{Impact, Outcome, Robot};
+use crate::{Impact, Mode, Outcome, Robot};
 use std::iter;
 
 const IMPULSE: Stroke = Stroke::solid(Color::Vermilion, 3.0);
+const IN_LOOP: Stroke = Stroke::solid(Color::Green, 3.0);
 const APPLIED: Stroke = Stroke { dash: Dash::DOTTED, ..Stroke::solid(Color::Purple, 3.0) };
 const AFTER: Stroke = Stroke::solid(Color::Blue, 2.2);
 const BEFORE: Stroke = Stroke { dash: Dash::DASHED, ..Stroke::solid(Color::Black, 1.4) };
+const ROOT: Stroke = Stroke::solid(Color::Black, 1.6);
+/// Joints and their names in the picture of a robot alone.
+const JOINT: Color = Color::Blue;
 const BONE: Stroke = Stroke::solid(Color::Gray, 4.0);
 const EDGE: Stroke = Stroke::solid(Color::Gray, 0.8);
 const SURFACE: Stroke = Stroke::solid(Color::Black, 1.6);
@@ -26,32 +33,44 @@ const LAST: Color = Color::Tint(1);
 const INNER: Color = Color::Tint(0);
 
 const COLUMNS: usize = 4;
-/// Shares of the robot's size: the room around all that is drawn, the normal of a contact, the axes of the root, the
-/// longest arrow, the longest arrow of the legend.
+/// Shares of the robot's size: the room around all that is drawn, the normal of a contact.
 const ROOM: f64 = 0.06;
 const SHORT: f64 = 0.08;
+/// The room below all that is drawn, for names; axes of the root, the longest arrow, that of the legend.
+const BELOW: f64 = 0.1;
 const AXES: f64 = 0.18;
 const LONGEST: f64 = 0.4;
-const KEY: f64 = 0.3;
+const KEY: f64 = 0.15;
 /// Half the width of a CoG's sign, of the lightest and the heaviest body \[px\].
 const LIGHT: f64 = 2.5;
 const HEAVY: f64 = 8.0;
+/// A velocity after whose arrow is shorter than this share of the robot's size is written as a number.
+const SEEN: f64 = 0.04;
 /// Names are drawn for at most so many bodies.
 const NAMED: usize = 60;
 
 /// Impulses and velocities as arrows, a panel for each outcome; `None` if the outcomes were refused.
-pub fn impact(robot: &Robot, feet: &[NamedContact], state: &State, impact: &Impact) -> Option<Picture> {
+pub fn impact(
+    robot: &Robot,
+    feet: &[NamedContact],
+    state: &State,
+    impact: &Impact,
+    forward: Forward,
+) -> Option<Picture> {
     let analysis = impact.analysis.as_ref()?;
-    let drawing = Drawing::of_impact(robot, feet, state, impact);
+    let (mut drawing, mut outcomes) = (Drawing::of_impact(robot, feet, state, impact), analysis.outcomes.clone());
+    drawing.face(forward);
+    forward.outcomes(&mut outcomes);
     let scene = DrawnScene::new(&drawing);
     let count = analysis.outcomes.len();
-    let panel = |title: String, outcome: Option<&DrawnOutcome>| Panel {
+    let panel = |title: String, outcome: Option<(&Outcome, &DrawnOutcome)>| Panel {
         title,
-        shapes: [scene.robot(), scene.impact(outcome)].concat(),
+        shapes: [scene.robot(Color::Black), scene.impact(outcome)].concat(),
         ..scene.view.panel(count)
     };
-    let titles = analysis.outcomes.iter().enumerate().map(|outcome| caption(impact, count > 1, outcome));
-    let panels = titles.zip(&drawing.outcomes).map(|(title, outcome)| panel(title, Some(outcome)));
+    let titles = outcomes.iter().enumerate().map(|outcome| caption(impact, count > 1, outcome));
+    let drawn = outcomes.iter().zip(&drawing.outcomes);
+    let panels = titles.zip(drawn).map(|(title, outcome)| panel(title, Some(outcome)));
     let mut panels: Vec<Panel> = panels.collect();
     if panels.is_empty() {
         panels.push(panel(String::new(), None));
@@ -59,37 +78,48 @@ pub fn impact(robot: &Robot, feet: &[NamedContact], state: &State, impact: &Impa
     let wording = Wording::of(impact.aspect());
     let sentence = wording.verdict(analysis.verdict, &analysis.outcomes, analysis.open.as_ref());
     Some(Picture {
-        title: format!("{}: {sentence}", words::titled(&robot.name, &state.id)),
+        title: format!("{}: {sentence}{}", words::titled(&robot.name, &state.id), forward.remark()),
         rows: panels.chunks(COLUMNS).map(<[Panel]>::to_vec).collect(),
         legend: scene.legend(),
     })
 }
 
 /// The robot with its joints at zero, or where they are frozen, and the names of its bodies.
-pub fn robot(robot: &Robot, feet: &[NamedContact]) -> Picture {
-    posed(robot, feet, &Placement::of_robot(robot, &vec![0.0; robot.dofs()]))
+pub fn robot(robot: &Robot, feet: &[NamedContact], forward: Forward) -> Picture {
+    posed(robot, feet, &Placement::of_robot(robot, &vec![0.0; robot.dofs()]), forward)
 }
 
 /// The robot with its bodies at `placement`, and their names.
-pub fn posed(robot: &Robot, feet: &[NamedContact], placement: &Placement) -> Picture {
-    let drawing = Drawing::of_robot(robot, placement, feet);
+pub fn posed(robot: &Robot, feet: &[NamedContact], placement: &Placement, forward: Forward) -> Picture {
+    let mut drawing = Drawing::of_robot(robot, placement, feet);
+    drawing.face(forward);
     let size = drawing.extent().size();
-    let root = placement.world(0, Vector::zero());
-    let tip = |axis: Vector<f64>| root + placement.turned(0, axis * (AXES * size));
-    let mut shapes = DrawnScene::new(&drawing).robot();
+    let root = &drawing.bodies[0];
+    let way = if forward == Forward::Along { 1.0 } else { -1.0 };
+    let tip = |axis: Vector<f64>| root.world(Vector::new(way * axis.x, axis.z) * (AXES * size));
+    let mut shapes = DrawnScene::new(&drawing).robot(JOINT);
     let axes = Vector::axes().map(tip);
-    shapes.extend(axes.map(|tip| PlotShape::Arrow { from: point(root), to: point(tip), stroke: AFTER }));
+    shapes.extend(axes.map(|tip| PlotShape::Arrow { from: point(root.origin), to: point(tip), stroke: ROOT }));
     let mut names: Vec<(PlotPoint, String)> = axes.map(point).into_iter().zip(["x", "z"].map(str::to_owned)).collect();
     if robot.bodies.len() <= NAMED {
         // The root's name stands between its axes.
         let places = iter::once(tip(Vector::new(0.2, 0.2))).chain(drawing.bodies[1..].iter().map(DrawnBody::middle));
         names.extend(places.map(point).zip(robot.bodies.iter().map(|body| body.name.clone())));
     }
-    shapes.push(PlotShape::Names { names, below: false });
+    shapes.push(PlotShape::Names { names, below: false, color: Color::Black });
+    if robot.bodies.len() <= NAMED {
+        let name = |body: &Body| match body.joint? {
+            ParentJoint::Joint(joint) => Some(robot.joints[joint].name.clone()),
+            ParentJoint::Mimic(mimic) => Some(robot.mimic_joints[mimic].joint.name.clone()),
+            ParentJoint::Fixed { .. } => None,
+        };
+        let names = drawing.joints.iter().copied().map(point).zip(robot.bodies.iter().filter_map(name)).collect();
+        shapes.push(PlotShape::Names { names, below: false, color: JOINT });
+    }
     let Extent { low, high } = drawing.extent();
     let view = Extent::of([low, high].into_iter().chain(axes)).with_room().panel(1);
     let panel = Panel {
-        x: PlotAxis { label: "x [m]".into(), ..view.x },
+        x: PlotAxis { label: if way > 0.0 { "x [m]" } else { "\u{2212}x [m]" }.into(), ..view.x },
         y: PlotAxis { label: "z [m]".into(), ..view.y },
         size: (1.2 * view.size.0, 1.2 * view.size.1),
         framed: true,
@@ -97,19 +127,11 @@ pub fn posed(robot: &Robot, feet: &[NamedContact], placement: &Placement) -> Pic
         ..view
     };
     let joints = robot.joints.len() + robot.mimic_joints.len();
-    let shaped = |last: bool| drawing.bodies.iter().any(|body| body.is_last == last && !body.shapes.is_empty());
-    let entries = [
-        (joints > 0, LegendKey::Mark(Mark::Ring, Color::Black), "joint"),
-        (true, LegendKey::Mark(Mark::Center, Color::Black), "CoG, its area by mass"),
-        (shaped(true), LegendKey::Fill(LAST), "shape of an outermost body"),
-        (shaped(false), LegendKey::Fill(INNER), "shape of an inner body"),
-        (true, LegendKey::Line(AFTER), "axes of the root link"),
-    ];
-    let entries = entries.into_iter().filter(|(is_drawn, ..)| *is_drawn);
+    let axes = LegendEntry::new("axes of the root link", LegendKey::Line(ROOT));
     Picture {
         title: format!("{}: {} bodies, {joints} joints, {} kg", robot.name, robot.bodies.len(), number(robot.mass())),
         rows: vec![vec![panel]],
-        legend: entries.map(|(_, key, name)| LegendEntry::new(name, key)).collect(),
+        legend: drawing.legend(JOINT).chain([axes]).collect(),
     }
 }
 
@@ -128,7 +150,8 @@ pub(in crate::draw) fn modes(contacts: impl IntoIterator<Item: AsRef<str>>, outc
 /// How sure and how special it is.
 pub(in crate::draw) fn remarks(outcome: &Outcome, aspect: Aspect) -> Vec<String> {
     let border = outcome.border.as_ref().map(|border| {
-        let zeros: Vec<String> = border.at_zero.iter().map(|zero| zero.inequality.to_string()).collect();
+        let zeros: Vec<String> =
+            border.at_zero.iter().map(|zero| zero.inequality.reached_by(&visible(&zero.contact))).collect();
         format!("on a border: {}", zeros.join(", "))
     });
     let one_of_many = match aspect {
@@ -155,8 +178,8 @@ impl Extent {
     fn panel(self, panels: usize) -> Panel {
         let axis = |low: f64, high: f64| PlotAxis { range: Some((low, high)), ..PlotAxis::default() };
         let Vector { x: across, z: up } = self.high - self.low;
-        let width = [460.0, 460.0, 380.0, 320.0, 280.0][panels.min(COLUMNS)];
-        let height = width * (up / across).clamp(0.4, 1.5);
+        let width = [560.0, 560.0, 380.0, 320.0, 280.0][panels.min(COLUMNS)];
+        let height = width * (up / across).clamp(0.4, 1.25);
         let axes = Panel::new(axis(self.low.x, self.high.x), axis(self.low.z, self.high.z));
         Panel { size: (width, height), framed: false, equal: true, ..axes }
     }
@@ -196,8 +219,9 @@ impl<'d> DrawnScene<'d> {
         let mut pairs = drawing.ground.windows(2).map(|pair| [pair[0], pair[1]]);
         let under = pairs.find(|[from, to]| (from.x..=to.x).contains(&middle) && from.x < to.x);
         let near = under.map(|pair| between(pair, middle)).filter(|point| (low.z - size..low.z).contains(&point.z));
-        let tips = scene.all_arrows().map(|(from, reach, _)| from + reach);
-        scene.view = Extent::of([low, high].into_iter().chain(tips).chain(near)).with_room();
+        let ends = scene.all_arrows().flat_map(|(from, reach, _)| [from, from + reach]);
+        scene.view = Extent::of([low, high].into_iter().chain(ends).chain(near)).with_room();
+        scene.view.low.z -= (BELOW - ROOM) * size;
         scene
     }
 
@@ -207,24 +231,27 @@ impl<'d> DrawnScene<'d> {
 
     /// The arrows of an outcome, or of none: where each begins, how far it reaches and its shaft.
     fn arrows(&self, outcome: Option<&DrawnOutcome>) -> Vec<(Vector<f64>, Vector<f64>, Stroke)> {
-        let Drawing { contacts, applied, .. } = self.drawing;
+        let Drawing { contacts, applied, loops, .. } = self.drawing;
         let impulse = self.impulse_scale;
         let applied = applied.iter().map(|applied| (applied.point, applied.vector * impulse, APPLIED));
         let effects = outcome.into_iter().flat_map(|outcome| {
             let impulses = outcome.impulse.iter().map(|&vector| (vector * impulse, IMPULSE));
             let after = outcome.velocity_after.iter().map(|&vector| (vector * self.after_scale, AFTER));
-            let at = contacts.iter().chain(contacts).map(|contact| contact.point);
-            at.zip(impulses.chain(after)).map(|(point, (reach, stroke))| (point, reach, stroke))
+            let in_loops = outcome.loop_impulse.iter().map(|&vector| (vector * impulse, IN_LOOP));
+            let at = contacts.iter().chain(contacts).map(|contact| contact.point).chain(loops.iter().copied());
+            at.zip(impulses.chain(after).chain(in_loops)).map(|(point, (reach, stroke))| (point, reach, stroke))
         });
-        // On top, because it may be the velocity after, too.
-        let before =
-            contacts.iter().map(|contact| (contact.point, contact.velocity_before * self.before_scale, BEFORE));
+        // It arrives where the others begin. On top, because an impulse may lie along it.
+        let before = contacts.iter().map(|contact| {
+            let reach = contact.velocity_before * self.before_scale;
+            (contact.point - reach, reach, BEFORE)
+        });
         applied.chain(effects).chain(before).collect()
     }
 
     /// The ground, the robot's shapes, bones, joints and CoGs.
-    fn robot(&self) -> Vec<PlotShape> {
-        let Drawing { bodies, ground, joints, .. } = self.drawing;
+    fn robot(&self, joint: Color) -> Vec<PlotShape> {
+        let Drawing { bodies, ground, joints, loops, .. } = self.drawing;
         let mut shapes = Vec::new();
         if let ([.., right], [left, ..]) = (&ground[..], &ground[..]) {
             let depth = self.view.low.z.min(left.z).min(right.z) - 10.0 * self.size;
@@ -260,13 +287,15 @@ impl<'d> DrawnScene<'d> {
             let points = vec![point(body.world(com))];
             shapes.push(PlotShape::Marks { points, mark: Mark::Center, color: Color::Black, size });
         }
-        let joints = joints.iter().copied().map(point).collect();
-        shapes.push(PlotShape::Marks { points: joints, mark: Mark::Ring, color: Color::Black, size: 3.6 });
+        for (points, color) in [(joints, joint), (loops, IN_LOOP.color)] {
+            let points = points.iter().copied().map(point).collect();
+            shapes.push(PlotShape::Marks { points, mark: Mark::Ring, color, size: 3.6 });
+        }
         shapes
     }
 
     /// Contacts, and the arrows of an outcome.
-    fn impact(&self, outcome: Option<&DrawnOutcome>) -> Vec<PlotShape> {
+    fn impact(&self, outcome: Option<(&Outcome, &DrawnOutcome)>) -> Vec<PlotShape> {
         let contacts = &self.drawing.contacts;
         let normal = |contact: &DrawnContact| {
             let ends = [contact.point, contact.point + contact.normal * (SHORT * self.size)];
@@ -275,27 +304,49 @@ impl<'d> DrawnScene<'d> {
         let mut shapes: Vec<PlotShape> = contacts.iter().map(normal).collect();
         let points = contacts.iter().map(|contact| point(contact.point)).collect();
         shapes.push(PlotShape::Marks { points, mark: Mark::Circle, color: Color::Black, size: 3.0 });
-        shapes.extend(self.arrows(outcome).into_iter().map(|(from, reach, stroke)| {
+        shapes.extend(self.arrows(outcome.map(|(_, drawn)| drawn)).into_iter().map(|(from, reach, stroke)| {
             let (from, to) = (point(from), point(from + reach));
             PlotShape::Arrow { from, to, stroke }
         }));
-        let names = contacts.iter().map(|contact| (point(contact.point), contact.name.clone())).collect();
-        shapes.push(PlotShape::Names { names, below: true });
+        let name = |(at, contact): (usize, &DrawnContact)| {
+            let small = outcome.and_then(|(outcome, drawn)| self.small(outcome, drawn, at));
+            (point(contact.point), contact.name.clone() + &small.unwrap_or_default())
+        };
+        let names = contacts.iter().enumerate().map(name).collect();
+        shapes.push(PlotShape::Names { names, below: true, color: Color::Black });
         shapes
     }
 
-    /// What the arrows are, with one of a round length for each kind.
+    /// The velocity after of a contact that moves, if it is too small for an arrow.
+    fn small(&self, outcome: &Outcome, drawn: &DrawnOutcome, contact: usize) -> Option<String> {
+        let speed = drawn.velocity_after.get(contact)?.length();
+        let sign = match outcome.modes.get(contact)? {
+            Mode::Separate => '\u{2191}',
+            Mode::SlidePlus => '\u{2192}',
+            Mode::SlideMinus => '\u{2190}',
+            Mode::Stick => return None,
+        };
+        let unit = Wording::of(self.drawing.aspect).drawn.taken.1;
+        let is_small = speed > 0.0 && speed * self.after_scale < SEEN * self.size;
+        is_small.then(|| format!(" {sign} {} {unit}", number(significant(speed, 3))))
+    }
+
+    /// What the arrows are, with one of a round length for each kind, and what else is drawn.
     fn legend(&self) -> Vec<LegendEntry> {
         let arrows: Vec<_> = self.all_arrows().collect();
         let is_drawn = |stroke: Stroke| {
             arrows.iter().any(|(_, reach, own)| *own == stroke && (stroke == APPLIED || *reach != Vector::zero()))
         };
         let DrawnNames { given, taken, moving, .. } = Wording::of(self.drawing.aspect).drawn;
+        let is_small = |reach: Vector<f64>| reach != Vector::zero() && reach.length() < SEEN * self.size;
+        let small = arrows.iter().any(|(_, reach, stroke)| *stroke == AFTER && is_small(*reach));
+        let arrowless = if small { " (\u{2190} \u{2192} \u{2191}: too small for an arrow)" } else { "" };
         let kinds = [
             (IMPULSE, self.impulse_scale, given.1, format!("{} of the ground", given.0)),
             (APPLIED, self.impulse_scale, given.1, format!("applied {}", given.0)),
-            (AFTER, self.after_scale, taken.1, taken.0.to_owned()),
-            (BEFORE, self.before_scale, "m/s", moving.to_owned()),
+            (IN_LOOP, self.impulse_scale, given.1, format!("{} in a loop, on its point a", given.0)),
+            (AFTER, self.after_scale, taken.1, format!("{}{arrowless}", taken.0)),
+            (BEFORE, self.before_scale, "m/s", format!("{moving}, ends at the contact")),
         ];
         let drawn = kinds.into_iter().filter(|(stroke, ..)| is_drawn(*stroke));
         let entries = drawn.filter_map(|(stroke, scale, unit, what)| {
@@ -303,8 +354,69 @@ impl<'d> DrawnScene<'d> {
             let key = LegendKey::Arrow { stroke, length: round * scale };
             Some(LegendEntry::new(format!("{what}: {round} {unit}"), key))
         });
-        let contact = || LegendEntry::new("contact", LegendKey::Mark(Mark::Circle, Color::Black));
-        entries.chain((!self.drawing.contacts.is_empty()).then(contact)).collect()
+        let contacts = !self.drawing.contacts.is_empty();
+        let signs = [
+            (contacts, LegendKey::Mark(Mark::Circle, Color::Black), "contact"),
+            (contacts, LegendKey::Line(NORMAL), "normal of the ground"),
+        ];
+        let length =
+            round(KEY * self.size).map(|round| LegendEntry::new(format!("{round} m"), LegendKey::Length(round)));
+        entries.chain(entries_of(signs)).chain(self.drawing.legend(Color::Black)).chain(length).collect()
+    }
+}
+
+/// The entries whose signs are drawn.
+fn entries_of<const N: usize>(entries: [(bool, LegendKey, &'static str); N]) -> impl Iterator<Item = LegendEntry> {
+    entries.into_iter().filter(|(is_drawn, ..)| *is_drawn).map(|(_, key, name)| LegendEntry::new(name, key))
+}
+
+impl Drawing {
+    /// Mirrors it if forward is along -x.
+    pub(in crate::draw) fn face(&mut self, forward: Forward) {
+        if forward == Forward::Along {
+            return;
+        }
+        for body in &mut self.bodies {
+            Forward::vector(&mut body.origin);
+            // The frame turns the other way, and what it holds is mirrored.
+            body.x_axis.z = -body.x_axis.z;
+            for shape in &mut body.shapes {
+                match shape {
+                    DrawnShape::Disc { center, .. } => Forward::vector(center),
+                    DrawnShape::Polygon(corners) => corners.iter_mut().for_each(Forward::vector),
+                }
+            }
+            body.com.iter_mut().chain(&mut body.bones).for_each(Forward::vector);
+        }
+        for contact in &mut self.contacts {
+            [&mut contact.point, &mut contact.normal, &mut contact.velocity_before]
+                .into_iter()
+                .for_each(Forward::vector);
+        }
+        for Arrow { point, vector } in &mut self.applied {
+            [point, vector].into_iter().for_each(Forward::vector);
+        }
+        for outcome in &mut self.outcomes {
+            let vectors =
+                outcome.impulse.iter_mut().chain(&mut outcome.loop_impulse).chain(&mut outcome.velocity_after);
+            vectors.for_each(Forward::vector);
+        }
+        self.joints.iter_mut().chain(&mut self.loops).chain(&mut self.ground).for_each(Forward::vector);
+        self.ground.reverse();
+    }
+
+    /// The signs of a robot, whose joints have this color.
+    fn legend(&self, joint: Color) -> impl Iterator<Item = LegendEntry> {
+        let is_point = |shape: &DrawnShape| matches!(shape, DrawnShape::Disc { radius: 0.0, .. });
+        let is_shaped = |body: &DrawnBody| !body.shapes.iter().all(is_point);
+        let shaped = |last: bool| self.bodies.iter().any(|body| body.is_last == last && is_shaped(body));
+        entries_of([
+            (!self.joints.is_empty(), LegendKey::Mark(Mark::Ring, joint), "joint"),
+            (!self.loops.is_empty(), LegendKey::Mark(Mark::Ring, IN_LOOP.color), "point where a loop is closed"),
+            (true, LegendKey::Mark(Mark::Center, Color::Black), "CoG, its area by mass"),
+            (shaped(true), LegendKey::Fill(LAST), "shape of an outermost body"),
+            (shaped(false), LegendKey::Fill(INNER), "shape of an inner body"),
+        ])
     }
 }
 

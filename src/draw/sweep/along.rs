@@ -16,8 +16,11 @@ struct PlottedQuantity {
     of: fn(&Motion) -> &[[f64; 2]],
 }
 
-/// Height inside of the axes \[px\].
+/// Height inside of the axes \[px\], and that of all panels below each other: with the legend they fit on a page.
 const HEIGHT: f64 = 176.0;
+const PAGE: f64 = 660.0;
+/// Of more panels than this some stand side by side.
+const COLUMN: usize = 6;
 /// The height of a panel with nothing but the letters of regions.
 const STRIP: f64 = 30.0;
 
@@ -54,18 +57,26 @@ pub fn picture<'s>(x: PlotAxis, aspect: Aspect, survey: &'s Survey, courses: &[R
         looks.map(|(region, (letter, fill))| Band { from: region.from, to: region.to, letter, fill }).collect()
     };
     panels.iter_mut().for_each(|panel| panel.bands = bands(|kind| (String::new(), kind.color)));
-    panels[0].bands = bands(|kind| (kind.letter.clone(), kind.color));
     let mut explained = angles::panels(survey, courses);
     let angles = !explained.is_empty();
     // Their regions have names of their own.
     explained.iter_mut().for_each(|panel| panel.bands = bands(|_| (String::new(), Color::White)));
+    let lettered = panels.len();
     panels.extend(explained);
-    let last = panels.len() - 1;
+    let (count, columns) = (panels.len(), panels.len().div_ceil(COLUMN));
+    let rows = count.div_ceil(columns);
     for (index, panel) in panels.iter_mut().enumerate() {
-        panel.x = PlotAxis { bare: index < last, ..x.clone() };
+        panel.x = PlotAxis { bare: (index + 1) % rows > 0 && index + 1 < count, ..x.clone() };
+        if index < lettered {
+            panel.size.1 = panel.size.1.min(PAGE / rows as f64);
+        }
+        if index < lettered && index % rows == 0 {
+            panel.bands = bands(|kind| (kind.letter.clone(), kind.color));
+        }
     }
     let legend = styles.legend(&kinds, angles);
-    Picture { title: String::new(), rows: panels.into_iter().map(|panel| vec![panel]).collect(), legend }
+    let row = |row: usize| panels.iter().skip(row).step_by(rows).cloned().collect();
+    Picture { title: String::new(), rows: (0..rows).map(row).collect(), legend }
 }
 
 struct Curves<'a> {
@@ -160,10 +171,9 @@ struct OutcomeStyle<'a> {
     modes: &'a [Mode],
     /// Its own dashes; `None` if its region identifies it.
     dash: Option<Dash>,
-    /// Of the first region in which it is valid.
-    color: Color,
-    /// The letters of the regions in which it is valid.
+    /// The letters and colors of the regions in which it is valid.
     letters: Vec<String>,
+    colors: Vec<Color>,
     /// Whether another outcome is also valid somewhere.
     ambiguous: bool,
     /// Whether its lines are visible anywhere.
@@ -184,14 +194,15 @@ impl<'a> OutcomeStyles<'a> {
                 let known = styles.iter().position(|style| (style.contacts, style.modes) == (contacts, modes));
                 let at = known.unwrap_or(styles.len());
                 if known.is_none() {
-                    let (letters, ambiguous, seen) = (Vec::new(), false, false);
-                    styles.push(OutcomeStyle { contacts, modes, dash: None, color: *color, letters, ambiguous, seen });
+                    let (letters, colors, ambiguous, seen) = (Vec::new(), Vec::new(), false, false);
+                    styles.push(OutcomeStyle { contacts, modes, dash: None, letters, colors, ambiguous, seen });
                 }
                 let style = &mut styles[at];
                 style.ambiguous |= outcomes.len() > 1 && seen;
                 style.seen |= seen;
                 if !style.letters.contains(letter) {
                     style.letters.push(letter.clone());
+                    style.colors.push(*color);
                 }
             }
         }
@@ -216,10 +227,10 @@ impl<'a> OutcomeStyles<'a> {
         if angles {
             entries.extend(angles::legend());
         }
-        entries.extend(self.0.iter().map(|OutcomeStyle { contacts, modes, dash, color, letters, .. }| {
+        entries.extend(self.0.iter().map(|OutcomeStyle { contacts, modes, dash, letters, colors, .. }| {
             let sentence = words::modes(*contacts, modes);
-            let line = |dash| LegendKey::Line(Stroke { dash, ..Stroke::solid(Color::Black, 1.6) });
-            let key = dash.map_or(LegendKey::Fill(*color), line);
+            let line = |dash| LegendKey::LineIn(Stroke { dash, ..Stroke::solid(Color::Black, 1.6) }, colors.clone());
+            let key = dash.map_or_else(|| LegendKey::Fill(colors[0]), line);
             LegendEntry::new(format!("{}: {sentence}", letters.join(", ")), key)
         }));
         for KindLook { letter, color, happening } in kinds {

@@ -11,6 +11,7 @@ mod angles;
 mod along;
 mod map;
 
+use crate::draw::Forward;
 use crate::draw::plot::{Color, Picture, PlotAxis};
 use crate::sweep::{Findings, Map, Regime, Region, RegionCurves, RobotStudy, Survey, Workers};
 use crate::write::sweep::Happening;
@@ -20,14 +21,19 @@ use crate::write::words::grouped;
 const WIDTH: f64 = 540.0;
 
 /// The picture of the findings of `model`; `workers` count [`work`] pieces of work.
-pub fn of(model: &RobotStudy, findings: &Findings, workers: Workers) -> Picture {
-    match findings {
-        Findings::Along(survey) => {
-            let curves = RegionCurves::of(model, survey, workers);
-            along::picture(axis(model, 0), model.study.question(), survey, &curves)
-        }
-        Findings::Map(map) => map::picture([axis(model, 0), axis(model, 1)], model.study.question(), map),
-    }
+pub fn of(model: &RobotStudy, findings: &Findings, forward: Forward, workers: Workers) -> Picture {
+    let names: Vec<String> = model.study.parameters().iter().map(|known| with_greek_letters(&known.name)).collect();
+    let title = format!("{} against {}{}", model.robot.name, names.join(" and "), forward.remark());
+    let mut curves = match findings {
+        Findings::Along(survey) => RegionCurves::of(model, survey, workers),
+        Findings::Map(_) => Vec::new(),
+    };
+    forward.curves(&mut curves);
+    let picture = match forward.findings(findings) {
+        Findings::Along(survey) => along::picture(axis(model, 0), model.study.question(), &survey, &curves),
+        Findings::Map(map) => map::picture([axis(model, 0), axis(model, 1)], model.study.question(), &map),
+    };
+    Picture { title, ..picture }
 }
 
 /// The pieces of work for a picture of the findings.

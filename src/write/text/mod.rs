@@ -9,6 +9,7 @@ use super::state::HoldsRecord;
 use super::table::{Table, is_residue, number, scale};
 use super::words::Wording;
 use super::{Detail, Palette, words};
+use crate::contact::Feet;
 use crate::error::visible;
 use crate::impact::{Analysis, ImpulseRegion, Verdict};
 use crate::pipeline::Aspect;
@@ -25,6 +26,8 @@ const LEFT_OUT: usize = 200;
 pub struct Subject<'a> {
     /// What the report is about, as in `ramone`.
     title: String,
+    /// The robot's size \[m\]; 0 without one.
+    size: f64,
     /// Friction of each contact, where it is known.
     friction: Vec<Option<Friction>>,
     /// The unit of each entry of v.
@@ -42,6 +45,7 @@ impl<'a> Subject<'a> {
         };
         Self {
             title: words::titled(&robot.name, &state.id),
+            size: Feet::new(robot, &[]).size(),
             friction: impact.contacts.iter().map(|contact| state.scene.friction.of(contact.link)).collect(),
             units: robot.units().map(unit).collect(),
             analysis: impact.analysis.as_ref(),
@@ -52,6 +56,7 @@ impl<'a> Subject<'a> {
     pub fn of_problem(problem: &Problem, analysis: &'a Analysis) -> Self {
         Self {
             title: words::titled("contact problem", &problem.id),
+            size: 0.0,
             friction: problem.contact.friction().map(Some).collect(),
             units: Vec::new(),
             analysis: Some(analysis),
@@ -97,7 +102,8 @@ impl<'w> Writer<'w> {
                 writeln!(self.out, "  {}  {words}{border}{family}{}", at + 1, graded(outcome))?;
                 self.next(outcome)?;
             }
-            return self.families();
+            self.families()?;
+            return self.notes();
         }
         for (at, outcome) in outcomes.iter().enumerate() {
             self.outcome(at + 1, outcome)?;
@@ -133,7 +139,8 @@ impl<'w> Writer<'w> {
         let contacts = &self.report.contacts;
         let mut table = Table::default().text("contact", self.names());
         let points = || contacts.iter().map(|contact| contact.point.map(Vector::components));
-        let lengths = scale(points().flatten().flatten());
+        // A point may lie at the origin, up to rounding and what closing a loop leaves.
+        let lengths = scale(points().flatten().flatten()).max(10.0 * self.subject.size);
         if points().all(|point| point.is_some()) {
             table = table.pairs(["x [m]", "z [m]"], lengths, points());
         }
@@ -272,13 +279,17 @@ impl<'w> Writer<'w> {
             let (height, speed) = (number(*height), number(normal.abs()));
             writeln!(self.out, "Nearest open foot: {}, {height} m high, moves {way} at {speed} m/s.", visible(name))?;
         }
-        self.report.notes.iter().try_for_each(|note| writeln!(self.out, "Note: {}", visible(note)))?;
+        self.notes()?;
         if let Some(left_out) = self.report.left_out.as_ref().filter(|left_out| !left_out.is_empty()) {
             let Palette { faint, plain, .. } = *self.palette;
             let what: Vec<&str> = left_out.iter().map(|left| &*left.what).collect();
             writeln!(self.out, "{faint}Left out (see `heelstrike inspect`): {}.{plain}", words::list(&what, LEFT_OUT))?;
         }
         Ok(())
+    }
+
+    fn notes(&mut self) -> std::fmt::Result {
+        self.report.notes.iter().try_for_each(|note| writeln!(self.out, "Note: {}", visible(note)))
     }
 
     fn in_words(&self, modes: &[Mode]) -> String {
