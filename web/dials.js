@@ -8,7 +8,7 @@ class Dial {
     Object.assign(this, { label, unit, path, step, low: Math.floor(low / step) * step, high: Math.ceil(high / step) * step });
     const id = `dial-${path.join("-").replace(/[^\w-]/g, "_")}`;
     this.range = html("input", { type: "range", id, min: this.low, max: this.high, step });
-    this.number = html("input", { type: "number", step: "any", ariaLabel: `${label} [${unit}], as a number` });
+    this.number = html("input", { type: "number", step: "any", ariaLabel: `${label}${unit && ` [${unit}]`}, as a number` });
     const name = html("label", { htmlFor: id }, label, html("small", {}, ` ${unit}`));
     this.element = html("div", { className: "dial" }, name, this.range, this.number);
     this.range.addEventListener("input", () => changed(this, Number(Number(this.range.value).toPrecision(12))));

@@ -190,3 +190,18 @@ fn strict_limits_refuse_where_a_note_was_given() {
     let refused = heelstrike_reads(&["impact", &robot, "-", "--strict-limits"], state).refusal(1);
     assert!(refused.contains("position.joints.hip") && refused.contains("or do without --strict-limits"), "{refused}");
 }
+
+#[test]
+fn what_rounding_left_of_zero_is_written_as_such() {
+    for arguments in [
+        ["forces", RAMONE, "examples/ramone_stands.json"],
+        ["impact", RAMONE, "examples/stairs.json"],
+        ["impact", "urdf/five_bar.urdf", "examples/five_bar.json"],
+        ["sweep", "urdf/ramone_paper.urdf", "examples/paper/table_1.json"],
+    ] {
+        let text = heelstrike(&arguments).text();
+        let exponent = |word: &str| word.split_once("e-")?.1.parse::<u32>().ok();
+        let tiny: Vec<&str> = text.split_whitespace().filter(|word| exponent(word) > Some(13)).collect();
+        assert!(tiny.is_empty(), "{arguments:?}: {tiny:?}");
+    }
+}

@@ -203,6 +203,42 @@ fn a_slide_without_an_arrow_has_its_number() {
 }
 
 #[test]
+fn a_velocity_along_an_impulse_stands_aside() {
+    let tip = |robot: &str, state: &str| {
+        let svg = svg(&["impact", robot, state], "aside");
+        let dashed = svg.lines().find(|line| line.contains(r#"stroke-dasharray="8 4""#)).expect("the velocity before");
+        let end = dashed.split(['L', '"']).nth(2).expect("its end").split(' ').next().expect("its x");
+        let contacts = svg.lines().filter(|line| line.contains(r##"r="3" fill="#000000""##));
+        let x = contacts.take(2).last().and_then(|last| last.split('"').nth(1)).expect("its x");
+        [end, x].map(|x| x.parse::<f64>().expect("a number"))
+    };
+    let [end, contact] = tip("urdf/five_bar.urdf", "examples/five_bar.json");
+    assert!(contact - end > 8.0, "left of the impulse: {end}, {contact}");
+    let [end, contact] = tip(WALKER, "examples/minimalistic.json");
+    assert!((contact - end).abs() < 0.01, "nothing lies along it: {end}, {contact}");
+}
+
+/// A1 with four feet and four points of its calves on the ground.
+#[test]
+fn curves_of_eight_contacts_fit_on_a_page() {
+    let contact = |link: &str, z: f64| json!({"link": link, "offset": [z, 0, 0]});
+    let legs = ["FR", "FL", "RR", "RL"];
+    let contacts =
+        [0.0, 0.02].map(|z| legs.map(|leg| contact(&format!("{leg}_{}", if z > 0.0 { "calf" } else { "foot" }), z)));
+    let study = json!({"parameters": {"fast": {"from": -0.3, "to": 0.3, "steps": 3}}, "state": {"position": {
+        "base": {"z": 0.3}, "joints": {"FR_thigh_joint": 0.7, "FR_calf_joint": -1.5, "RL_thigh_joint": 0.8}},
+        "velocity": {"base": {"x": "fast", "z": -1}}, "contacts": contacts.concat(), "friction": 0.6}});
+    let study = file("eight.json", study.to_string());
+    let svg = svg(&["sweep", "tests/data/robots/a1/a1.urdf", &study], "eight");
+    let size = |name: &str| {
+        svg.split(&format!("{name}=\"")).nth(1).and_then(|rest| rest.split('"').next()?.parse::<f64>().ok())
+    };
+    let (width, height) = (size("width").expect("a width"), size("height").expect("a height"));
+    assert!(width < 1400.0 && height < 1.4 * width, "{width} by {height}");
+    assert!(legs.iter().all(|leg| svg.contains(&format!(">{leg}_foot<")) && svg.contains(&format!(">{leg}_calf<"))));
+}
+
+#[test]
 fn a_mirror_reverses_what_is_forward() {
     let mirrored = svg(&["impact", RAMONE, "examples/ramone.json", "--mirror"], "mirrored");
     assert!(mirrored.contains("left_foot slides backward, right_foot sticks"), "{mirrored}");
@@ -211,6 +247,8 @@ fn a_mirror_reverses_what_is_forward() {
     let [ahead, behind] = [svg(&sweep, "ahead"), svg(&[&sweep[..], &["--mirror"]].concat(), "behind")];
     let [forward, backward] = ["B, E: left_foot slides forward", "B, E: left_foot slides backward"];
     assert!(ahead.contains(forward) && behind.contains(backward) && !behind.contains(forward));
+    // The slide is drawn below zero.
+    assert!(ahead.contains(">10<") && behind.contains(">\u{2212}5<") && !behind.contains(">10<"));
     assert_eq!(heelstrike(&["impact", RAMONE, "examples/ramone.json", "--mirror"]).status, 2, "it needs a picture");
 }
 

@@ -36,6 +36,8 @@ struct PageDrawing {
     /// The beginning and the end of each, and its body.
     bones: Vec<(f64, f64, f64, f64, usize)>,
     joints: Vec<Vector<f64>>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    loops: Vec<Vector<f64>>,
     ground: Vec<Vector<f64>>,
     contacts: Vec<PageContact>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -74,6 +76,9 @@ struct PageOutcome {
     /// Tangential and normal.
     impulse: Vec<Pair<f64>>,
     after: Vec<Pair<f64>>,
+    /// Of each loop the link on which its impulse is drawn, and the impulse in the world's axes.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    loops: Vec<(usize, Vector<f64>)>,
 }
 
 /// The scale of all drawings of a page.
@@ -140,7 +145,6 @@ impl PageFrame {
     pub fn new(state: &PageState, unit: f64, parts: &mut Interned, texts: &mut Interned) -> Self {
         let PageState { keyframe, region, name } = state;
         let answer = keyframe.answer.as_ref();
-        let contacts = keyframe.drawing.as_ref().map_or(&[][..], |drawing| &drawing.contacts);
         Self {
             region: *region,
             name: name.clone(),
@@ -153,7 +157,7 @@ impl PageFrame {
                 Err(error) => refusal(error),
             }),
             notes: keyframe.notes.iter().map(|note| texts.number(note)).collect(),
-            outcomes: answer.iter().flat_map(|answer| outcomes(answer, contacts, texts)).collect(),
+            outcomes: answer.iter().flat_map(|answer| outcomes(answer, keyframe.drawing.as_ref(), texts)).collect(),
             pose: keyframe.drawing.as_ref().map(|drawing| PageDrawing::new(drawing, unit, parts, texts)),
         }
     }
@@ -166,9 +170,11 @@ fn refusal(error: &Error) -> String {
     format!("Refused: {place}{}{remedy}", error.reason())
 }
 
-fn outcomes(answer: &KeyframeAnswer, contacts: &[DrawnContact], texts: &mut Interned) -> Vec<PageOutcome> {
+fn outcomes(answer: &KeyframeAnswer, drawing: Option<&Drawing>, texts: &mut Interned) -> Vec<PageOutcome> {
     let pairs = |pairs: &[Pair<f64>]| pairs.iter().map(|pair| pair.map(|entry| significant(entry, 5))).collect();
-    let outcome = |outcome: &Outcome| PageOutcome {
+    let contacts = drawing.map_or(&[][..], |drawing| &drawing.contacts);
+    let in_loops = |at: usize| drawing.and_then(|drawing| drawing.outcomes.get(at)).map(|drawn| &drawn.loop_impulse);
+    let outcome = |(at, outcome): (usize, &Outcome)| PageOutcome {
         words: texts.number(picture::modes(contacts.iter().map(|contact| &contact.name), outcome)),
         remarks: picture::remarks(outcome, answer.aspect).into_iter().map(|remark| texts.number(remark)).collect(),
         margin: outcome.margin.map(|margin| significant(margin, 5)),
@@ -176,8 +182,9 @@ fn outcomes(answer: &KeyframeAnswer, contacts: &[DrawnContact], texts: &mut Inte
         energy_loss: significant(outcome.energy_loss, 5),
         impulse: pairs(&outcome.impulse),
         after: pairs(&outcome.velocity_after),
+        loops: in_loops(at).into_iter().flatten().map(|(link, own)| (texts.number(link), vector(own))).collect(),
     };
-    answer.outcomes.iter().map(outcome).collect()
+    answer.outcomes.iter().enumerate().map(outcome).collect()
 }
 
 impl PageDrawing {
@@ -213,7 +220,8 @@ impl PageDrawing {
         Self {
             bodies: drawing.bodies.iter().map(body).collect(),
             bones: drawing.bodies.iter().enumerate().flat_map(bones).collect(),
-            joints: drawing.joints.iter().chain(&drawing.loops).map(at).collect(),
+            joints: drawing.joints.iter().map(at).collect(),
+            loops: drawing.loops.iter().map(at).collect(),
             ground: drawing.ground.iter().map(at).collect(),
             contacts: drawing.contacts.iter().map(contact).collect(),
             applied: drawing.applied.iter().map(arrow).collect(),

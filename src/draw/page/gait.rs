@@ -89,7 +89,11 @@ impl Gait {
         let given = words::Wording::of(aspect).drawn.given.0;
         let last = panels.len() - 1;
         for (at, panel) in panels.iter_mut().enumerate() {
-            (panel.bands, panel.x.bare) = (bands(&runs), at < last);
+            (panel.bands, panel.x.bare) = (bands(&runs, &order), at < last);
+        }
+        if count > self.impacts().count() {
+            panels[0].title =
+                format!("\ncontacts of one state stand side by side{}", panels[0].title.replace('\n', ", "));
         }
         let looks = LOOKS.iter().filter(|look| runs.iter().any(|run| run.look().answer == look.answer));
         let entry = |name: &str, key| LegendEntry::new(name, key);
@@ -168,7 +172,7 @@ impl Gait {
 const BANDS: usize = 400;
 
 /// A band for all neighboring runs of one kind; no bands if they are not distinguishable.
-fn bands(runs: &[GaitRun]) -> Vec<Band> {
+fn bands(runs: &[GaitRun], order: &[f64]) -> Vec<Band> {
     let mut bands: Vec<Band> = Vec::new();
     let mut last = None;
     for run in runs {
@@ -185,6 +189,11 @@ fn bands(runs: &[GaitRun]) -> Vec<Band> {
             }
         }
         last = Some(look.answer);
+    }
+    // The first and the last state lie in the middle of their parts, too.
+    if let ([first, .., last], [from, second, ..], [.., before, to]) = (&mut bands[..], order, order) {
+        first.from -= 0.5 * (second - from);
+        last.to += 0.5 * (to - before);
     }
     if bands.len() > BANDS { Vec::new() } else { bands }
 }

@@ -55,12 +55,17 @@
   }
 
   const along = (axis, way) => here.with(axis, here[axis] + way);
+  /** Along the axis whose slider has the focus, or else along this one. */
+  const step = (axis, way) => {
+    const held = sliders.findIndex(({ input }) => input === document.activeElement);
+    go(along(held < 0 ? axis : held, way));
+  };
   const upright = axes.length - 1;
   const keys = {
-    ArrowLeft: () => go(along(0, -1)),
-    ArrowRight: () => go(along(0, 1)),
-    ArrowDown: () => go(along(upright, -1)),
-    ArrowUp: () => go(along(upright, 1)),
+    ArrowLeft: () => step(0, -1),
+    ArrowRight: () => step(0, 1),
+    ArrowDown: () => step(upright, -1),
+    ArrowUp: () => step(upright, 1),
     PageUp: () => go(beyond(1)),
     PageDown: () => go(beyond(-1)),
     Home: () => go(here.with(0, 0)),

@@ -27,7 +27,7 @@ function arrow(kind, from, to) {
   const length = Math.hypot(dx, dy);
   if (!(length > 0.5)) return svg("g");
   const [ux, uy] = [dx / length, dy / length];
-  const head = Math.min(kind.startsWith("impulse") ? 12 : 10, length);
+  const head = Math.min(/^(impulse|in-loop)/.test(kind) ? 12 : 10, length);
   const neck = [to[0] - head * ux, to[1] - head * uy];
   const half = 0.38 * head;
   const corners = [to, [neck[0] - half * uy, neck[1] + half * ux], [neck[0] + half * uy, neck[1] - half * ux]];
@@ -42,7 +42,10 @@ class Robot {
   static USUAL = 0.24;
   static LONGEST = 0.48;
   /** Parts of its height that are free on either side of the robot, above and below. */
-  static ROOM = { side: 0.18, above: 0.06, below: 0.27 };
+  static ROOM = { side: 0.18, above: 0.06, below: 0.2 };
+  /** A velocity before whose angle to another arrow has a smaller sine is drawn so far aside [px]. */
+  static ALONG = 0.15;
+  static ASIDE = 12;
 
   constructor(element, key, data) {
     this.element = element;
@@ -124,32 +127,37 @@ class Robot {
     return group;
   }
 
-  skeleton({ bones, joints }) {
+  skeleton({ bones, joints, loops = [] }) {
     const bone = ([x, z, toX, toZ, body]) => {
       const [[x1, y1], [x2, y2]] = [this.at([x, z]), this.at([toX, toZ])];
       return svg("line", { class: "bone", "data-body": body, x1, y1, x2, y2 });
     };
-    const joint = (point) => {
+    const joint = (kind) => (point) => {
       const [cx, cy] = this.at(point);
-      return svg("circle", { class: "joint", cx, cy, r: 3.6 });
+      return svg("circle", { class: kind, cx, cy, r: 3.6 });
     };
-    return [...bones.map(bone), ...joints.map(joint)];
+    return [...bones.map(bone), ...joints.map(joint("joint")), ...loops.map(joint("joint loop"))];
   }
 
   /** Contacts and arrows, on top those of the chosen outcome. */
   contacts({ pose, outcomes }, chosen) {
     const shapes = [];
-    for (const { point, normal, before } of pose.contacts) {
+    const shown = chosen === null ? outcomes : outcomes.slice(chosen, chosen + 1);
+    pose.contacts.forEach(({ point, normal, before }, contact) => {
       const [x1, y1] = this.at(point);
       const [x2, y2] = [x1 + 34 * normal[0], y1 - 34 * normal[1]];
-      shapes.push(svg("line", { class: "normal", x1, y1, x2, y2 }), this.vector("before", "before", point, before));
-    }
+      const others = shown.flatMap(({ impulse, after }) => [impulse[contact], after[contact]].map((pair) => world(normal, pair)));
+      shapes.push(svg("line", { class: "normal", x1, y1, x2, y2 }), this.arriving(point, before, others));
+    });
     for (const { point, vector } of pose.applied ?? []) shapes.push(this.vector("applied", "impulse", point, vector));
     const tips = [];
-    const drawn = outcomes.map((outcome, number) => this.outcome(pose.contacts, outcome, number, chosen, tips));
+    const drawn = outcomes.map((outcome, number) => this.outcome(pose, outcome, number, chosen, tips));
     if (chosen !== null && drawn[chosen]) drawn.push(drawn[chosen]);
     shapes.push(...drawn);
-    if (outcomes.length > 1) shapes.push(...tips.map(({ at: [x, y], numbers }) => svg("text", { x, y, dx: 5, dy: -4 }, [...numbers].join(", "))));
+    for (const { at: [x, y], link, numbers } of tips) {
+      const words = [...(link ? [link] : []), ...(outcomes.length > 1 ? numbers : [])].join(", ");
+      if (words) shapes.push(svg("text", { x, y, dx: 5, dy: -4 }, words));
+    }
     const named = pose.contacts.map(({ point, name }) => ({ at: this.at(point), name: this.data.texts[name] }));
     shapes.push(...named.map(({ at: [cx, cy] }) => svg("circle", { class: "contact", cx, cy, r: 3.2 })));
     return [...shapes, ...this.names(named)];
@@ -167,21 +175,22 @@ class Robot {
     });
   }
 
-  outcome(contacts, { impulse, after }, number, chosen, tips) {
+  outcome({ contacts, loops }, { impulse, after, loops: inLoops = [] }, number, chosen, tips) {
     const group = svg("g", { class: chosen === null || chosen === number ? "effect" : "effect faded", "data-outcome": number + 1 });
-    contacts.forEach(({ point, normal: [nx, nz] }, contact) => {
-      // The tangent is the normal turned clockwise.
-      const world = ([t, n]) => [t * nz + n * nx, n * nz - t * nx];
-      for (const [kind, vector] of [["impulse", impulse[contact]], ["velocity", after[contact]]]) {
-        const drawn = this.vector(kind, kind, point, world(vector));
-        group.append(drawn);
-        if (!drawn.tip) continue;
-        // Arrows that end near each other have one label.
-        const near = tips.find(({ at: [x, y] }) => Math.hypot(x - drawn.tip[0], y - drawn.tip[1]) < 16);
-        if (near) near.numbers.add(number + 1);
-        else tips.push({ at: drawn.tip, numbers: new Set([number + 1]) });
-      }
+    const draw = (kind, unit, point, vector, link) => {
+      const drawn = this.vector(kind, unit, point, vector);
+      group.append(drawn);
+      if (!drawn.tip) return;
+      // Arrows that end near each other have one label.
+      const near = tips.find(({ at: [x, y], link: other }) => other === link && Math.hypot(x - drawn.tip[0], y - drawn.tip[1]) < 16);
+      if (near) near.numbers.add(number + 1);
+      else tips.push({ at: drawn.tip, link, numbers: new Set([number + 1]) });
+    };
+    contacts.forEach(({ point, normal }, contact) => {
+      draw("impulse", "impulse", point, world(normal, impulse[contact]));
+      draw("velocity", "velocity", point, world(normal, after[contact]));
     });
+    inLoops.forEach(([link, vector], at) => draw("in-loop", "impulse", loops[at], vector, this.data.texts[link]));
     return group;
   }
 
@@ -197,6 +206,18 @@ class Robot {
     return drawn;
   }
 
+  /** A velocity before: it ends at the contact, or next to it if one of the `others` lies along it. */
+  arriving(point, [x, z], others) {
+    const drawn = this.vector("before", "before", point, [x, z]);
+    const length = Math.hypot(x, z);
+    const along = others.find(([a, b]) => a * x + b * z < 0 && Math.abs(a * z - b * x) < Robot.ALONG * length * Math.hypot(a, b));
+    const side = along ? (along[0] * z - along[1] * x > 0 ? -1 : 1) * Robot.ASIDE / length : 0;
+    const [left, top] = this.at(point);
+    const [right, low] = drawn.tip ?? [left, top];
+    drawn.setAttribute("transform", `translate(${left - right + side * z} ${top - low + side * x})`);
+    return drawn;
+  }
+
   /** What the arrows are, each with one of a round length. */
   key() {
     const { frames, scale: { impulse, velocity, before }, wording: { given, taken, moving } } = this.data;
@@ -204,8 +225,9 @@ class Robot {
     const entries = [
       ["impulse", "impulse", impulse, given[1], `${given[0]} of the ground`, some((frame) => frame.outcomes.some((outcome) => outcome.impulse.some(moves)))],
       ["applied", "impulse", impulse, given[1], `applied ${given[0]}`, some((frame) => frame.pose.applied)],
+      ["in-loop", "impulse", impulse, given[1], `${given[0]} in a loop, on the link at its tip`, some((frame) => frame.pose.loops)],
       ["velocity", "velocity", velocity, taken[1], taken[0], some((frame) => frame.outcomes.some((outcome) => outcome.after.some(moves)))],
-      ["before", "before", before, "m/s", moving, some((frame) => frame.pose.contacts.some((contact) => moves(contact.before)))],
+      ["before", "before", before, "m/s", `${moving}, toward the contact`, some((frame) => frame.pose.contacts.some((contact) => moves(contact.before)))],
     ];
     this.legend.replaceChildren();
     for (const [kind, unit, usual, name, words, drawn] of entries) {
@@ -219,6 +241,11 @@ class Robot {
     const cut = ({ outcomes }) => outcomes.some((outcome) => outcome.impulse.some(isCut(impulse)) || outcome.after.some(isCut(velocity)));
     if (some(cut)) this.legend.append(html("span", {}, "dash-dotted: longer than drawn"));
   }
+}
+
+/** A pair along the tangent, which is the normal turned clockwise, and along the normal, in the world's axes. */
+function world([nx, nz], [t, n]) {
+  return [t * nz + n * nx, n * nz - t * nx];
 }
 
 function moves([t, n]) {

@@ -5,7 +5,7 @@
 //! ```
 
 use super::{MOST, Page, PageAxis, PageRegion, PageState};
-use crate::draw::plot::{Color, Rendered};
+use crate::draw::plot::{Color, Rendered, significant};
 use crate::draw::sweep::{fills_along, fills_of_map};
 use crate::draw::{Forward, Keyframe};
 use crate::state::State;
@@ -135,7 +135,7 @@ fn along(sweep: Sweep, survey: &Survey) -> (Vec<PageRegion>, Vec<String>) {
     let border = |at: Option<usize>, side: &str| {
         let border = sweep.borders.get(at?)?;
         let sides = [at?, at? + 1].map(|at| sweep.regions[at].side());
-        Some([format!("{side}, at {:?}", border.at), border.transition.in_words(sides)])
+        Some([format!("{side}, at {}", significant(border.at, 9)), border.transition.in_words(sides)])
     };
     let fills = fills_along(survey);
     let region = |(at, region): (usize, &RegionRecord)| PageRegion {

@@ -170,6 +170,10 @@ impl Span {
             let least = (self.high - self.low) * PITCH.min(self.length / PARTS) / self.length;
             // Halves of pi, or whole multiples.
             self.step = if self.in_pi && least <= 0.5 { 0.5 } else { step(least) };
+            if self.ticks().nth(1).is_none() {
+                // One number is no scale.
+                self.step = step(0.4 * self.step);
+            }
         }
     }
 
@@ -255,6 +259,7 @@ mod tests {
             ((0.0, 1.57), 0.5, 0.5, "0.5"),
             ((-1.0, 1.0), 0.5, -1e-17, "0.0"),
             ((0.4700, 0.4712), 0.0005, 0.47, "0.4700"),
+            ((-0.4, 0.49), 0.2, 0.2, "0.2"),
             ((-300.0, 20.0), 100.0, -200.0, "−200"),
         ] {
             let span = span(range);

@@ -149,7 +149,7 @@ impl Picture {
             Some(format!("{} against {}", y.label, x.label)).filter(|_| !y.label.is_empty() && !x.label.is_empty())
         };
         let panel = |placed: &PlacedPanel| {
-            let title = Some(placed.panel.title.replace('\n', ", ")).filter(|title| !title.is_empty());
+            let title = Some(placed.panel.title.trim().replace('\n', ", ")).filter(|title| !title.is_empty());
             title.into_iter().chain(axes(placed.panel)).collect::<Vec<_>>().join(": ")
         };
         let legend = self.legend.iter().map(|entry| entry.name.replace('\n', ", "));

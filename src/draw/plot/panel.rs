@@ -3,7 +3,7 @@
 use super::axis::{PlotArea, PlotAxis, Span, Tick};
 use super::canvas::{Anchor, Element, PlotLayer, Stroke, TextLine};
 use super::color::Color;
-use super::shape::PlotShape;
+use super::shape::{PlotShape, Taken};
 use super::{Pixel, PlotPoint, font};
 
 #[derive(Debug, Clone)]
@@ -58,6 +58,8 @@ impl Track {
 
 /// Heights of the fonts of titles, labels and letters, and of numbers and smaller titles \[px\].
 const LABEL: u32 = 14;
+/// The least height of a label's font beside a low panel \[px\].
+const SMALL: u32 = 9;
 const NUMBER: u32 = 12;
 /// From one line of a panel's title to the next \[px\].
 const LINE: f64 = 18.0;
@@ -160,7 +162,7 @@ impl<'p> PlacedPanel<'p> {
             self.grid(&mut inside);
         }
         panel.bands.iter().for_each(|band| self.band(band, &mut inside));
-        let mut taken = panel.shapes.iter().flat_map(|shape| shape.marked(&self.area)).collect();
+        let mut taken = Taken::by(&panel.shapes, &self.area);
         panel.shapes.iter().for_each(|shape| shape.draw(&self.area, &mut taken, &mut inside));
         for BandLetter { text, middle, story, is_wide } in self.letters() {
             let baseline = MARGIN + font::CAPITAL * f64::from(LABEL) + story as f64 * STORY;
@@ -210,7 +212,9 @@ impl<'p> PlacedPanel<'p> {
             }
             let at = (left - room + font::CAPITAL * f64::from(LABEL), middle.1);
             let label = self.area.y.label(&y.label);
-            out.text(TextLine { upward: true, ..TextLine::new(at, &label, LABEL, Anchor::Middle) });
+            let fits = |size: &u32| font::width(&label, *size) <= height + BELOW;
+            let size = (SMALL..=LABEL).rev().find(fits).unwrap_or(SMALL);
+            out.text(TextLine { upward: true, ..TextLine::new(at, &label, size, Anchor::Middle) });
         }
         out.rectangle((left, top), (*width, *height), None, Some(AXIS));
     }

@@ -7,6 +7,7 @@ use super::font::{self, TextBox};
 use super::mark::{Mark, arrow};
 use super::{Pixel, PlotPoint, curve};
 use std::collections::BTreeSet;
+use std::f64::consts::TAU;
 
 /// Something that is drawn, in the coordinates of its panel's axes; fonts, marks and strokes are in px.
 #[derive(Debug, Clone)]
@@ -40,30 +41,27 @@ impl PlotShape {
         }
     }
 
-    /// Where it has marks or thick lines, which no name may cover.
-    pub(super) fn marked(&self, area: &PlotArea) -> Vec<TextBox> {
+    /// The lines that it consists of, and half their width \[px\].
+    fn lines(&self, area: &PlotArea) -> (Vec<Vec<Pixel>>, f64) {
+        let placed = |points: &[PlotPoint]| points.iter().filter_map(|&point| area.place(point)).collect();
         match self {
-            Self::Marks { points, size, .. } => {
-                points.iter().filter_map(|&point| Some(TextBox::around(area.place(point)?, *size))).collect()
+            Self::Line { points, stroke } => (vec![placed(points)], 0.5 * stroke.width),
+            &Self::Arrow { from, to, stroke } => (vec![placed(&[from, to])], 0.5 * stroke.width),
+            Self::Area { loops, stroke: Some(stroke), .. } => {
+                let closed = |corners: &Vec<PlotPoint>| placed(&[&corners[..], &corners[..1]].concat());
+                (loops.iter().filter(|corners| !corners.is_empty()).map(closed).collect(), 0.5 * stroke.width)
             }
-            Self::Line { points, stroke } if stroke.width >= THICK => {
-                let placed: Vec<Pixel> = points.iter().filter_map(|&point| area.place(point)).collect();
-                let along = |pair: &[Pixel]| {
-                    let ([from, to], half) = ([pair[0], pair[1]], 0.5 * stroke.width);
-                    let (dx, dy) = (to.0 - from.0, to.1 - from.1);
-                    let pieces = (libm::hypot(dx, dy) / THICK).min(MOST).ceil().max(1.0);
-                    let at =
-                        move |piece: usize| (from.0 + dx * piece as f64 / pieces, from.1 + dy * piece as f64 / pieces);
-                    (0..=pieces as usize).map(move |piece| TextBox::around(at(piece), half))
-                };
-                placed.windows(2).flat_map(along).collect()
+            &Self::Circle { center: (x, y), radius, stroke: Some(stroke), .. } => {
+                let rim = (0..=ROUND).map(|part| TAU * f64::from(part) / f64::from(ROUND));
+                let rim = rim.map(|angle| (x + radius * libm::cos(angle), y + radius * libm::sin(angle)));
+                (vec![placed(&rim.collect::<Vec<_>>())], 0.5 * stroke.width)
             }
-            _ => Vec::new(),
+            _ => (Vec::new(), 0.0),
         }
     }
 
     /// Draws it into `out`; names keep clear of what is `taken`.
-    pub(super) fn draw(&self, area: &PlotArea, taken: &mut Vec<TextBox>, out: &mut PlotLayer) {
+    pub(super) fn draw(&self, area: &PlotArea, taken: &mut Taken, out: &mut PlotLayer) {
         match self {
             Self::Line { points, stroke } => {
                 let placed: Vec<Option<Pixel>> = points.iter().map(|&point| area.place(point)).collect();
@@ -110,9 +108,45 @@ impl PlotShape {
     }
 }
 
-/// Names keep clear of lines that are so wide, at points so far apart \[px\], of which a line has at most so many.
+/// Where names do not stand: on marks, thick lines and other names, and on thin lines if there is another place.
+#[derive(Debug, Default)]
+pub(super) struct Taken {
+    marks: Vec<TextBox>,
+    thin: Vec<TextBox>,
+}
+
+impl Taken {
+    /// By these shapes, of which some have names.
+    pub fn by(shapes: &[PlotShape], area: &PlotArea) -> Self {
+        let mut taken = Self::default();
+        if !shapes.iter().any(|shape| matches!(shape, PlotShape::Names { .. })) {
+            return taken;
+        }
+        for shape in shapes {
+            if let PlotShape::Marks { points, size, .. } = shape {
+                let placed = points.iter().filter_map(|&point| area.place(point));
+                taken.marks.extend(placed.map(|at| TextBox::around(at, *size)));
+            }
+            let (lines, half) = shape.lines(area);
+            let along = |pair: &[Pixel]| {
+                let [from, to] = [pair[0], pair[1]];
+                let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+                let pieces = (libm::hypot(dx, dy) / THICK).min(MOST).ceil().max(1.0);
+                let at = move |piece: usize| (from.0 + dx * piece as f64 / pieces, from.1 + dy * piece as f64 / pieces);
+                (0..=pieces as usize).map(move |piece| TextBox::around(at(piece), half))
+            };
+            let kind = if 2.0 * half >= THICK { &mut taken.marks } else { &mut taken.thin };
+            kind.extend(lines.iter().flat_map(|line| line.windows(2)).flat_map(along));
+        }
+        taken
+    }
+}
+
+/// Lines that are so wide are thick; they are taken at points so far apart \[px\], of which a line has at most so many.
 const THICK: f64 = 4.0;
 const MOST: f64 = 400.0;
+/// The parts of a circle's rim.
+const ROUND: u32 = 48;
 /// Height of the font \[px\].
 const SIZE: u32 = 11;
 /// From a point to its name \[px\].
@@ -129,14 +163,15 @@ fn draw_name(
     below: bool,
     color: Color,
     area: &PlotArea,
-    taken: &mut Vec<TextBox>,
+    taken: &mut Taken,
     out: &mut PlotLayer,
 ) {
-    let width = font::width(name, SIZE);
-    let is_free = |place: &TextBox| place.is_within(area.size()) && !taken.iter().any(|other| other.meets(place));
-    let free = places(at, width, below).find(is_free);
-    let Some(place) = free.or_else(|| places(at, width, below).next()) else { return };
-    taken.push(place);
+    let places = || places(at, font::width(name, SIZE), below);
+    let clear = |place: &TextBox, of: &[TextBox]| !of.iter().any(|other| other.meets(place));
+    let is_free = |place: &TextBox| place.is_within(area.size()) && clear(place, &taken.marks);
+    let free = places().find(|place| is_free(place) && clear(place, &taken.thin)).or_else(|| places().find(is_free));
+    let Some(place) = free.or_else(|| places().next()) else { return };
+    taken.marks.push(place);
     let (left, right) = (place.middle.0 - place.half.0, place.middle.0 + place.half.0);
     let near = (at.0.clamp(left, right), place.middle.1);
     if libm::hypot(near.0 - at.0, near.1 - at.1) > FAR {
@@ -149,10 +184,10 @@ fn draw_name(
 /// Places for a name so wide, the nearest first.
 fn places((x, y): Pixel, width: f64, below: bool) -> impl Iterator<Item = TextBox> {
     // A point that is named below lies on a line that a name next to it would cover.
-    let (nearest, down) = if below { (1, 1.0) } else { (0, -1.0) };
+    let (nearest, down, level) = if below { (1, 1.0, 1.0) } else { (0, -1.0, 0.0) };
     (nearest..=RINGS).flat_map(move |ring| {
         let reach = f64::from(ring) * RING;
-        let middles = [y + down * reach, y - down * reach];
+        let middles = [level, down, -down].map(|way| y + way * reach);
         let lefts = [x + GAP, x - GAP - width, x + GAP + reach, x - GAP - reach - width];
         middles.into_iter().flat_map(move |middle| {
             let half = (0.5 * width, 0.5 * RING - 0.5);
@@ -173,11 +208,15 @@ mod tests {
         let area = PlotArea { x: span(), y: span() };
         let names = (0..12).map(|at| ((0.5, 0.5), format!("link_{at}"))).collect();
         let names = PlotShape::Names { names, below: false, color: Color::Black };
-        let mut taken = vec![TextBox::around((150.0, 150.0), 4.0)];
+        let marked = PlotShape::Marks { points: vec![(0.5, 0.5)], mark: Mark::Circle, color: Color::Black, size: 4.0 };
+        let edge = PlotShape::Line { points: vec![(0.6, 0.0), (0.6, 1.0)], stroke: Stroke::solid(Color::Gray, 1.0) };
+        let mut taken = Taken::by(&[marked, edge, names.clone()], &area);
         names.draw(&area, &mut taken, &mut PlotLayer::default());
-        assert_eq!(taken.len(), 13);
-        for (at, place) in taken.iter().enumerate() {
-            assert!(place.is_within(area.size()) && !taken[..at].iter().any(|other| other.meets(place)), "{place:?}");
+        let Taken { marks, thin } = taken;
+        assert_eq!(marks.len(), 13);
+        for (at, place) in marks.iter().enumerate() {
+            let others = marks[..at].iter().chain(&thin);
+            assert!(place.is_within(area.size()) && others.clone().all(|other| !other.meets(place)), "{place:?}");
         }
     }
 }

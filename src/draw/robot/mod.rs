@@ -17,7 +17,7 @@ use crate::contact::{Contact, Feet, Placement};
 use crate::pipeline::{Aspect, Impact};
 use crate::planar::{Pair, Vector};
 use crate::robot::{Body, FootShape, Rim, Robot};
-use crate::state::{AppliedImpulse, Ground, NamedContact, State};
+use crate::state::{AppliedImpulse, Ground, NamedContact, NamedLoop, State};
 use serde::Serialize;
 
 /// A robot in its configuration, its contacts and the outcomes of its impact.
@@ -29,7 +29,7 @@ pub struct Drawing {
     pub bodies: Vec<DrawnBody>,
     /// Where joints are.
     pub joints: Vec<Vector<f64>>,
-    /// Where loops are closed: their points a.
+    /// Where loops are closed.
     pub loops: Vec<Vector<f64>>,
     /// The ground's surface from left to right, as far as the drawing reaches; empty without a ground.
     pub ground: Vec<Vector<f64>>,
@@ -67,12 +67,12 @@ pub struct DrawnContact {
     pub velocity_before: Vector<f64>,
 }
 
-/// The impulse of the ground on each contact and of each loop on its point a \[N s\], and the contacts' velocities after
-/// the impact \[m/s\].
+/// The impulse of the ground on each contact \[N s\], and the contacts' velocities after the impact \[m/s\].
 #[derive(Debug, Clone)]
 pub struct DrawnOutcome {
     pub impulse: Vec<Vector<f64>>,
-    pub loop_impulse: Vec<Vector<f64>>,
+    /// Of each loop the impulse on that of its links which it pushes up, away from the ground, and this link's name.
+    pub loop_impulse: Vec<(String, Vector<f64>)>,
     pub velocity_after: Vec<Vector<f64>>,
 }
 
@@ -137,9 +137,13 @@ impl Drawing {
         };
         drawing.contacts = impact.contacts.iter().zip(turned(&impact.velocity_before)).map(contact).collect();
         let outcomes = impact.analysis.iter().flat_map(|analysis| &analysis.outcomes);
+        let on_link = |(pin, &impulse): (&NamedLoop, &Vector<f64>)| {
+            let (end, impulse) = if impulse.z < 0.0 { (pin.b, -impulse) } else { (pin.a, impulse) };
+            (robot.links[end.link].name.clone(), impulse)
+        };
         let drawn = outcomes.map(|outcome| DrawnOutcome {
             impulse: turned(&outcome.impulse),
-            loop_impulse: outcome.loop_impulse.clone().unwrap_or_default(),
+            loop_impulse: scene.loops.iter().zip(outcome.loop_impulse.iter().flatten()).map(on_link).collect(),
             velocity_after: turned(&outcome.velocity_after),
         });
         drawing.outcomes = drawn.collect();
@@ -160,9 +164,7 @@ impl Drawing {
     /// The greatest impulse of all outcomes, those of loops included, and of those that the state applies \[N s\].
     pub fn greatest_impulse(&self) -> f64 {
         let applied = self.applied.iter().map(|applied| &applied.vector);
-        greatest(
-            self.outcomes.iter().flat_map(|outcome| outcome.impulse.iter().chain(&outcome.loop_impulse)).chain(applied),
-        )
+        greatest(self.outcomes.iter().flat_map(DrawnOutcome::impulses).chain(applied))
     }
 
     /// The greatest velocity of a contact before the impact and after it, on one scale \[m/s\]; of forces its velocity,
@@ -171,6 +173,13 @@ impl Drawing {
         let before = greatest(self.contacts.iter().map(|contact| &contact.velocity_before));
         let after = greatest(self.outcomes.iter().flat_map(|outcome| &outcome.velocity_after));
         if self.aspect.is_impact() { [before.max(after); 2] } else { [before, after] }
+    }
+}
+
+impl DrawnOutcome {
+    /// Those of the ground, and those of loops.
+    fn impulses(&self) -> impl Iterator<Item = &Vector<f64>> {
+        self.impulse.iter().chain(self.loop_impulse.iter().map(|(_, impulse)| impulse))
     }
 }
 

@@ -41,6 +41,9 @@ const BELOW: f64 = 0.1;
 const AXES: f64 = 0.18;
 const LONGEST: f64 = 0.4;
 const KEY: f64 = 0.15;
+/// A velocity before whose angle to another arrow has a smaller sine is drawn so far aside.
+const ALONG: f64 = 0.15;
+const ASIDE: f64 = 0.02;
 /// Half the width of a CoG's sign, of the lightest and the heaviest body \[px\].
 const LIGHT: f64 = 2.5;
 const HEAVY: f64 = 8.0;
@@ -237,16 +240,24 @@ impl<'d> DrawnScene<'d> {
         let effects = outcome.into_iter().flat_map(|outcome| {
             let impulses = outcome.impulse.iter().map(|&vector| (vector * impulse, IMPULSE));
             let after = outcome.velocity_after.iter().map(|&vector| (vector * self.after_scale, AFTER));
-            let in_loops = outcome.loop_impulse.iter().map(|&vector| (vector * impulse, IN_LOOP));
+            let in_loops = outcome.loop_impulse.iter().map(|&(_, vector)| (vector * impulse, IN_LOOP));
             let at = contacts.iter().chain(contacts).map(|contact| contact.point).chain(loops.iter().copied());
             at.zip(impulses.chain(after).chain(in_loops)).map(|(point, (reach, stroke))| (point, reach, stroke))
         });
-        // It arrives where the others begin. On top, because an impulse may lie along it.
+        let effects: Vec<_> = effects.collect();
+        // It arrives where the others begin, or next to it if one of them lies along it.
         let before = contacts.iter().map(|contact| {
             let reach = contact.velocity_before * self.before_scale;
-            (contact.point - reach, reach, BEFORE)
+            let (way, across) = (reach.length(), reach.perpendicular());
+            let is_along = |other: &Vector<f64>| {
+                reach.dot(*other) < 0.0 && across.dot(*other).abs() < ALONG * way * other.length()
+            };
+            let there = effects.iter().filter(|(point, ..)| *point == contact.point).map(|(_, other, _)| *other);
+            let aside = there.filter(is_along).map(|other| if across.dot(other) > 0.0 { -ASIDE } else { ASIDE }).next();
+            let aside = aside.map_or(Vector::zero(), |aside| across * (aside * self.size / way));
+            (contact.point - reach + aside, reach, BEFORE)
         });
-        applied.chain(effects).chain(before).collect()
+        applied.chain(effects.iter().copied()).chain(before).collect()
     }
 
     /// The ground, the robot's shapes, bones, joints and CoGs.
@@ -314,6 +325,9 @@ impl<'d> DrawnScene<'d> {
         };
         let names = contacts.iter().enumerate().map(name).collect();
         shapes.push(PlotShape::Names { names, below: true, color: Color::Black });
+        let pushed = outcome.into_iter().flat_map(|(_, drawn)| self.drawing.loops.iter().zip(&drawn.loop_impulse));
+        let names = pushed.map(|(at, (link, vector))| (point(*at + *vector * self.impulse_scale), link.clone()));
+        shapes.push(PlotShape::Names { names: names.collect(), below: false, color: IN_LOOP.color });
         shapes
     }
 
@@ -344,9 +358,9 @@ impl<'d> DrawnScene<'d> {
         let kinds = [
             (IMPULSE, self.impulse_scale, given.1, format!("{} of the ground", given.0)),
             (APPLIED, self.impulse_scale, given.1, format!("applied {}", given.0)),
-            (IN_LOOP, self.impulse_scale, given.1, format!("{} in a loop, on its point a", given.0)),
+            (IN_LOOP, self.impulse_scale, given.1, format!("{} in a loop, on the link at its tip", given.0)),
             (AFTER, self.after_scale, taken.1, format!("{}{arrowless}", taken.0)),
-            (BEFORE, self.before_scale, "m/s", format!("{moving}, ends at the contact")),
+            (BEFORE, self.before_scale, "m/s", format!("{moving}, toward the contact")),
         ];
         let drawn = kinds.into_iter().filter(|(stroke, ..)| is_drawn(*stroke));
         let entries = drawn.filter_map(|(stroke, scale, unit, what)| {
@@ -397,9 +411,8 @@ impl Drawing {
             [point, vector].into_iter().for_each(Forward::vector);
         }
         for outcome in &mut self.outcomes {
-            let vectors =
-                outcome.impulse.iter_mut().chain(&mut outcome.loop_impulse).chain(&mut outcome.velocity_after);
-            vectors.for_each(Forward::vector);
+            outcome.impulse.iter_mut().chain(&mut outcome.velocity_after).for_each(Forward::vector);
+            outcome.loop_impulse.iter_mut().for_each(|(_, impulse)| Forward::vector(impulse));
         }
         self.joints.iter_mut().chain(&mut self.loops).chain(&mut self.ground).for_each(Forward::vector);
         self.ground.reverse();

@@ -19,8 +19,9 @@ struct PlottedQuantity {
 /// Height inside of the axes \[px\], and that of all panels below each other: with the legend they fit on a page.
 const HEIGHT: f64 = 176.0;
 const PAGE: f64 = 660.0;
-/// Of more panels than this some stand side by side.
+/// Of more panels than this some stand side by side, narrower as far as no text has its place between curves \[px\].
 const COLUMN: usize = 6;
+const WIDTHS: [f64; 3] = [WIDTH, 420.0, 340.0];
 /// The height of a panel with nothing but the letters of regions.
 const STRIP: f64 = 30.0;
 
@@ -69,6 +70,9 @@ pub fn picture<'s>(x: PlotAxis, aspect: Aspect, survey: &'s Survey, courses: &[R
         panel.x = PlotAxis { bare: (index + 1) % rows > 0 && index + 1 < count, ..x.clone() };
         if index < lettered {
             panel.size.1 = panel.size.1.min(PAGE / rows as f64);
+        }
+        if !angles {
+            panel.size.0 = WIDTHS[(columns - 1).min(2)];
         }
         if index < lettered && index % rows == 0 {
             panel.bands = bands(|kind| (kind.letter.clone(), kind.color));

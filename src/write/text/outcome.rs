@@ -148,7 +148,7 @@ impl Writer<'_> {
         let Some(first) = outcomes.first().map(coordinates).filter(|names| !names.is_empty()) else { return };
         let mut table =
             Table::default().text(self.subject.wording.coordinates, first).text("", self.subject.units.iter().copied());
-        let velocities = scale(outcomes.iter().flat_map(Outcome::velocity));
+        let velocities = scale(outcomes.iter().flat_map(Outcome::velocity)).max(self.speeds());
         for (at, outcome) in outcomes.iter().enumerate() {
             let head = if outcomes.len() == 1 { String::new() } else { format!("{}", at + 1) };
             table = table.numbers(&head, velocities, outcome.velocity());

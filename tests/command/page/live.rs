@@ -1,7 +1,7 @@
 //! What a page does: keys, sliders and clicks move the robot, the cursors and the answers.
 
 use super::browser::found;
-use super::{HOSTILE, WALK, WALKER, data, each, file, grid, hostile, list, near_a_border, page, swept};
+use super::{HOSTILE, WALK, WALKER, data, each, file, five_bar, grid, hostile, list, near_a_border, page, swept};
 use crate::result;
 use serde_json::{Value, json};
 
@@ -162,6 +162,16 @@ fn hostile_names_are_shown_and_not_run() {
     assert!(found["words"].as_str().expect("words").contains(&format!("{} sticks", HOSTILE)));
     // Those of the page, and two of the test.
     assert_eq!(found["scripts"], 4);
+}
+
+#[test]
+fn a_velocity_along_an_impulse_is_drawn_aside() {
+    let Some(found) = found(&five_bar().1, WINDOW, include_str!("scripts/arrows.js")) else { return };
+    assert_eq!(found["names"], json!(["right_shank", "left_shank"]));
+    // Its head is next to the contact, and no longer on it; the loop's points up.
+    let [aside, down] = [&found["aside"], &found["down"]].map(|way| way.as_f64().expect("a number"));
+    assert!(close(aside, 12.0, 0.01) && close(down, 0.0, 6.0), "{found}");
+    assert_eq!(found["up"], json!(true));
 }
 
 #[test]

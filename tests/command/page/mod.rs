@@ -86,6 +86,35 @@ fn the_data_of_a_small_study() {
     insta::assert_snapshot!("small", lines.collect::<String>());
 }
 
+/// The five-bar leg at two speeds.
+fn five_bar() -> (String, PathBuf) {
+    let mut state = parsed(&read("examples/five_bar.json"));
+    state["velocity"]["base"]["z"] = json!("fall");
+    let study = json!({"parameters": {"fall": {"from": -1.0, "to": -0.5, "steps": 2}}, "state": state});
+    swept("urdf/five_bar.urdf", &study, "five_bar.html")
+}
+
+#[test]
+fn a_loops_impulse_is_on_the_link_that_it_pushes_up() {
+    let data = data(&five_bar().0);
+    let [link, impulse] = list(&data["frames"][0]["outcomes"][0]["loops"][0]) else { panic!("a link, its impulse") };
+    // As text and JSON have it, the impulse on the left shank is (-0.116, -0.2555).
+    assert_eq!(data["texts"][link.as_u64().expect("a number") as usize], "right_shank");
+    assert_eq!(impulse, &json!([0.11596, 0.25551]));
+}
+
+#[test]
+fn pages_of_a_mirror_name_what_happens_at_borders_in_it() {
+    let study = file("mirror.json", near_a_border().to_string());
+    let sweep = ["sweep", WALKER, &study];
+    let [ahead, behind] =
+        [&sweep[..], &[&sweep[..], &["--mirror"]].concat()].map(|args| data(&page(args, "", "mirror.html").0));
+    let border = |data: &Value| data["regions"][0]["borders"][0][1].as_str().expect("words").to_owned();
+    assert!(border(&ahead).contains("sliding backward") && border(&behind).contains("sliding forward"), "{behind}");
+    let impulse = |data: &Value| data["frames"][0]["outcomes"][0]["impulse"][1][0].as_f64().expect("a number");
+    assert_eq!(impulse(&ahead), -impulse(&behind));
+}
+
 #[test]
 fn a_page_stops_at_samples_and_within_every_region() {
     let (page, _) = swept(WALKER, &near_a_border(), "stops.html");
@@ -225,7 +254,7 @@ fn pages_and_pictures_of_forces_name_them() {
 
     let state = json!({"velocity": {"base": {"x": 1, "pitch": 4}}, "friction": 3}).to_string();
     let (svg, _) = self::page(&["forces", "urdf/block.urdf", "-"], &state, "forces.svg");
-    for key in ["force of the ground: 5 N", "acceleration: 10 m/s\u{b2}", "velocity, ends at the contact: 0.2 m/s"] {
+    for key in ["force of the ground: 5 N", "acceleration: 10 m/s\u{b2}", "velocity, toward the contact: 0.2 m/s"] {
         assert!(svg.contains(key), "{key}");
     }
 }
