@@ -133,7 +133,9 @@ fn the_ending_names_the_form_of_a_picture() {
     ] {
         let path = place(name);
         heelstrike(&[arguments, &["--plot", &path]].concat()).well();
-        assert!(fs::read(path).expect("a picture").starts_with(start), "{name}");
+        let picture = fs::read(path).expect("a picture");
+        assert!(picture.starts_with(start), "{name}");
+        assert_eq!(picture.windows(4).any(|chunk| chunk == b"pHYs"), name.ends_with("png"), "{name} has its density");
     }
 }
 

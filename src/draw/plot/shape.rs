@@ -41,22 +41,20 @@ impl PlotShape {
         }
     }
 
-    /// The lines that it consists of, and half their width \[px\].
-    fn lines(&self, area: &PlotArea) -> (Vec<Vec<Pixel>>, f64) {
-        let placed = |points: &[PlotPoint]| points.iter().filter_map(|&point| area.place(point)).collect();
+    /// The lines that it consists of, if any, and their stroke.
+    fn lines(&self) -> Option<(Vec<Vec<PlotPoint>>, Stroke)> {
         match self {
-            Self::Line { points, stroke } => (vec![placed(points)], 0.5 * stroke.width),
-            &Self::Arrow { from, to, stroke } => (vec![placed(&[from, to])], 0.5 * stroke.width),
-            Self::Area { loops, stroke: Some(stroke), .. } => {
-                let closed = |corners: &Vec<PlotPoint>| placed(&[&corners[..], &corners[..1]].concat());
-                (loops.iter().filter(|corners| !corners.is_empty()).map(closed).collect(), 0.5 * stroke.width)
+            Self::Line { points, stroke } => Some((vec![points.clone()], *stroke)),
+            &Self::Arrow { from, to, stroke } => Some((vec![vec![from, to]], stroke)),
+            Self::Area { loops, stroke, .. } => {
+                let closed = |corners: &Vec<PlotPoint>| corners.iter().chain(corners.first()).copied().collect();
+                Some((loops.iter().map(closed).collect(), (*stroke)?))
             }
-            &Self::Circle { center: (x, y), radius, stroke: Some(stroke), .. } => {
-                let rim = (0..=ROUND).map(|part| TAU * f64::from(part) / f64::from(ROUND));
-                let rim = rim.map(|angle| (x + radius * libm::cos(angle), y + radius * libm::sin(angle)));
-                (vec![placed(&rim.collect::<Vec<_>>())], 0.5 * stroke.width)
+            &Self::Circle { center: (x, y), radius, stroke, .. } => {
+                let rim = (0..=ROUND).map(|part| libm::sincos(TAU * f64::from(part) / f64::from(ROUND)));
+                Some((vec![rim.map(|(sin, cos)| (x + radius * cos, y + radius * sin)).collect()], stroke?))
             }
-            _ => (Vec::new(), 0.0),
+            _ => None,
         }
     }
 
@@ -127,16 +125,17 @@ impl Taken {
                 let placed = points.iter().filter_map(|&point| area.place(point));
                 taken.marks.extend(placed.map(|at| TextBox::around(at, *size)));
             }
-            let (lines, half) = shape.lines(area);
+            let Some((lines, Stroke { width, .. })) = shape.lines() else { continue };
+            let placed = |line: &Vec<PlotPoint>| line.iter().filter_map(|&at| area.place(at)).collect::<Vec<Pixel>>();
             let along = |pair: &[Pixel]| {
                 let [from, to] = [pair[0], pair[1]];
                 let (dx, dy) = (to.0 - from.0, to.1 - from.1);
                 let pieces = (libm::hypot(dx, dy) / THICK).min(MOST).ceil().max(1.0);
                 let at = move |piece: usize| (from.0 + dx * piece as f64 / pieces, from.1 + dy * piece as f64 / pieces);
-                (0..=pieces as usize).map(move |piece| TextBox::around(at(piece), half))
+                (0..=pieces as usize).map(move |piece| TextBox::around(at(piece), 0.5 * width))
             };
-            let kind = if 2.0 * half >= THICK { &mut taken.marks } else { &mut taken.thin };
-            kind.extend(lines.iter().flat_map(|line| line.windows(2)).flat_map(along));
+            let kind = if width >= THICK { &mut taken.marks } else { &mut taken.thin };
+            lines.iter().map(placed).for_each(|line| kind.extend(line.windows(2).flat_map(along)));
         }
         taken
     }

@@ -252,10 +252,9 @@ impl<'d> DrawnScene<'d> {
             let is_along = |other: &Vector<f64>| {
                 reach.dot(*other) < 0.0 && across.dot(*other).abs() < ALONG * way * other.length()
             };
-            let there = effects.iter().filter(|(point, ..)| *point == contact.point).map(|(_, other, _)| *other);
-            let aside = there.filter(is_along).map(|other| if across.dot(other) > 0.0 { -ASIDE } else { ASIDE }).next();
-            let aside = aside.map_or(Vector::zero(), |aside| across * (aside * self.size / way));
-            (contact.point - reach + aside, reach, BEFORE)
+            let mut there = effects.iter().filter(|(point, ..)| *point == contact.point).map(|(_, other, _)| *other);
+            let away = |other| across * (-across.dot(other).signum() * ASIDE * self.size / way);
+            (contact.point - reach + there.find(is_along).map_or(Vector::zero(), away), reach, BEFORE)
         });
         applied.chain(effects.iter().copied()).chain(before).collect()
     }

@@ -112,6 +112,7 @@ fn a_map_is_walked_in_both_directions() {
     assert_eq!(pair("last"), (Some(0.55), Some(-1.0)));
     assert_eq!(pair("clicked"), (Some(0.525), Some(-1.5)));
     assert_eq!(pair("slid"), (Some(0.525), Some(-2.0)));
+    assert_eq!(pair("held"), (Some(0.525), Some(-1.75)));
     assert_ne!(found["start"][2], found["last"][2], "two regions");
     let at = |name: &str, axis: usize| found[name][3 + axis].as_f64().expect("a number");
     assert!(at("last", 0) > at("start", 0) && at("last", 1) < at("start", 1), "the second parameter goes up");

@@ -13,4 +13,8 @@ const [x, y] = [start[3] + 0.52 * (last[3] - start[3]), start[4] + 0.48 * (last[
 one("#plots svg").dispatchEvent(new PointerEvent("pointerdown", { clientX: x, clientY: y, buttons: 1, bubbles: true }));
 const clicked = [...seen(), ...dot()];
 slide(1, 0);
-found({ start, up, beyond, last, clicked, slid: seen() });
+const slid = seen();
+// The slider that has the focus, whatever the arrow's direction.
+one("#axis1").focus();
+press("ArrowRight");
+found({ start, up, beyond, last, clicked, slid, held: seen() });
