@@ -73,9 +73,9 @@ impl Gait {
         let range = (span.0 - room, span.1 + room);
         let x = PlotAxis { range: Some(range), ..PlotAxis::new(label) };
         let contacts = |(_, state, _): (_, &ListedKeyframe, _)| Some(state.keyframe.drawing.as_ref()?.contacts.len());
-        let count: usize = self.impacts().filter_map(contacts).sum();
-        let beside = BESIDE.min(0.8 * WIDTH / count as f64);
-        let size = plot::MARK.min(0.5 * beside).max(1.5);
+        let crowd = self.impacts().filter_map(contacts).max().unwrap_or(0);
+        let beside = BESIDE.min(0.8 * WIDTH / (crowd * self.impacts().count()) as f64);
+        let size = plot::MARK.min(0.5 * beside).max(2.0);
         let (feet, marks) = self.marks(&order, beside * (range.1 - range.0) / WIDTH);
         let values: [(&str, MarkValue); 2] =
             [("margin", |mark| mark.margin), ("friction needed", |mark| mark.friction)];
@@ -91,7 +91,7 @@ impl Gait {
         for (at, panel) in panels.iter_mut().enumerate() {
             (panel.bands, panel.x.bare) = (bands(&runs, &order), at < last);
         }
-        if count > self.impacts().count() {
+        if crowd > 1 {
             panels[0].title =
                 format!("\ncontacts of one state stand side by side{}", panels[0].title.replace('\n', ", "));
         }
@@ -191,9 +191,9 @@ fn bands(runs: &[GaitRun], order: &[f64]) -> Vec<Band> {
         last = Some(look.answer);
     }
     // The first and the last state lie in the middle of their parts, too.
-    if let ([first, .., last], [from, second, ..], [.., before, to]) = (&mut bands[..], order, order) {
-        first.from -= 0.5 * (second - from);
-        last.to += 0.5 * (to - before);
+    if let ([from, second, ..], [.., before, to]) = (order, order) {
+        bands.first_mut().into_iter().for_each(|band| band.from -= 0.5 * (second - from));
+        bands.last_mut().into_iter().for_each(|band| band.to += 0.5 * (to - before));
     }
     if bands.len() > BANDS { Vec::new() } else { bands }
 }

@@ -147,7 +147,7 @@ class Robot {
       const [x1, y1] = this.at(point);
       const [x2, y2] = [x1 + 34 * normal[0], y1 - 34 * normal[1]];
       const others = shown.flatMap(({ impulse, after }) => [impulse[contact], after[contact]].map((pair) => world(normal, pair)));
-      shapes.push(svg("line", { class: "normal", x1, y1, x2, y2 }), this.arriving(point, before, others));
+      shapes.push(svg("line", { class: "normal", x1, y1, x2, y2 }), this.arriving(point, before, normal, others));
     });
     for (const { point, vector } of pose.applied ?? []) shapes.push(this.vector("applied", "impulse", point, vector));
     const tips = [];
@@ -206,15 +206,16 @@ class Robot {
     return drawn;
   }
 
-  /** A velocity before: it ends at the contact, or next to it if one of the `others` lies along it. */
-  arriving(point, [x, z], others) {
+  /** A velocity before: it ends at the contact, or next to it if one of the `others` or the ground lies along it. */
+  arriving(point, [x, z], [nx, nz], others) {
     const drawn = this.vector("before", "before", point, [x, z]);
     const length = Math.hypot(x, z);
     const along = others.find(([a, b]) => a * x + b * z < 0 && Math.abs(a * z - b * x) < Robot.ALONG * length * Math.hypot(a, b));
     const side = along ? (along[0] * z - along[1] * x > 0 ? -1 : 1) * Robot.ASIDE / length : 0;
+    const [across, up] = Math.abs(x * nx + z * nz) < Robot.ALONG * length ? [Robot.ASIDE * nx, Robot.ASIDE * nz] : [side * z, -side * x];
     const [left, top] = this.at(point);
     const [right, low] = drawn.tip ?? [left, top];
-    drawn.setAttribute("transform", `translate(${left - right + side * z} ${top - low + side * x})`);
+    drawn.setAttribute("transform", `translate(${left - right + across} ${top - low - up})`);
     return drawn;
   }
 

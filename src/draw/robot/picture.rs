@@ -245,7 +245,7 @@ impl<'d> DrawnScene<'d> {
             at.zip(impulses.chain(after).chain(in_loops)).map(|(point, (reach, stroke))| (point, reach, stroke))
         });
         let effects: Vec<_> = effects.collect();
-        // It arrives where the others begin, or next to it if one of them lies along it.
+        // It arrives where the others begin, or next to it if one of them or the ground lies along it.
         let before = contacts.iter().map(|contact| {
             let reach = contact.velocity_before * self.before_scale;
             let (way, across) = (reach.length(), reach.perpendicular());
@@ -254,7 +254,11 @@ impl<'d> DrawnScene<'d> {
             };
             let mut there = effects.iter().filter(|(point, ..)| *point == contact.point).map(|(_, other, _)| *other);
             let away = |other| across * (-across.dot(other).signum() * ASIDE * self.size / way);
-            (contact.point - reach + there.find(is_along).map_or(Vector::zero(), away), reach, BEFORE)
+            let aside = match there.find(is_along) {
+                _ if reach.dot(contact.normal).abs() < ALONG * way => contact.normal * (ASIDE * self.size),
+                other => other.map_or(Vector::zero(), away),
+            };
+            (contact.point - reach + aside, reach, BEFORE)
         });
         applied.chain(effects.iter().copied()).chain(before).collect()
     }

@@ -257,4 +257,15 @@ fn pages_and_pictures_of_forces_name_them() {
     for key in ["force of the ground: 5 N", "acceleration: 10 m/s\u{b2}", "velocity, toward the contact: 0.2 m/s"] {
         assert!(svg.contains(key), "{key}");
     }
+    // The velocity lies along the ground, and is drawn above it.
+    let height = |sign: &str, of: &str| {
+        let line = svg.split("><").find(|line| line.contains(sign)).expect(sign);
+        let (_, rest) = line.split_once(of).expect(of);
+        rest.split([' ', '"', 'L'])
+            .nth(if of == "M" { 1 } else { 0 })
+            .and_then(|y| y.parse::<f64>().ok())
+            .expect("a height")
+    };
+    let above = height(r##"r="3" fill="#000000""##, "cy=\"") - height(r#"stroke-dasharray="8 4""#, "M");
+    assert!(above > 8.0, "{above}");
 }
