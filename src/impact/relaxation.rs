@@ -31,6 +31,10 @@ const TOLERANCE: f64 = 1e-9;
 const STRICT: f64 = 1e-7;
 /// More pivots per row than this show nothing.
 const PIVOTS: usize = 6;
+/// Rows are padded to multiples of this.
+const LANES: usize = 4;
+/// So many nogoods are kept.
+const NOGOODS: usize = 256;
 /// What is added to the diagonal of a G that may be singular.
 const DAMPING: f64 = 1e-9;
 /// The least eigenvalue of a scaled G that counts as regular.
@@ -64,6 +68,38 @@ impl Range {
             Ordering::Equal => true,
             Ordering::Less => !self.above_zero,
         }
+    }
+}
+
+/// The ranges of all variables, a bit each: two velocities and at most two rays of each of up to 16 contacts.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+struct Ranges {
+    above_zero: u64,
+    below_zero: u64,
+}
+
+impl Ranges {
+    fn get(self, variable: usize) -> Range {
+        let is_in = |bits: u64| bits >> variable & 1 == 1;
+        Range { above_zero: is_in(self.above_zero), below_zero: is_in(self.below_zero) }
+    }
+
+    fn set(&mut self, variable: usize, range: Range) {
+        let put = |bits: u64, is_in: bool| bits & !(1 << variable) | u64::from(is_in) << variable;
+        self.above_zero = put(self.above_zero, range.above_zero);
+        self.below_zero = put(self.below_zero, range.below_zero);
+    }
+
+    /// These, but for some variables.
+    fn replaced(self, variables: u64, by: Self) -> Self {
+        Self {
+            above_zero: self.above_zero & !variables | by.above_zero,
+            below_zero: self.below_zero & !variables | by.below_zero,
+        }
+    }
+
+    fn overlaps(self, other: Self) -> bool {
+        self.above_zero & other.above_zero | self.below_zero & other.below_zero != 0
     }
 }
 
@@ -108,11 +144,12 @@ impl Ray {
 /// rays.
 #[derive(Debug, Clone, Default)]
 struct Dictionary {
-    /// By rows: per basic variable its coefficients of the nonbasic ones, then its value.
+    /// By rows: per basic variable its coefficients of the nonbasic ones, padding, and last its value.
     entries: Vec<f64>,
+    width: usize,
     basic: Vec<usize>,
     nonbasic: Vec<usize>,
-    ranges: Vec<Range>,
+    ranges: Ranges,
 }
 
 /// A variable that cannot get into its range, and the sign of what it lacks.
@@ -128,7 +165,7 @@ pub struct Claim {
     pub modes: Vec<Mode>,
     lack: Lack,
     basic: Vec<usize>,
-    ranges: Vec<Range>,
+    ranges: Ranges,
 }
 
 /// The relaxation of one problem in f64, free of units; memory that is reused.
@@ -147,9 +184,15 @@ pub struct Relaxation {
     pub is_regular: bool,
     /// A bound of the sum of all multipliers; infinite if there is none.
     reach: f64,
+    /// By contact, its variables as bits, and their ranges with each of its modes.
+    own: Vec<(u64, Vec<(Mode, Ranges)>)>,
     /// After the decisions on the first contacts.
     depths: Vec<Dictionary>,
     multipliers: [Vec<f64>; 2],
+    /// What the claims that were shown rest on: nothing leads to ranges that overlap with none of these.
+    nogoods: Vec<Ranges>,
+    /// How many were found.
+    shown: usize,
 }
 
 impl Relaxation {
@@ -173,15 +216,17 @@ impl Relaxation {
             })
             .collect();
         self.response.clear();
+        let width = (self.rays.len() + 1).next_multiple_of(LANES);
         for (row, own) in mobility.iter().enumerate() {
             let by_rays = self
                 .rays
                 .iter()
                 .zip(&along)
                 .map(|(ray, [t, n])| t * scaled(row, 2 * ray.contact) + n * scaled(row, 2 * ray.contact + 1));
-            self.response.extend(by_rays.chain([problem.free_row(row) / (own * scale.speed)]));
+            self.response.extend(by_rays);
+            self.response.resize((row + 1) * width - 1, 0.0);
+            self.response.push(problem.free_row(row) / (own * scale.speed));
         }
-        let width = self.rays.len() + 1;
         let largest = self.response.chunks_exact(width).map(|row| row[width - 1].abs()).fold(1.0, f64::max);
         let rounding = (rows + 24) as f64 * f64::EPSILON;
         self.errors = [errors.delassus + rounding, scale.noise + rounding * largest];
@@ -192,14 +237,33 @@ impl Relaxation {
         self.is_regular = false;
         self.reach = if is_bounded { self.bound(&matrix, &up.unscale(up.amax()), &along) } else { f64::INFINITY };
         self.depths.resize_with(problem.contacts() + 1, Dictionary::default);
-        let multipliers = self.rays.iter().map(|ray| ray.range(&self.laws[ray.contact], None));
-        let velocities = (0..rows).map(|row| if row % 2 == 1 { Range::ABOVE } else { Range::FREE });
-        self.depths[0] = Dictionary {
-            entries: self.response.clone(),
-            basic: (0..rows).collect(),
-            nonbasic: (rows..rows + self.rays.len()).collect(),
-            ranges: velocities.chain(multipliers).collect(),
-        };
+        self.shown = 0;
+        self.nogoods.clear();
+        self.own.clear();
+        let mut ranges = Ranges::default();
+        for (contact, law) in self.laws.iter().enumerate() {
+            let own = |mode: Option<Mode>| {
+                let mut ranges = Ranges::default();
+                let signs = mode.map_or([None; 2], |mode| law.velocity(mode));
+                for (side, undecided) in [Range::FREE, Range::ABOVE].into_iter().enumerate() {
+                    ranges.set(2 * contact + side, signs[side].map_or(undecided, Range::of));
+                }
+                for (index, ray) in self.rays.iter().enumerate().filter(|(_, ray)| ray.contact == contact) {
+                    ranges.set(rows + index, ray.range(law, mode));
+                }
+                ranges
+            };
+            let undecided = own(None);
+            ranges = ranges.replaced(0, undecided);
+            let modes = law.modes().iter().copied().flatten().map(|&mode| (mode, own(Some(mode))));
+            self.own.push((undecided.above_zero | undecided.below_zero, modes.collect()));
+        }
+        let root = &mut self.depths[0];
+        self.response.clone_into(&mut root.entries);
+        (root.width, root.ranges) = (width, ranges);
+        (root.basic, root.nonbasic) = ((0..rows).collect(), (rows..rows + self.rays.len()).collect());
+        // What all modes have in common is found once.
+        root.impossible();
     }
 
     /// A bound of the sum of all multipliers of impulses that a contact law may give, which do no positive work: L . xi
@@ -214,7 +278,7 @@ impl Relaxation {
     /// The first w is a motion that lifts all contacts.
     fn bound(&mut self, matrix: &DMatrix<f64>, up: &DVector<f64>, along: &[Pair<f64>]) -> f64 {
         let rows = self.rows;
-        let width = self.rays.len() + 1;
+        let width = self.response.len() / rows;
         let [of_matrix, of_free] = self.errors;
         let size = |y: &DVector<f64>| {
             let l1 = y.lp_norm(1);
@@ -240,51 +304,62 @@ impl Relaxation {
 
     /// Decides the mode of a contact after all before it; what lacks if that is impossible in f64.
     pub fn decide(&mut self, contact: usize, mode: Mode) -> Option<Lack> {
+        let ranges = self.ranges(contact, mode);
         let (before, after) = self.depths.split_at_mut(contact + 1);
         let dictionary = &mut after[0];
         dictionary.copy(&before[contact]);
         for (row, sign) in [2 * contact, 2 * contact + 1].into_iter().zip(self.laws[contact].velocity(mode)) {
-            if let Some(sign) = sign {
-                dictionary.ranges[row] = Range::of(sign);
-                if sign.is_ne() {
-                    dictionary.keep_from_zero(row, sign);
-                }
+            if let Some(sign) = sign.filter(|sign| sign.is_ne()) {
+                dictionary.keep_from_zero(row, sign);
             }
         }
-        for (index, ray) in self.rays.iter().enumerate().filter(|(_, ray)| ray.contact == contact) {
-            dictionary.ranges[self.rows + index] = ray.range(&self.laws[contact], Some(mode));
-        }
+        dictionary.ranges = ranges;
         dictionary.impossible()
+    }
+
+    /// The ranges of all variables if a contact has this mode after all before it.
+    fn ranges(&self, contact: usize, mode: Mode) -> Ranges {
+        let (variables, modes) = &self.own[contact];
+        let own = modes.iter().find(|(other, _)| *other == mode).map_or_else(Ranges::default, |(_, own)| *own);
+        self.depths[contact].ranges.replaced(*variables, own)
+    }
+
+    /// Whether what was shown of other beginnings shows that a contact cannot have this mode after all before it.
+    pub fn excludes(&mut self, contact: usize, mode: Mode) -> bool {
+        let ranges = self.ranges(contact, mode);
+        let found = self.nogoods.iter().position(|nogood| !nogood.overlaps(ranges));
+        // What says no often comes early.
+        found.inspect(|&index| self.nogoods.swap(index, index / 2)).is_some()
     }
 
     /// What the last decision, the one of the last of these contacts, claims.
     pub fn claim(&self, modes: &[Mode], lack: Lack) -> Claim {
         let Dictionary { basic, ranges, .. } = &self.depths[modes.len()];
-        Claim { modes: modes.to_vec(), lack, basic: basic.clone(), ranges: ranges.clone() }
+        Claim { modes: modes.to_vec(), lack, basic: basic.clone(), ranges: *ranges }
     }
 
     /// Whether error bounds show that the last decision, on `contact`, is impossible.
     pub fn shows(&mut self, contact: usize, Lack { variable, sign }: Lack) -> bool {
-        let Dictionary { entries, basic, nonbasic, ranges } = &self.depths[contact + 1];
-        let width = self.rays.len() + 1;
+        let Dictionary { entries, width, basic, nonbasic, ranges } = &self.depths[contact + 1];
+        let width = *width;
         let Some(row) = basic.iter().position(|&other| other == variable).filter(|_| self.is_known) else {
             return false;
         };
         let [y, sums] = &mut self.multipliers;
         y.clear();
-        y.resize(ranges.len(), 0.0);
+        y.resize(self.rows + self.rays.len(), 0.0);
         y[variable] = sign;
         for (&variable, &coefficient) in nonbasic.iter().zip(&entries[row * width..]) {
             y[variable] = -sign * coefficient;
         }
+        let mut nogood = Ranges::default();
         let mut size = 0.0;
         // y . (response of the rays, xi_free); what it says of the rays is computed from the velocities' alone.
         sums.clear();
         sums.resize(width, 0.0);
-        for (row, response) in self.response.chunks_exact(width).enumerate() {
-            let range = ranges[row];
-            let factor = if range.admits(y[row].total_cmp(&0.0)) { y[row] } else { 0.0 };
-            if factor != 0.0 {
+        for (row, (response, &factor)) in self.response.chunks_exact(width).zip(&*y).enumerate() {
+            if factor != 0.0 && ranges.get(row).admits(factor.total_cmp(&0.0)) {
+                nogood.set(row, Range { above_zero: factor < 0.0, below_zero: factor > 0.0 });
                 size += factor.abs();
                 sums.iter_mut().zip(response).for_each(|(sum, entry)| *sum += factor * entry);
             }
@@ -292,17 +367,29 @@ impl Relaxation {
         if sums.iter().any(|sum| !sum.is_finite()) {
             return false;
         }
-        let wrong = |(sum, range): (&f64, &Range)| match range {
-            Range { above_zero: true, below_zero: false } => *sum,
-            Range { above_zero: false, below_zero: true } => -*sum,
-            Range { above_zero: true, below_zero: true } => sum.abs(),
-            _ => f64::NEG_INFINITY,
+        // By how much what a range admits may be positive.
+        let wrong = |sum: f64, range: Range| {
+            let above = if range.above_zero { sum } else { f64::NEG_INFINITY };
+            above.max(if range.below_zero { -sum } else { f64::NEG_INFINITY })
         };
         let [of_matrix, of_free] = self.errors;
-        let worst = sums.iter().zip(&ranges[self.rows..]).map(wrong).fold(f64::NEG_INFINITY, f64::max);
-        let gain = (worst + size * of_matrix).max(0.0);
+        let worst = (0..self.rays.len()).map(|ray| wrong(sums[ray], ranges.get(self.rows + ray)));
+        let worst = worst.fold(-size * of_matrix, f64::max);
+        let gain = worst + size * of_matrix;
         let gain = if gain > 0.0 { gain * self.reach } else { 0.0 };
-        sums[width - 1] + (size * of_free + gain) * (1.0 + 1e-6) < 0.0
+        let is_shown = sums[width - 1] + (size * of_free + gain) * (1.0 + 1e-6) < 0.0;
+        if is_shown {
+            for ray in 0..self.rays.len() {
+                nogood.set(self.rows + ray, Range { above_zero: sums[ray] > worst, below_zero: -sums[ray] > worst });
+            }
+            self.shown += 1;
+            if self.nogoods.len() < NOGOODS {
+                self.nogoods.push(nogood);
+            } else {
+                self.nogoods[self.shown % NOGOODS] = nogood;
+            }
+        }
+        is_shown
     }
 }
 
@@ -311,13 +398,13 @@ impl Dictionary {
         self.entries.clone_from(&other.entries);
         self.basic.clone_from(&other.basic);
         self.nonbasic.clone_from(&other.nonbasic);
-        self.ranges.clone_from(&other.ranges);
+        self.width = other.width;
     }
 
     /// Counts a velocity from where it is strictly positive or negative.
     fn keep_from_zero(&mut self, variable: usize, sign: Ordering) {
         let from = f64::from(sign as i8) * STRICT;
-        let width = self.nonbasic.len() + 1;
+        let width = self.width;
         if let Some(row) = self.basic.iter().position(|&basic| basic == variable) {
             self.entries[(row + 1) * width - 1] -= from;
         } else if let Some(column) = self.nonbasic.iter().position(|&nonbasic| nonbasic == variable) {
@@ -329,11 +416,11 @@ impl Dictionary {
 
     /// Brings all variables into their ranges, or finds one that cannot get there.
     fn impossible(&mut self) -> Option<Lack> {
-        let width = self.nonbasic.len() + 1;
+        let width = self.width;
         for _ in 0..PIVOTS * self.basic.len() {
             let (mut most, mut worst) = (TOLERANCE, None);
             for (row, (&variable, entries)) in self.basic.iter().zip(self.entries.chunks_exact(width)).enumerate() {
-                let (value, range) = (entries[width - 1], self.ranges[variable]);
+                let (value, range) = (entries[width - 1], self.ranges.get(variable));
                 let sign = if value < 0.0 && !range.below_zero {
                     1.0
                 } else if value > 0.0 && !range.above_zero {
@@ -349,7 +436,7 @@ impl Dictionary {
             let (mut most, mut entering) = (TOLERANCE, None);
             let coefficients = &self.entries[row * width..][..width - 1];
             for (column, (&variable, &coefficient)) in self.nonbasic.iter().zip(coefficients).enumerate() {
-                let (slope, range) = (sign * coefficient, self.ranges[variable]);
+                let (slope, range) = (sign * coefficient, self.ranges.get(variable));
                 let moves = if slope > 0.0 { range.above_zero } else { range.below_zero };
                 if moves && slope.abs() > most {
                     (most, entering) = (slope.abs(), Some(column));
@@ -364,7 +451,7 @@ impl Dictionary {
     }
 
     fn pivot(&mut self, row: usize, column: usize) {
-        let width = self.nonbasic.len() + 1;
+        let width = self.width;
         let (before, rest) = self.entries.split_at_mut(row * width);
         let (own, after) = rest.split_at_mut(width);
         let inverse = 1.0 / own[column];
@@ -372,7 +459,9 @@ impl Dictionary {
         own[column] = inverse;
         for other in before.chunks_exact_mut(width).chain(after.chunks_exact_mut(width)) {
             let factor = std::mem::take(&mut other[column]);
-            other.iter_mut().zip(&*own).for_each(|(entry, own)| *entry += factor * own);
+            for (entries, own) in other.as_chunks_mut::<LANES>().0.iter_mut().zip(own.as_chunks::<LANES>().0) {
+                entries.iter_mut().zip(own).for_each(|(entry, own)| *entry += factor * own);
+            }
         }
         std::mem::swap(&mut self.basic[row], &mut self.nonbasic[column]);
     }
@@ -406,7 +495,7 @@ impl Claim {
         let mut is_strict = false;
         for &(row, factor) in &factors {
             let factor = settled(factor)?;
-            if !self.ranges[row].admits(factor) {
+            if !self.ranges.get(row).admits(factor) {
                 return Ok(false);
             }
             let contact = row / 2;
@@ -414,7 +503,7 @@ impl Claim {
             is_strict |= factor.is_ne() && moves.is_some_and(Ordering::is_ne);
         }
         for (index, ray) in rays.iter().enumerate() {
-            let range = self.ranges[rows + index];
+            let range = self.ranges.get(rows + index);
             if range == Range::ZERO || self.basic.contains(&(rows + index)) {
                 continue;
             }
@@ -474,6 +563,25 @@ mod tests {
             (0.8, vec![SlidePlus, Stick], Some((false, true))),
         ] {
             assert_eq!(found(&struck(Friction::Finite(friction)), &modes), expected, "{friction} {modes:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_shown_once_excludes_what_lies_within() {
+        use Mode::{Separate, SlidePlus, Stick};
+        let problem = struck(Friction::Finite(0.3));
+        let (mut relaxation, mut scale) = (Relaxation::default(), Scale::default());
+        scale.measure(&problem, Errors::NONE);
+        relaxation.load(&problem, &scale, Errors::NONE);
+        relaxation.decide(0, SlidePlus);
+        let lack = relaxation.decide(1, Separate).expect("the first point alone turns the second into the ground");
+        assert!(!relaxation.excludes(1, Separate));
+        assert!(relaxation.shows(1, lack));
+        // A sticking point may pull back, which turns the second away from the ground.
+        for (first, expected) in [(SlidePlus, true), (Separate, true), (Stick, false)] {
+            relaxation.decide(0, first);
+            let excluded = [Separate, Stick, SlidePlus].map(|second| relaxation.excludes(1, second));
+            assert_eq!(excluded, [expected, false, false], "{first}");
         }
     }
 

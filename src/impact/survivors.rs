@@ -77,7 +77,12 @@ impl<'a> Search<'a> {
                 continue;
             }
             self.modes.push(mode);
-            let lack = self.relaxation.decide(contact, mode).filter(|_| !self.begins_listed());
+            let is_listed = self.begins_listed();
+            if !is_listed && self.relaxation.excludes(contact, mode) {
+                self.modes.pop();
+                continue;
+            }
+            let lack = self.relaxation.decide(contact, mode).filter(|_| !is_listed);
             match lack.map_or(Finding::Possible, |lack| shown(self.relaxation, &self.modes, lack)) {
                 Finding::Possible => self.descend(shown),
                 Finding::Impossible => {}
