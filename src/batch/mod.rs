@@ -64,6 +64,8 @@ const ROOM: usize = 1 << 20;
 pub struct Batch<'q> {
     reader: Reader<'q>,
     answerer: Answerer<'q>,
+    /// The state of the last row.
+    state: State,
     /// The most that a chunk of records has led to so far \[bytes\].
     most: usize,
 }
@@ -112,12 +114,13 @@ impl<'q> Batch<'q> {
         let pipeline = Pipeline::new(question.robot, options);
         let lines = || Reader::Lines(Box::new(StateLines::new(question.robot, &question.defaults)));
         let reader = question.header.map_or_else(lines, |header| Reader::Rows(header.rows()));
-        Self { reader, answerer: Answerer { question, pipeline }, most: 0 }
+        let state = State::zero(question.robot);
+        Self { reader, answerer: Answerer { question, pipeline }, state, most: 0 }
     }
 
     /// Answers records that do not depend on each other.
     pub fn records(&mut self, chunk: &Chunk) -> Block {
-        let Self { reader, answerer, most } = self;
+        let Self { reader, answerer, state, most } = self;
         let mut block = Block { out: Vec::with_capacity(*most), ..answerer.block() };
         for (line, record) in chunk.records() {
             let around = Around { line, record, ..Around::default() };
@@ -125,7 +128,7 @@ impl<'q> Batch<'q> {
                 Reader::Lines(lines) => answerer.line(lines, around, &mut block),
                 Reader::Rows(rows) => {
                     if let Some(row) = rows.row(record, line).transpose() {
-                        answerer.row(row, around, &mut block);
+                        answerer.row(row, state, around, &mut block);
                     }
                 }
             }
@@ -140,10 +143,10 @@ impl<'q> Batch<'q> {
     /// Answers rows of columns with types.
     #[cfg(feature = "columnar")]
     pub fn part(&mut self, part: &Part) -> Block {
-        let Self { answerer, .. } = self;
+        let Self { answerer, state, .. } = self;
         let mut block = answerer.block();
         for row in answerer.question.header.into_iter().flat_map(|header| part.rows(header)) {
-            answerer.row(Ok(row), Around { line: row.line(), ..Around::default() }, &mut block);
+            answerer.row(Ok(row), state, Around { line: row.line(), ..Around::default() }, &mut block);
         }
         block
     }
@@ -198,14 +201,14 @@ impl Answerer<'_> {
     }
 
     /// Answers a row of a table.
-    fn row(&mut self, row: Result<Row<'_>>, around: Around<'_>, block: &mut Block) {
+    fn row(&mut self, row: Result<Row<'_>>, state: &mut State, around: Around<'_>, block: &mut Block) {
         let Question { robot, defaults, header, .. } = self.question;
         match row {
             Ok(row) => {
                 let carried = row.carried();
                 let around = Around { carried: Some(&carried), ..around };
-                let state = row.state(robot, defaults);
-                self.answer(state.as_ref().map_err(Error::clone), || row.id(), around, block);
+                let read = row.read(robot, defaults, state);
+                self.answer(read.map(|()| &*state), || row.id(), around, block);
             }
             Err(error) => self.refuse(error, header.and_then(|header| header.id_in(around.record)), around, block),
         }
@@ -238,19 +241,25 @@ impl Answerer<'_> {
             Some(total) => total.within(|| self.pipeline.answer(state)),
             None => self.pipeline.answer(state),
         };
-        let impact = impact.map_err(|error| match error.reason() {
+        let with_hint = |error: Error| match error.reason() {
             Reason::Missing(_) if header.is_some() && error.place() == Some("friction") => {
                 error.hint("add a column friction, or give `friction: 0.8` (or infinite)")
             }
             _ => error,
-        })?;
-        let mut report = Report::of_state(robot, state, &impact, detail)?;
-        report.line = Some(around.line);
+        };
+        // Moved once: it is large.
+        let impact = match impact {
+            Ok(impact) => impact,
+            Err(error) => return Err(with_hint(error)),
+        };
         let landing = around.landing.zip(around.time);
-        report.touchdown = landing.and_then(|(landing, time)| Touchdown::of(robot, state, landing, around.line, time));
+        let touchdown = landing.and_then(|(landing, time)| Touchdown::of(robot, state, landing, around.line, time));
         if let Some(columns) = columns {
-            columns.append_result(&report, around.carried, block.rows())?;
+            let named = (state.id.as_ref(), Some(around.line), touchdown.as_ref());
+            columns.append_result(named, &impact, around.carried, block.rows())?;
         } else {
+            let mut report = Report::of_state(robot, state, &impact, detail)?;
+            (report.line, report.touchdown) = (Some(around.line), touchdown);
             let fields = header.zip(around.carried).into_iter().flat_map(|(header, carried)| {
                 carried.by_name(header).filter(|(name, _)| !detail.brief || header.is_foreign(name))
             });

@@ -165,11 +165,13 @@ impl ColumnWriter {
                     .set_max_row_group_row_count(Some(ROW_GROUP))
                     .set_statistics_enabled(EnabledStatistics::Chunk)
                     .set_dictionary_enabled(false);
+                // Of text no one asks for the least and the greatest, and ids are all different.
                 let named = columns.names().iter().zip(columns.kinds());
-                // Ids are all different.
-                for (name, _) in named.filter(|(name, kind)| **kind == Kind::Text && *name != "id") {
+                for (name, _) in named.filter(|(_, kind)| **kind == Kind::Text) {
                     let path = ColumnPath::new(vec![name.clone()]);
-                    properties = properties.set_column_dictionary_enabled(path, true);
+                    properties = properties
+                        .set_column_dictionary_enabled(path.clone(), name != "id")
+                        .set_column_statistics_enabled(path, EnabledStatistics::None);
                 }
                 let writer = ArrowWriter::try_new(Vec::new(), Arc::clone(&schema), Some(properties.build()));
                 Writer::Parquet(Box::new(writer.map_err(unwritable)?))

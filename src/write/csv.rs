@@ -1,11 +1,11 @@
 //! Results as tables: one row per outcome.
 
 use crate::contact::Feet;
-use crate::impact::{Family, Next};
-use crate::pipeline::{AT_REST, Aspect};
+use crate::impact::{CONTACT_LIMIT, Family, Next};
+use crate::pipeline::{AT_REST, Aspect, Impact};
 use crate::read::table::{Carried, Form, Header, prefixed};
 use crate::state::NamedContact;
-use crate::write::{Refused, Report, words};
+use crate::write::{Refused, Touchdown, words};
 use crate::{Error, Mode, Outcome, Reason, Result, Robot};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -327,13 +327,27 @@ impl Columns {
         self.append(&self.names, out);
     }
 
-    /// Appends the rows of a result, one per outcome; nothing and an error if a contact has no column, because
-    /// the state names it and the robot has no such foot.
-    pub fn append_result(&self, report: &Report, carried: Option<&Carried>, out: &mut dyn RowSink) -> Result<()> {
-        let mut cells = self.cells(report.id.as_deref(), report.line, carried);
-        cells.0[self.named] = report.verdict.map_or(Cell::Empty, |verdict| Cell::Text(verdict.name().into()));
-        cells.0[self.named + 3] = report.proven.map_or(Cell::Empty, Cell::Boolean);
-        if let Some(touchdown) = report.touchdown.as_ref().filter(|_| self.kind == RowKind::Touchdown) {
+    /// Appends the rows of a result, one per outcome, with the state's id, line and touchdown.
+    ///
+    /// # Errors
+    /// Outcomes that were refused, and a contact without a column, because the state names it and the robot has no such
+    /// foot; then nothing is appended.
+    pub fn append_result(
+        &self,
+        (id, line, touchdown): (Option<&Value>, Option<usize>, Option<&Touchdown>),
+        impact: &Impact,
+        carried: Option<&Carried>,
+        out: &mut dyn RowSink,
+    ) -> Result<()> {
+        let analysis = impact.analyzed()?;
+        let mut places = [0; CONTACT_LIMIT];
+        for (place, contact) in places.iter_mut().zip(&impact.contacts) {
+            *place = self.place(&contact.name)?;
+        }
+        let mut cells = self.cells(id, line, carried);
+        cells.text(self.named, analysis.verdict.name());
+        cells.0[self.named + 3] = Cell::Boolean(analysis.proven);
+        if let Some(touchdown) = touchdown.filter(|_| self.kind == RowKind::Touchdown) {
             let start = self.velocities() + self.coordinates;
             cells.0[start] = Cell::Integer(touchdown.row as i64);
             cells.number(start + 1, touchdown.time);
@@ -344,20 +358,18 @@ impl Columns {
             let coordinates = (start + TOUCHDOWN.len()..).zip(&touchdown.coordinates);
             coordinates.for_each(|(at, &number)| cells.number(at, number));
         }
-        cells.text(self.family() + 2, report.error.as_ref().map_or(String::new(), ToString::to_string));
         if !self.brief {
-            cells.text(self.family() + 3, notes(&report.notes));
+            cells.text(self.family() + 3, notes(&impact.notes));
         }
-        let places = report.contacts.iter().map(|contact| self.place(&contact.name));
-        let places: Vec<usize> = places.collect::<Result<_>>()?;
-        let outcomes = report.outcomes.as_deref().unwrap_or_default();
-        if outcomes.is_empty() {
+        if analysis.outcomes.is_empty() {
             out.row(self, &cells.0);
         }
-        for (at, outcome) in outcomes.iter().enumerate() {
+        for (at, outcome) in analysis.outcomes.iter().enumerate() {
             // Every outcome sets the same cells.
             self.outcome(at + 1, outcome, &places, &mut cells);
-            cells.text(self.family() + 1, families(&report.families, at));
+            if !analysis.families.is_empty() {
+                cells.text(self.family() + 1, families(&analysis.families, at));
+            }
             out.row(self, &cells.0);
         }
         Ok(())
@@ -380,11 +392,16 @@ impl Columns {
     }
 
     /// A row with the id, the line and what is carried through.
-    pub(super) fn cells<'c>(&self, id: Option<&Value>, line: Option<usize>, carried: Option<&'c Carried>) -> Cells<'c> {
+    pub(super) fn cells<'c>(
+        &self,
+        id: Option<&'c Value>,
+        line: Option<usize>,
+        carried: Option<&'c Carried>,
+    ) -> Cells<'c> {
         let mut cells = Cells(vec![Cell::Empty; self.names.len()]);
         match (id, self.kinds[0]) {
             (Some(Value::Number(id)), Kind::Integer) => cells.0[0] = id.as_i64().map_or(Cell::Empty, Cell::Integer),
-            (id, _) => cells.text(0, id.map_or(String::new(), words::id)),
+            (id, _) => cells.text(0, id.map_or("".into(), words::id)),
         }
         if let Some(line) = line {
             cells.0[1] = Cell::Integer(line as i64);

@@ -7,6 +7,7 @@ use crate::pipeline::Aspect;
 use crate::{Mode, Outcome, Verdict};
 use serde::Serialize;
 use serde_json::Value;
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::hash::Hash;
 
@@ -17,8 +18,8 @@ pub fn titled(name: &str, id: &Option<Value>) -> String {
 }
 
 /// An id without quotes.
-pub(crate) fn id(id: &Value) -> String {
-    id.as_str().map_or_else(|| id.to_string(), str::to_owned)
+pub(crate) fn id(id: &Value) -> Cow<'_, str> {
+    id.as_str().map_or_else(|| id.to_string().into(), Cow::Borrowed)
 }
 
 /// `margin 0.0130, index +1`, as far as there are any.

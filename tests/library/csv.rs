@@ -6,7 +6,7 @@ use heelstrike::pipeline::{Impact, Options, Pipeline};
 use heelstrike::read::table::{Form, Header, Rates};
 use heelstrike::robot::{Base, Reduction};
 use heelstrike::state::NamedContact;
-use heelstrike::write::{Columns, Detail, Refused, Report, RowKind};
+use heelstrike::write::{Columns, Refused, RowKind};
 use heelstrike::{Defaults, Error, Friction, Robot, State};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -217,10 +217,9 @@ fn broken_row_stays_out_of_the_next() {
 /// The rows that are written for a state, by column.
 fn rows(robot: &Robot, state: &State, options: Options) -> (Vec<BTreeMap<String, String>>, Impact) {
     let impact = Pipeline::new(robot, options).impact(state).unwrap();
-    let report = Report::of_state(robot, state, &impact, Detail::default()).unwrap();
     let (mut out, columns) = (Vec::new(), Columns::new(robot, &[], None, RowKind::State));
     columns.append_header(&mut out);
-    columns.append_result(&report, None, &mut out).unwrap();
+    columns.append_result((state.id.as_ref(), None, None), &impact, None, &mut out).unwrap();
     (by_column(&out), impact)
 }
 
@@ -310,9 +309,8 @@ fn a_contact_without_columns_is_refused() {
     let named = |x| NamedContact { link: 1, offset: [x, 0.0, -0.5], radius: 0.0 };
     state.scene.contacts = Some(vec![named(0.0), named(0.1)]);
     let impact = Pipeline::new(&robot, Options::default()).impact(&state).unwrap();
-    let report = Report::of_state(&robot, &state, &impact, Detail::default()).unwrap();
-    let mut out = Vec::new();
-    let error = Columns::new(&robot, &[], None, RowKind::State).append_result(&report, None, &mut out).unwrap_err();
+    let (mut out, columns) = (Vec::new(), Columns::new(&robot, &[], None, RowKind::State));
+    let error = columns.append_result((None, None, None), &impact, None, &mut out).unwrap_err();
     assert_eq!(
         shown(&error),
         "the table of results has no columns for contact \"shin/0\" | write NDJSON instead, or add the foot by `feet`"

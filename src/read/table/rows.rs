@@ -264,6 +264,12 @@ impl Row<'_> {
     /// A row with more or fewer fields than the header, a cell that does not hold what its column is for, a base that
     /// is both placed by a stance and given, an invalid quaternion. The error gives column, line and place.
     pub fn state(&self, robot: &Robot, defaults: &Defaults) -> Result<State> {
+        let mut state = State::zero(robot);
+        self.read(robot, defaults, &mut state).map(|()| state)
+    }
+
+    /// The same into a state that only rows of this table were read into.
+    pub(crate) fn read(&self, robot: &Robot, defaults: &Defaults, state: &mut State) -> Result<()> {
         let columns = self.header.columns.len();
         if let Source::Text(cells, _) = self.source
             && cells.len() != columns
@@ -275,7 +281,10 @@ impl Row<'_> {
         }
         let stance = self.stance(robot)?;
         let place_lowest = defaults.place_lowest && stance.is_none();
-        let mut state = State { id: self.id(), ..State::zero(robot) };
+        state.id = self.id();
+        state.position.fill(0.0);
+        state.velocity.fill(0.0);
+        state.scene.restitution.default = None;
         (state.scene.stance, state.scene.place_lowest) = (stance, place_lowest);
         state.scene.loops.clone_from(&defaults.loops);
         let mut friction = None;
@@ -305,7 +314,7 @@ impl Row<'_> {
             state.position[2] = pitch;
         }
         state.scene.friction.default = friction.or(defaults.friction);
-        Ok(state)
+        Ok(())
     }
 
     /// The part of a base in three dimensions that is not in the plane.
@@ -386,6 +395,12 @@ impl Row<'_> {
 
     /// The number in a cell.
     fn number(&self, at: usize) -> Result<f64> {
+        #[cfg(feature = "columnar")]
+        if let Source::Columns(columns, row) = self.source
+            && let Some(value) = columns.number(at, row).filter(|value| value.is_finite())
+        {
+            return Ok(value);
+        }
         let value: f64 = match self.cell(at)? {
             Cell::Empty => {
                 let reason = Reason::WrongKind { expected: "a number", found: "an empty cell" };

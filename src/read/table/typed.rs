@@ -83,13 +83,21 @@ impl Typed {
 
     pub fn cell(&self, at: usize, row: usize) -> Cell<'_> {
         match &self.columns[at] {
-            Column::Numbers(numbers) if numbers.is_valid(row) => Cell::Number(numbers.value(row)),
+            Column::Numbers(_) => self.number(at, row).map_or(Cell::Empty, Cell::Number),
             Column::Integers(numbers) if numbers.is_valid(row) => Cell::Number(numbers.value(row) as f64),
             Column::Texts(texts) if texts.is_valid(row) => match texts.value(row).trim() {
                 "" => Cell::Empty,
                 text => Cell::Text(text.into()),
             },
             _ => Cell::Empty,
+        }
+    }
+
+    /// The number in a cell of a column of numbers.
+    pub fn number(&self, at: usize, row: usize) -> Option<f64> {
+        match &self.columns[at] {
+            Column::Numbers(numbers) if numbers.is_valid(row) => Some(numbers.value(row)),
+            _ => None,
         }
     }
 

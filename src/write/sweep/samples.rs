@@ -72,11 +72,11 @@ impl<'a> SampleRecord<'a> {
     ) -> bool {
         let values = || self.point.iter().map(|value| format!("{value:?}"));
         let carried = |impact: &Result<Impact>| Carried::new(values().chain([letter(&Regime::of(impact))]));
-        let answered = solver.at(&self.point, |robot, state, pipeline| {
+        let answered = solver.at(&self.point, |_, state, pipeline| {
             let impact = pipeline.answer(&state);
             let carried = carried(&impact);
             let impact = impact?;
-            columns.append_result(&Report::of_state(robot, &state, &impact, Detail::default())?, Some(&carried), out)
+            columns.append_result((state.id.as_ref(), None, None), &impact, Some(&carried), out)
         });
         let Err(error) = answered else { return true };
         let sentence = ErrorObject::new(&error).to_string();
