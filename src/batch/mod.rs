@@ -237,28 +237,24 @@ impl Answerer<'_> {
         let Question { robot, detail, header, columns, .. } = *self.question;
         let given = self.question.defaults.friction;
         block.summary.own_friction += u64::from(given.is_some() && state.scene.friction.default != given);
-        let impact = match &self.question.total {
+        let answer = match &self.question.total {
             Some(total) => total.within(|| self.pipeline.answer(state)),
             None => self.pipeline.answer(state),
         };
-        let with_hint = |error: Error| match error.reason() {
+        // By reference: it is large.
+        let impact = answer.as_ref().map_err(|error| match error.reason() {
             Reason::Missing(_) if header.is_some() && error.place() == Some("friction") => {
-                error.hint("add a column friction, or give `friction: 0.8` (or infinite)")
+                error.clone().hint("add a column friction, or give `friction: 0.8` (or infinite)")
             }
-            _ => error,
-        };
-        // Moved once: it is large.
-        let impact = match impact {
-            Ok(impact) => impact,
-            Err(error) => return Err(with_hint(error)),
-        };
+            _ => error.clone(),
+        })?;
         let landing = around.landing.zip(around.time);
         let touchdown = landing.and_then(|(landing, time)| Touchdown::of(robot, state, landing, around.line, time));
         if let Some(columns) = columns {
             let named = (state.id.as_ref(), Some(around.line), touchdown.as_ref());
-            columns.append_result(named, &impact, around.carried, block.rows())?;
+            columns.append_result(named, impact, around.carried, block.rows())?;
         } else {
-            let mut report = Report::of_state(robot, state, &impact, detail)?;
+            let mut report = Report::of_state(robot, state, impact, detail)?;
             (report.line, report.touchdown) = (Some(around.line), touchdown);
             let fields = header.zip(around.carried).into_iter().flat_map(|(header, carried)| {
                 carried.by_name(header).filter(|(name, _)| !detail.brief || header.is_foreign(name))
@@ -268,18 +264,17 @@ impl Answerer<'_> {
             report.append_json(detail, &mut block.out);
         }
         self.keep(state.id.as_ref(), around, block, || {
-            Keyframe::of_impact(robot, &self.question.options.feet, state, &impact)
+            Keyframe::of_impact(robot, &self.question.options.feet, state, impact)
         });
         match impact.analyzed() {
             Ok(analysis) => {
                 let place = || StateRef { id: state.id.clone().map(short_id), line: around.line };
-                block.summary.count(place, &impact, analysis);
+                block.summary.count(place, impact, analysis);
             }
             // The result contains it next to the matrices.
             Err(error) => block.refuse(error, around),
         }
-        self.pipeline.recycle(impact);
-        Ok(())
+        answer.map(|impact| self.pipeline.recycle(impact))
     }
 
     /// Appends a refusal.

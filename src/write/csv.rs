@@ -398,7 +398,7 @@ impl Columns {
         line: Option<usize>,
         carried: Option<&'c Carried>,
     ) -> Cells<'c> {
-        let mut cells = Cells(vec![Cell::Empty; self.names.len()]);
+        let mut cells = Cells(self.names.iter().map(|_| Cell::Empty).collect());
         match (id, self.kinds[0]) {
             (Some(Value::Number(id)), Kind::Integer) => cells.0[0] = id.as_i64().map_or(Cell::Empty, Cell::Integer),
             (id, _) => cells.text(0, id.map_or("".into(), words::id)),

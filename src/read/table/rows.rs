@@ -394,13 +394,20 @@ impl Row<'_> {
     }
 
     /// The number in a cell.
+    #[inline]
     fn number(&self, at: usize) -> Result<f64> {
         #[cfg(feature = "columnar")]
         if let Source::Columns(columns, row) = self.source
-            && let Some(value) = columns.number(at, row).filter(|value| value.is_finite())
+            && let Some(value) = columns.number(at, row)
+            && value.is_finite()
         {
             return Ok(value);
         }
+        self.checked_number(at)
+    }
+
+    /// The number in any cell.
+    fn checked_number(&self, at: usize) -> Result<f64> {
         let value: f64 = match self.cell(at)? {
             Cell::Empty => {
                 let reason = Reason::WrongKind { expected: "a number", found: "an empty cell" };

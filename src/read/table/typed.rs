@@ -94,6 +94,7 @@ impl Typed {
     }
 
     /// The number in a cell of a column of numbers.
+    #[inline]
     pub fn number(&self, at: usize, row: usize) -> Option<f64> {
         match &self.columns[at] {
             Column::Numbers(numbers) if numbers.is_valid(row) => Some(numbers.value(row)),
