@@ -16,7 +16,7 @@ use super::explanation::explanation;
 use super::families::FamiliesPass;
 use super::outcome::{Analysis, OpenCombinations, Outcome, Verdict};
 use super::passes::{F64Pass, UndecidedPass};
-use super::problem::{ContactProblem, Precision, Source, escalate};
+use super::problem::{ContactProblem, Precision, Remembered, Source, escalate};
 use super::rank::{rank_and_condition, shows_regular};
 use super::relaxation::Relaxation;
 use super::slack::Scale;
@@ -74,6 +74,7 @@ impl Scratch {
         }
         let options = AnalysisOptions { prove: options.prove && source.is_exact(), ..options };
         self.tableau.without_slip = false;
+        let source = &Remembered::of(source);
         let (findings, regular) = self.find(problem, source, options);
         let Findings { outcomes, families, rejected, unlisted, effort, visited, undecided } = findings;
         let combinations = combinations(problem.laws());
@@ -115,7 +116,7 @@ impl Scratch {
             return None;
         }
         self.tableau.without_slip = true;
-        let (Findings { outcomes, .. }, _) = self.find(problem, source, options);
+        let (Findings { outcomes, .. }, _) = self.find(problem, &Remembered::of(source), options);
         if is_spent() {
             return None;
         }

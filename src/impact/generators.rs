@@ -48,19 +48,11 @@ impl Generators {
         self.rays.iter().map(entry).collect()
     }
 
-    /// The coefficients by lambda of a row's impulse.
-    pub fn impulse_row<T: Real>(&self, row: usize) -> Vec<T> {
-        let entry =
-            |&(contact, ray): &(usize, Pair<f64>)| T::from_f64(if contact == row / 2 { ray[row % 2] } else { 0.0 });
-        self.rays.iter().map(entry).collect()
-    }
-
-    /// The coefficients by lambda of one of the two numbers that a contact's inequalities of impulses are functions of.
-    pub fn number_row<T: Real>(&self, contact: usize, which: usize) -> Vec<T> {
+    /// Which entry of lambda is one of the two numbers that a contact's inequalities of impulses are functions of.
+    pub fn place(&self, contact: usize, which: usize) -> usize {
         let own = self.rays.iter().take_while(|(other, _)| *other < contact).count();
         let free = self.rays.get(own + 1).is_some_and(|(other, _)| *other == contact);
-        let place = own + usize::from(free && which == 1);
-        (0..self.count()).map(|at| if at == place { T::one() } else { T::zero() }).collect()
+        own + usize::from(free && which == 1)
     }
 
     /// The impulse of every row \[N s\].

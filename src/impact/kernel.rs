@@ -17,15 +17,15 @@ use std::cmp::Ordering;
 /// The signs of a basis of the kernel of G.
 #[derive(Debug, Clone, Default)]
 pub struct Kernel {
-    relations: Vec<Relation>,
+    pub relations: Vec<Relation>,
 }
 
 /// The sum of z_i xi_i is a constant.
 #[derive(Debug, Clone)]
-struct Relation {
+pub struct Relation {
     /// Rows with z_i other than zero, and its sign.
-    terms: Vec<(usize, Ordering)>,
-    constant: Ordering,
+    pub terms: Vec<(usize, Ordering)>,
+    pub constant: Ordering,
 }
 
 impl Kernel {

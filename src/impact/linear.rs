@@ -6,6 +6,7 @@
 //! that is spent: every loop here and in the rooms above asks for a sign in each round.
 
 use crate::budget::is_spent;
+use crate::planar::Pair;
 use crate::scalar::{Ordered, Real, Sign, dot};
 use std::cmp::Ordering;
 
@@ -240,23 +241,24 @@ impl<T: Ordered> Dictionary<T> {
 
     /// The basic variable that reaches zero first, of several the one with the lowest label.
     fn leaving(&self, column: usize, rising: bool) -> Result<Option<usize>, Unsettled> {
-        let mut least: Option<(usize, T)> = None;
+        let mut least: Option<(usize, Pair<T>)> = None;
         for (row, entries) in self.rows.iter().enumerate() {
             let slope = if rising { entries[column] } else { -entries[column] };
             if self.basic[row] < self.free || settled(slope)?.is_ge() {
                 continue;
             }
-            let reach = entries[self.nonbasic.len()] / -slope;
+            // It reaches zero after value / speed, whose comparison needs no division.
+            let [value, speed] = [entries[self.nonbasic.len()], -slope];
             let first = match least {
                 None => true,
-                Some((other, best)) => match settled(reach - best)? {
+                Some((other, [least, of_least])) => match settled(value * of_least - least * speed)? {
                     Ordering::Less => true,
                     Ordering::Equal => self.basic[row] < self.basic[other],
                     Ordering::Greater => false,
                 },
             };
             if first {
-                least = Some((row, reach));
+                least = Some((row, [value, speed]));
             }
         }
         Ok(least.map(|(row, _)| row))

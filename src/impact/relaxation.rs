@@ -16,6 +16,7 @@
 //! Nothing that f64 has done is trusted: a [`Claim`] is shown to hold by an error bound ([`Relaxation::shows`]), or in
 //! numbers that know their signs ([`Claim::holds`]).
 
+use super::kernel::{Kernel, Relation};
 use super::linear::{Unsettled, extended, settled, solve};
 use super::problem::{ContactProblem, Errors};
 use super::slack::Scale;
@@ -76,6 +77,8 @@ impl Range {
 struct Ranges {
     above_zero: u64,
     below_zero: u64,
+    /// Velocities that are not zero.
+    moves: u64,
 }
 
 impl Ranges {
@@ -95,11 +98,14 @@ impl Ranges {
         Self {
             above_zero: self.above_zero & !variables | by.above_zero,
             below_zero: self.below_zero & !variables | by.below_zero,
+            moves: self.moves & !variables | by.moves,
         }
     }
 
-    fn overlaps(self, other: Self) -> bool {
-        self.above_zero & other.above_zero | self.below_zero & other.below_zero != 0
+    /// Whether what these name speaks for other ranges: a variable that may take its sign, or that none of `moves` does.
+    fn allows(self, other: Self) -> bool {
+        let admitted = self.above_zero & other.above_zero | self.below_zero & other.below_zero;
+        admitted != 0 || self.moves != 0 && self.moves & other.moves == 0
     }
 }
 
@@ -189,7 +195,7 @@ pub struct Relaxation {
     /// After the decisions on the first contacts.
     depths: Vec<Dictionary>,
     multipliers: [Vec<f64>; 2],
-    /// What the claims that were shown rest on: nothing leads to ranges that overlap with none of these.
+    /// What the claims that were shown rest on: nothing leads to ranges for which none of these speaks.
     nogoods: Vec<Ranges>,
     /// How many were found.
     shown: usize,
@@ -246,7 +252,9 @@ impl Relaxation {
                 let mut ranges = Ranges::default();
                 let signs = mode.map_or([None; 2], |mode| law.velocity(mode));
                 for (side, undecided) in [Range::FREE, Range::ABOVE].into_iter().enumerate() {
-                    ranges.set(2 * contact + side, signs[side].map_or(undecided, Range::of));
+                    let row = 2 * contact + side;
+                    ranges.set(row, signs[side].map_or(undecided, Range::of));
+                    ranges.moves |= u64::from(signs[side].is_some_and(Ordering::is_ne)) << row;
                 }
                 for (index, ray) in self.rays.iter().enumerate().filter(|(_, ray)| ray.contact == contact) {
                     ranges.set(rows + index, ray.range(law, mode));
@@ -326,10 +334,45 @@ impl Relaxation {
 
     /// Whether what was shown of other beginnings shows that a contact cannot have this mode after all before it.
     pub fn excludes(&mut self, contact: usize, mode: Mode) -> bool {
-        let ranges = self.ranges(contact, mode);
-        let found = self.nogoods.iter().position(|nogood| !nogood.overlaps(ranges));
+        self.has_shown(self.ranges(contact, mode))
+    }
+
+    fn has_shown(&mut self, ranges: Ranges) -> bool {
+        let found = self.nogoods.iter().position(|nogood| !nogood.allows(ranges));
         // What says no often comes early.
         found.inspect(|&index| self.nogoods.swap(index, index / 2)).is_some()
+    }
+
+    fn learn(&mut self, nogood: Ranges) {
+        self.shown += 1;
+        if self.nogoods.len() < NOGOODS {
+            self.nogoods.push(nogood);
+        } else {
+            self.nogoods[self.shown % NOGOODS] = nogood;
+        }
+    }
+
+    /// Learns what contacts that depend on each other cannot do: y = z and y = -z.
+    pub fn learn_from(&mut self, kernel: &Kernel) {
+        for Relation { terms, constant } in &kernel.relations {
+            for (constant, turned) in [(*constant, false), (constant.reverse(), true)] {
+                let mut nogood = Ranges::default();
+                for &(row, sign) in terms {
+                    nogood.set(row, Range { above_zero: sign.is_lt() != turned, below_zero: sign.is_gt() != turned });
+                    nogood.moves |= u64::from(constant.is_eq()) << row;
+                }
+                if constant.is_le() {
+                    self.learn(nogood);
+                }
+            }
+        }
+    }
+
+    /// Whether a claim holds in exact numbers, the strictness of inequalities included.
+    pub fn confirms<T: Ordered>(&mut self, claim: &Claim, problem: &ContactProblem<T>) -> Result<bool, Unsettled> {
+        let holds =
+            self.has_shown(claim.ranges) || T::freeing(|| claim.shown(problem))?.map(|own| self.learn(own)).is_some();
+        Ok(holds)
     }
 
     /// What the last decision, the one of the last of these contacts, claims.
@@ -379,15 +422,10 @@ impl Relaxation {
         let gain = if gain > 0.0 { gain * self.reach } else { 0.0 };
         let is_shown = sums[width - 1] + (size * of_free + gain) * (1.0 + 1e-6) < 0.0;
         if is_shown {
-            for ray in 0..self.rays.len() {
-                nogood.set(self.rows + ray, Range { above_zero: sums[ray] > worst, below_zero: -sums[ray] > worst });
+            for (ray, &sum) in sums[..self.rays.len()].iter().enumerate() {
+                nogood.set(self.rows + ray, Range { above_zero: sum > worst, below_zero: -sum > worst });
             }
-            self.shown += 1;
-            if self.nogoods.len() < NOGOODS {
-                self.nogoods.push(nogood);
-            } else {
-                self.nogoods[self.shown % NOGOODS] = nogood;
-            }
+            self.learn(nogood);
         }
         is_shown
     }
@@ -468,8 +506,8 @@ impl Dictionary {
 }
 
 impl Claim {
-    /// Whether the claim holds in exact numbers, the strictness of inequalities included.
-    pub fn holds<T: Ordered>(&self, problem: &ContactProblem<T>) -> Result<bool, Unsettled> {
+    /// What the claim rests on if it holds in exact numbers, the strictness of inequalities included.
+    fn shown<T: Ordered>(&self, problem: &ContactProblem<T>) -> Result<Option<Ranges>, Unsettled> {
         let rows = 2 * problem.contacts();
         let rays: Vec<Ray> = Ray::all(problem.laws()).collect();
         let response = |row: usize, ray: &Ray| {
@@ -489,34 +527,39 @@ impl Claim {
             };
             extended(&coefficients, -right)
         });
-        let Some(found) = solve(unknown.len(), equations.collect())? else { return Ok(false) };
+        let Some(found) = solve(unknown.len(), equations.collect())? else { return Ok(None) };
         let mut factors: Vec<(usize, T)> = unknown.into_iter().zip(found.origin).collect();
         factors.extend((own < rows).then_some((own, sign)));
-        let mut is_strict = false;
+        let mut nogood = Ranges::default();
         for &(row, factor) in &factors {
             let factor = settled(factor)?;
             if !self.ranges.get(row).admits(factor) {
-                return Ok(false);
+                return Ok(None);
             }
-            let contact = row / 2;
-            let moves = self.modes.get(contact).and_then(|&mode| problem.laws()[contact].velocity(mode)[row % 2]);
-            is_strict |= factor.is_ne() && moves.is_some_and(Ordering::is_ne);
+            nogood.set(row, Range { above_zero: factor.is_lt(), below_zero: factor.is_gt() });
+            nogood.moves |= u64::from(factor.is_ne()) << row;
         }
         for (index, ray) in rays.iter().enumerate() {
+            if self.basic.contains(&(rows + index)) {
+                continue;
+            }
             let range = self.ranges.get(rows + index);
-            if range == Range::ZERO || self.basic.contains(&(rows + index)) {
+            if range == Range::ZERO {
+                nogood.set(rows + index, Range::FREE);
                 continue;
             }
             let sum = factors.iter().fold(T::zero(), |sum, &(row, factor)| sum - factor * response(row, ray));
-            if !range.admits(settled(sum)?) {
-                return Ok(false);
+            let sum = settled(sum)?;
+            if !range.admits(sum) {
+                return Ok(None);
             }
+            nogood.set(rows + index, Range { above_zero: sum.is_lt(), below_zero: sum.is_gt() });
         }
         let total = factors.iter().fold(T::zero(), |sum, &(row, factor)| sum + factor * problem.free_row(row));
         Ok(match settled(total)? {
-            Ordering::Less => true,
-            Ordering::Equal => is_strict,
-            Ordering::Greater => false,
+            Ordering::Less => Some(Ranges { moves: 0, ..nogood }),
+            Ordering::Equal if nogood.moves & self.ranges.moves != 0 => Some(nogood),
+            Ordering::Equal | Ordering::Greater => None,
         })
     }
 }
@@ -545,7 +588,7 @@ mod tests {
         let lack = lacks.last().copied().flatten()?;
         let claim = relaxation.claim(modes, lack);
         let exact = problem.map(Certified::<Ball>::from_f64);
-        Some((relaxation.shows(modes.len() - 1, lack), claim.holds(&exact).unwrap()))
+        Some((relaxation.shows(modes.len() - 1, lack), claim.shown(&exact).unwrap().is_some()))
     }
 
     #[test]
@@ -602,6 +645,6 @@ mod tests {
             vec![0.0; 2],
         );
         let exact = backward.unwrap().map(Certified::<Ball>::from_f64);
-        assert_eq!(claim.holds(&exact), Ok(false));
+        assert_eq!(claim.shown(&exact), Ok(None));
     }
 }

@@ -24,7 +24,6 @@ use super::problem::ContactProblem;
 use super::program::least_impulse;
 use super::slack::Scale;
 use crate::law::{Condition, Inequality, Law, Mode};
-use crate::planar::Pair;
 use crate::scalar::{Ordered, dot};
 use std::cmp::Ordering;
 
@@ -72,6 +71,29 @@ struct Constraint<T> {
     function: LinearFunction<T>,
 }
 
+/// The solutions of a combination's equations, and what depends on them.
+struct Space<T> {
+    solutions: Solutions<T>,
+    /// `[c_t, xi_n]` by rows.
+    velocity: Vec<LinearFunction<T>>,
+    inequalities: Vec<Constraint<T>>,
+}
+
+impl<T: Ordered> Space<T> {
+    fn is_one_velocity(&self) -> Result<bool, Unsettled> {
+        for row in &self.velocity {
+            if !row.is_constant()? {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    fn functions(&self) -> Vec<LinearFunction<T>> {
+        self.inequalities.iter().map(|own| own.function.clone()).collect()
+    }
+}
+
 /// A combination of a problem.
 pub struct Equations<'a, T> {
     problem: &'a ContactProblem<T>,
@@ -101,52 +123,55 @@ impl<'a, T: Ordered> Equations<'a, T> {
 
     /// As [`Equations::solve`]; the solutions of a family are those that the inequalities leave, with one in the
     /// interior of its set as their origin.
-    fn velocities(&self) -> Result<SingularCase<Solutions<T>>, Unsettled> {
+    fn velocities(&self) -> Result<SingularCase<Space<T>>, Unsettled> {
         let Self { problem, modes, generators, .. } = self;
         let equation = |row: usize| extended(&generators.velocity_row(problem, row), -problem.free_row(row));
         let Some(solutions) = solve(generators.count(), zero_rows(modes, problem.laws()).map(equation).collect())?
         else {
             return Ok(SingularCase::Rejected(Rejection::of(modes, RejectionReason::NoSolution)));
         };
-        let inequalities = self.inequalities(&solutions);
-        for Constraint { function, .. } in inequalities.iter().filter(|own| own.inequality.is_strict()) {
+        let space = self.space(solutions);
+        for Constraint { function, .. } in space.inequalities.iter().filter(|own| own.inequality.is_strict()) {
             if function.is_constant()? && settled(function.constant)?.is_eq() {
                 return Ok(SingularCase::Rejected(Rejection::of(modes, RejectionReason::RedundantTwin)));
             }
         }
-        let functions: Vec<LinearFunction<T>> = inequalities.iter().map(|own| own.function.clone()).collect();
-        let (inside, least) = widest(&functions, solutions.directions.len(), T::from_f64(UNBOUNDED))?;
+        let functions = space.functions();
+        let (inside, least) = widest(&functions, space.solutions.directions.len(), T::from_f64(UNBOUNDED))?;
         let standing = settled(least)?;
         if standing.is_lt() {
-            return Ok(SingularCase::Rejected(self.rejected(&solutions, &inequalities, &inside)));
+            return Ok(SingularCase::Rejected(self.rejected(&space, &inside)));
         }
-        if self.is_one_velocity(&solutions)? {
-            return Ok(SingularCase::Valid(self.outcome(&solutions, &inside, least)?));
+        if space.is_one_velocity()? {
+            return Ok(SingularCase::Valid(self.outcome(&space, &inside, least)?));
         }
-        let mut space = Solutions { origin: solutions.at(&inside), ..solutions };
-        if standing.is_eq() {
-            let from_inside: Vec<LinearFunction<T>> = functions.iter().map(|each| each.seen_from(&inside)).collect();
-            let (equalities, inner) = vanishing(&from_inside)?;
-            // A velocity that is zero throughout belongs to other modes.
-            if equalities.iter().any(|&place| inequalities[place].inequality.is_strict()) {
-                return Ok(SingularCase::Rejected(Rejection::of(modes, RejectionReason::RedundantTwin)));
-            }
-            let origin = space.at(&inner);
-            space = space.where_zero(equalities.iter().map(|&place| &from_inside[place]))?.ok_or(Unsettled)?;
-            space.origin = origin;
-            if self.is_one_velocity(&space)? {
-                // What the equations leave free, the inequalities do not.
-                let still = vec![T::zero(); space.directions.len()];
-                return Ok(SingularCase::Valid(self.outcome(&space, &still, T::zero())?));
-            }
+        let origin = space.solutions.at(&inside);
+        if standing.is_gt() {
+            return Ok(SingularCase::Family(self.space(Solutions { origin, ..space.solutions })));
+        }
+        let from_inside: Vec<LinearFunction<T>> = functions.iter().map(|each| each.seen_from(&inside)).collect();
+        let (equalities, inner) = vanishing(&from_inside)?;
+        // A velocity that is zero throughout belongs to other modes.
+        if equalities.iter().any(|&place| space.inequalities[place].inequality.is_strict()) {
+            return Ok(SingularCase::Rejected(Rejection::of(modes, RejectionReason::RedundantTwin)));
+        }
+        let shifted = Solutions { origin, ..space.solutions };
+        let origin = shifted.at(&inner);
+        let left = shifted.where_zero(equalities.iter().map(|&place| &from_inside[place]))?.ok_or(Unsettled)?;
+        let space = self.space(Solutions { origin, ..left });
+        if space.is_one_velocity()? {
+            // What the equations leave free, the inequalities do not.
+            let still = vec![T::zero(); space.solutions.directions.len()];
+            return Ok(SingularCase::Valid(self.outcome(&space, &still, T::zero())?));
         }
         Ok(SingularCase::Family(space))
     }
 
     /// The velocities of a combination that is a family; `None` if there are too many corners.
     pub fn family(&self) -> Result<Option<FamilyVelocities<T>>, Unsettled> {
-        let SingularCase::Family(space) = self.velocities()? else { return Err(Unsettled) };
-        let rows: Vec<LinearFunction<T>> = (0..2 * self.modes.len()).map(|row| self.velocity(&space, row)).collect();
+        let SingularCase::Family(Space { solutions, velocity: rows, inequalities }) = self.velocities()? else {
+            return Err(Unsettled);
+        };
         // Some rows are coordinates of the family, the others depend on them.
         let mut coordinates: Vec<LinearFunction<T>> = Vec::new();
         let mut factors: Vec<Vec<T>> = Vec::new();
@@ -154,7 +179,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
             let equation = |at: usize| {
                 coordinates.iter().map(|own| own.coefficients[at]).chain([row.coefficients[at]]).collect::<Vec<T>>()
             };
-            let equations = (0..space.directions.len()).map(equation).collect();
+            let equations = (0..solutions.directions.len()).map(equation).collect();
             if let Some(dependent) = solve(coordinates.len(), equations)? {
                 factors.push(dependent.origin);
             } else {
@@ -163,8 +188,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
                 coordinates.push(row.clone());
             }
         }
-        let functions: Vec<LinearFunction<T>> =
-            self.inequalities(&space).into_iter().map(|each| each.function).collect();
+        let functions: Vec<LinearFunction<T>> = inequalities.into_iter().map(|each| each.function).collect();
         let Some(corners) = corners(&functions, &coordinates)? else { return Ok(None) };
         let velocity = |corner: Vec<T>| -> Result<Vec<T>, Unsettled> {
             let from: Vec<T> = corner.iter().zip(&coordinates).map(|(&at, own)| at - own.constant).collect();
@@ -183,53 +207,54 @@ impl<'a, T: Ordered> Equations<'a, T> {
         let Self { problem, generators, .. } = self;
         let equation =
             |row: usize| extended(&generators.velocity_row(problem, row), velocity[row] - problem.free_row(row));
-        let space = solve(generators.count(), (0..velocity.len()).map(equation).collect())?.ok_or(Unsettled)?;
-        let pressing = self.inequalities(&space).into_iter().filter(|own| !own.inequality.is_strict());
-        let functions: Vec<LinearFunction<T>> = pressing.map(|own| own.function).collect();
-        let (inside, least) = widest(&functions, space.directions.len(), T::from_f64(UNBOUNDED))?;
+        let solutions = solve(generators.count(), (0..velocity.len()).map(equation).collect())?.ok_or(Unsettled)?;
+        let still = vec![T::zero(); solutions.directions.len()];
+        let fixed = |&constant: &T| LinearFunction { constant, coefficients: still.clone() };
+        let space = self.space_of(solutions, velocity.iter().map(fixed).collect());
+        let pressing = space.inequalities.iter().filter(|own| !own.inequality.is_strict());
+        let functions: Vec<LinearFunction<T>> = pressing.map(|own| own.function.clone()).collect();
+        let (inside, least) = widest(&functions, still.len(), T::from_f64(UNBOUNDED))?;
         let outcome = self.outcome(&space, &inside, least)?;
         Ok(SingularOutcome { index: None, margin: None, ..outcome })
     }
 
-    fn is_one_velocity(&self, solutions: &Solutions<T>) -> Result<bool, Unsettled> {
-        for row in 0..2 * self.modes.len() {
-            if !self.velocity(solutions, row).is_constant()? {
-                return Ok(false);
-            }
-        }
-        Ok(true)
+    fn space(&self, solutions: Solutions<T>) -> Space<T> {
+        let Self { problem, modes, generators, .. } = self;
+        let zero: Vec<usize> = zero_rows(modes, problem.laws()).collect();
+        let velocity = |row: usize| match zero.contains(&row) {
+            true => LinearFunction { constant: T::zero(), coefficients: vec![T::zero(); solutions.directions.len()] },
+            false => solutions.affine(problem.free_row(row), &generators.velocity_row(problem, row)),
+        };
+        let velocity = (0..2 * modes.len()).map(velocity).collect();
+        self.space_of(solutions, velocity)
     }
 
-    fn velocity(&self, solutions: &Solutions<T>, row: usize) -> LinearFunction<T> {
-        solutions.affine(self.problem.free_row(row), &self.generators.velocity_row(self.problem, row))
-    }
-
-    fn inequalities(&self, solutions: &Solutions<T>) -> Vec<Constraint<T>> {
-        let problem = self.problem;
-        let by_speed = T::one() / T::from_f64(self.scale.speed);
-        let mut all = Vec::new();
-        for (contact, (&mode, law)) in self.modes.iter().zip(problem.laws()).enumerate() {
-            law.conditions(mode, |condition: Condition| {
-                let rows: [(T, Vec<T>); 2] = [0, 1].map(|which| match condition.inequality.is_strict() {
-                    true => {
-                        let row = 2 * contact + which;
-                        (problem.free_row(row), self.generators.velocity_row(problem, row))
-                    }
-                    false => (T::zero(), self.generators.number_row(contact, which)),
-                });
-                let factor = T::from_f64(self.scale.factor(contact, &condition)) * by_speed;
-                let scaled = |number: &dyn Fn(usize) -> T| factor * condition.function.at(number, T::from_f64);
-                let coefficients: Vec<T> =
-                    (0..self.generators.count()).map(|at| scaled(&|which| rows[which].1[at])).collect();
-                let function = solutions.affine(scaled(&|which| rows[which].0), &coefficients);
-                all.push(Constraint { contact, inequality: condition.inequality, function });
+    fn space_of(&self, solutions: Solutions<T>, velocity: Vec<LinearFunction<T>>) -> Space<T> {
+        let Self { problem, scale, modes, generators } = self;
+        let by_speed = T::one() / T::from_f64(scale.speed);
+        let mut inequalities = Vec::new();
+        for (contact, (&mode, law)) in modes.iter().zip(problem.laws()).enumerate() {
+            law.conditions(mode, |Condition { inequality, function }| {
+                // By the constant and each direction, the two numbers of the contact.
+                let place = |which: usize| generators.place(contact, which);
+                let number = |which: usize, part: Option<usize>| match (inequality.is_strict(), part) {
+                    (true, None) => velocity[2 * contact + which].constant,
+                    (true, Some(at)) => velocity[2 * contact + which].coefficients[at],
+                    (false, None) => solutions.origin[place(which)],
+                    (false, Some(at)) => solutions.directions[at][place(which)],
+                };
+                let factor = T::from_f64(scale.factor(contact, &Condition { inequality, function })) * by_speed;
+                let scaled = |part| factor * function.at(|which| number(which, part), T::from_f64);
+                let coefficients = (0..solutions.directions.len()).map(|at| scaled(Some(at))).collect();
+                let function = LinearFunction { constant: scaled(None), coefficients };
+                inequalities.push(Constraint { contact, inequality, function });
             });
         }
-        all
+        Space { solutions, velocity, inequalities }
     }
 
-    fn rejected(&self, solutions: &Solutions<T>, inequalities: &[Constraint<T>], y: &[T]) -> Rejection {
-        let values = inequalities.iter().map(|inequality| (inequality, inequality.function.at(y).to_f64()));
+    fn rejected(&self, space: &Space<T>, y: &[T]) -> Rejection {
+        let values = space.inequalities.iter().map(|inequality| (inequality, inequality.function.at(y).to_f64()));
         // The linear program makes several equally bad; of one contact's the cone is named.
         let order = |own: &Constraint<T>| (own.contact, own.inequality != Inequality::FrictionCone);
         let worst = values.min_by(|a, b| a.1.total_cmp(&b.1).then_with(|| order(a.0).cmp(&order(b.0))));
@@ -237,18 +262,16 @@ impl<'a, T: Ordered> Equations<'a, T> {
             contact: worst.contact,
             inequality: worst.inequality,
         });
-        let at = Solutions { origin: solutions.at(y), directions: Vec::new() };
-        Rejection {
-            margin: worst.map(|(_, value)| value),
-            motion: Some(self.motion(&at)),
-            ..Rejection::of(self.modes, because)
-        }
+        let impulse = self.generators.impulse(&space.solutions.at(y));
+        let velocity: Vec<T> = space.velocity.iter().map(|row| row.at(y)).collect();
+        let motion = Motion::nearest(self.problem, self.modes, impulse.as_chunks().0, velocity.as_chunks().0);
+        Rejection { margin: worst.map(|(_, value)| value), motion: Some(motion), ..Rejection::of(self.modes, because) }
     }
 
     /// Whether the only velocity of `space` is that without impulses.
-    fn is_free(&self, space: &Solutions<T>) -> Result<bool, Unsettled> {
-        for row in 0..2 * self.modes.len() {
-            if settled(self.velocity(space, row).constant - self.problem.free_row(row))?.is_ne() {
+    fn is_free(&self, space: &Space<T>) -> Result<bool, Unsettled> {
+        for (row, velocity) in space.velocity.iter().enumerate() {
+            if settled(velocity.constant - self.problem.free_row(row))?.is_ne() {
                 return Ok(false);
             }
         }
@@ -256,9 +279,9 @@ impl<'a, T: Ordered> Equations<'a, T> {
     }
 
     /// The only velocity of `space`, with its impulses; at `inside` the smallest inequality is `least`, not negative.
-    fn outcome(&self, space: &Solutions<T>, inside: &[T], least: T) -> Result<SingularOutcome, Unsettled> {
-        let inequalities = self.inequalities(space);
-        let dimension = space.directions.len();
+    fn outcome(&self, space: &Space<T>, inside: &[T], least: T) -> Result<SingularOutcome, Unsettled> {
+        let Self { problem, scale, modes, generators } = self;
+        let Space { solutions, velocity, inequalities } = space;
         // Velocities are settled; only impulses still depend on y.
         let pressing: Vec<&Constraint<T>> = inequalities.iter().filter(|own| !own.inequality.is_strict()).collect();
         let shifted: Vec<LinearFunction<T>> = pressing.iter().map(|own| own.function.seen_from(inside)).collect();
@@ -271,83 +294,66 @@ impl<'a, T: Ordered> Equations<'a, T> {
                 }
             }
         }
-        let at = space.at(inside);
+        let at = solutions.at(inside);
+        let from = generators.impulse(&at);
+        let directions: Vec<Vec<T>> =
+            solutions.directions.iter().map(|direction| generators.impulse(direction)).collect();
+        // The impulse of each row, from that at `inside`.
+        let entry = |(row, &constant): (usize, &T)| LinearFunction {
+            constant,
+            coefficients: directions.iter().map(|direction| direction[row]).collect(),
+        };
+        let entries: Vec<LinearFunction<T>> = from.iter().enumerate().map(entry).collect();
         let mut ranges = Vec::new();
         let mut unique = true;
-        if dimension > 0 {
-            for row in 0..2 * self.modes.len() {
-                let entry = space.affine(T::zero(), &self.generators.impulse_row::<T>(row));
-                let here = entry.at(inside);
-                let mut bound = |sign: T| -> Result<Option<T>, Unsettled> {
-                    let toward: Vec<T> = entry.coefficients.iter().map(|&each| sign * each).collect();
-                    let Some(best) = maximize(&shifted, &toward)? else {
-                        unique = false;
-                        return Ok(None);
-                    };
-                    let change = entry.change(&best);
-                    unique &= settled(change)?.is_eq();
-                    Ok(Some(here + change))
-                };
-                ranges.push([bound(-T::one())?, bound(T::one())?]);
+        for entry in &entries {
+            if entry.is_constant()? {
+                ranges.push([Some(entry.constant); 2]);
+                continue;
             }
+            let mut bound = |sign: T| -> Result<Option<T>, Unsettled> {
+                let toward: Vec<T> = entry.coefficients.iter().map(|&each| sign * each).collect();
+                let Some(best) = maximize(&shifted, &toward)? else {
+                    unique = false;
+                    return Ok(None);
+                };
+                let change = entry.change(&best);
+                unique &= settled(change)?.is_eq();
+                Ok(Some(entry.constant + change))
+            };
+            ranges.push([bound(-T::one())?, bound(T::one())?]);
         }
-        let lambda = if unique {
-            at
+        let impulse = if unique {
+            from
         } else if self.is_free(space)? {
-            vec![T::zero(); at.len()]
+            vec![T::zero(); from.len()]
         } else {
-            let directions: Vec<Vec<T>> =
-                space.directions.iter().map(|direction| self.generators.impulse(direction)).collect();
-            let start = Solutions { origin: at, directions: space.directions.clone() };
-            start.at(&least_impulse(&self.generators.impulse(&start.origin), &directions, &shifted)?)
+            let y = least_impulse(&from, &directions, &shifted)?;
+            generators.impulse(&Solutions { origin: at, directions: solutions.directions.clone() }.at(&y))
         };
         // A margin at the cap is that of impulses without bound.
         let bounded = settled(least - T::from_f64(UNBOUNDED))?.is_lt();
         let margin = (!inequalities.is_empty() && bounded).then_some(least);
-        let [impulse, velocity] = self.solution(space, &lambda);
-        let mut numbers = Numbers::of((self.problem, self.scale), self.modes, &impulse, &velocity);
+        let velocity: Vec<T> = velocity.iter().map(|row| row.constant).collect();
+        let mut numbers = Numbers::of((problem, scale), modes, impulse.as_chunks().0, velocity.as_chunks().0);
         numbers.are_sharp &= margin.is_none_or(|margin| is_known(margin, 1.0));
         if !unique {
-            let entry = |row: usize| {
-                let entry = space.affine(T::zero(), &self.generators.impulse_row::<T>(row));
-                LinearFunction { constant: entry.at(inside), ..entry }
-            };
-            let impulses: Vec<Pair<LinearFunction<T>>> =
-                (0..self.modes.len()).map(|contact| [entry(2 * contact), entry(2 * contact + 1)]).collect();
-            numbers.take_friction(
-                &friction_needed(self.modes, self.problem.laws(), &impulses, &shifted)?,
-                self.problem.laws(),
-            );
+            let needed = friction_needed(modes, problem.laws(), entries.as_chunks().0, &shifted)?;
+            numbers.take_friction(&needed, problem.laws());
         }
         let range = |(&ends, &own): (&[Option<T>; 2], &T)| {
             numbers.are_sharp &= is_known_range(ends, own);
             ends.map(|end| end.map(T::to_f64))
         };
-        let ranges: Vec<Range> = ranges.iter().zip(impulse.as_flattened()).map(range).collect();
+        let ranges: Option<Vec<Range>> = (!unique).then(|| ranges.iter().zip(&impulse).map(range).collect());
         Ok(SingularOutcome {
             numbers,
             margin: margin.map(T::to_f64),
-            range: (!unique).then(|| ranges.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect()),
-            index: if at_zero.is_empty() { index(self.problem, self.modes)? } else { None },
+            range: ranges.map(|ranges| ranges.as_chunks().0.to_vec()),
+            index: if at_zero.is_empty() { index(problem, modes)? } else { None },
             at_zero,
-            modes: self.modes.to_vec(),
+            modes: modes.to_vec(),
         })
-    }
-
-    /// The velocity and the impulse of the origin of `space`.
-    fn motion(&self, space: &Solutions<T>) -> Motion {
-        let [impulse, velocity] = self.solution(space, &space.origin);
-        Motion::nearest(self.problem, self.modes, &impulse, &velocity)
-    }
-
-    /// The impulse that `lambda` gives, and the velocity of `space` at its origin, `[c_t, xi_n]` per contact.
-    fn solution(&self, space: &Solutions<T>, lambda: &[T]) -> [Vec<Pair<T>>; 2] {
-        let mut velocity: Vec<T> = (0..2 * self.modes.len()).map(|row| self.velocity(space, row).constant).collect();
-        for row in zero_rows(self.modes, self.problem.laws()) {
-            velocity[row] = T::zero();
-        }
-        let pairs = |rows: Vec<T>| rows.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
-        [pairs(self.generators.impulse(lambda)), pairs(velocity)]
     }
 }
 

@@ -5,6 +5,7 @@
 //! goes on beneath it.
 
 use super::collected::ListedRejections;
+use super::kernel::Kernel;
 use super::outcome::Effort;
 use super::problem::{ContactProblem, Precision, PrecisionTask, Source, escalate};
 use super::relaxation::{Claim, Lack, Relaxation};
@@ -115,10 +116,14 @@ pub fn combinations(laws: &[Law]) -> u64 {
 
 impl PrecisionTask for Search<'_> {
     fn attempt<T: Ordered>(&mut self, problem: &ContactProblem<T>, precision: Precision) -> bool {
+        if !self.relaxation.is_regular {
+            // What cannot be shown is not learned.
+            self.relaxation.learn_from(&T::freeing(|| Kernel::of(problem)).unwrap_or_default());
+        }
         // The last numbers decide; what even they leave open is left to each combination's own.
         let is_last = precision == Precision::Interval;
         let mut impossible = 0;
-        let mut find = |claim: &Claim| match T::freeing(|| claim.holds(problem)) {
+        let mut find = |relaxation: &mut Relaxation, claim: &Claim| match relaxation.confirms(claim, problem) {
             Ok(true) => {
                 impossible += combinations(&problem.laws()[claim.modes.len()..]);
                 Finding::Impossible
@@ -127,7 +132,7 @@ impl PrecisionTask for Search<'_> {
             _ => Finding::Possible,
         };
         for claim in std::mem::take(&mut self.open) {
-            match find(&claim) {
+            match find(self.relaxation, &claim) {
                 Finding::Impossible => {}
                 Finding::Open => self.open.push(claim),
                 Finding::Possible => {
@@ -136,7 +141,10 @@ impl PrecisionTask for Search<'_> {
                         self.relaxation.decide(self.modes.len(), mode);
                         self.modes.push(mode);
                     }
-                    self.descend(&mut |relaxation, modes, lack| find(&relaxation.claim(modes, lack)));
+                    self.descend(&mut |relaxation, modes, lack| {
+                        let claim = relaxation.claim(modes, lack);
+                        find(relaxation, &claim)
+                    });
                     self.modes.clear();
                 }
             }

@@ -68,7 +68,14 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// A number on the heap takes part by a `Copy` handle, as [`Interval`] does: the algorithms stay free of borrows.
 /// `Default` is asked for by memory that begins empty; its value is never read.
 pub trait Real:
-    Copy + Default + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+    Copy
+    + Default
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + 'static
 {
     /// The number that is exactly `value`.
     fn from_f64(value: f64) -> Self;

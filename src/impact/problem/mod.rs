@@ -15,7 +15,7 @@ pub use checks::MATRIX_LIMIT;
 pub(crate) use checks::check_matrix_size;
 pub(crate) use source::{Attempt, Precision, climb};
 pub use source::{Errors, Source};
-pub(super) use source::{PrecisionTask, escalate};
+pub(super) use source::{PrecisionTask, Remembered, escalate};
 
 use self::dense::Dynamics;
 use self::repair::{FactorRows, is_semidefinite};

@@ -13,6 +13,8 @@ use crate::budget::{ROUNDS, is_spent, is_spent_after};
 use crate::impact::outcome::Effort;
 use crate::planar::Pair;
 use crate::scalar::{Ball, Certified, DoubleDouble, Interval, Ordered, Trigonometry};
+use std::any::Any;
+use std::cell::OnceCell;
 
 /// What stands behind the rounded numbers of a [`ContactProblem`]: exact data, and the way from them to G and c.
 pub trait Source {
@@ -30,6 +32,42 @@ pub trait Source {
     /// What an outcome calls a contact.
     fn contact_name(&self, contact: usize) -> String {
         format!("contact/{contact}")
+    }
+}
+
+/// A source that computes its problem once in each kind of numbers, but for intervals, which live in their scope alone.
+pub struct Remembered<'a, S> {
+    source: &'a S,
+    plain: OnceCell<ContactProblem<Ball>>,
+    ball: OnceCell<ContactProblem<Certified<Ball>>>,
+    double_double: OnceCell<ContactProblem<Certified<Ball<DoubleDouble>>>>,
+}
+
+impl<'a, S> Remembered<'a, S> {
+    pub fn of(source: &'a S) -> Self {
+        Self { source, plain: OnceCell::new(), ball: OnceCell::new(), double_double: OnceCell::new() }
+    }
+}
+
+impl<S: Source> Source for Remembered<'_, S> {
+    fn problem<T: Ordered + Trigonometry>(&self) -> ContactProblem<T> {
+        let kinds: [&dyn Any; 3] = [&self.plain, &self.ball, &self.double_double];
+        match kinds.into_iter().find_map(|kind| kind.downcast_ref::<OnceCell<ContactProblem<T>>>()) {
+            Some(known) => known.get_or_init(|| self.source.problem()).clone(),
+            None => self.source.problem(),
+        }
+    }
+
+    fn errors(&self) -> Errors<'_> {
+        self.source.errors()
+    }
+
+    fn is_exact(&self) -> bool {
+        self.source.is_exact()
+    }
+
+    fn contact_name(&self, contact: usize) -> String {
+        self.source.contact_name(contact)
     }
 }
 
