@@ -540,7 +540,7 @@ impl Claim {
             nogood.moves |= u64::from(factor.is_ne()) << row;
         }
         for (index, ray) in rays.iter().enumerate() {
-            if self.basic.contains(&(rows + index)) {
+            if rows + index != own && self.basic.contains(&(rows + index)) {
                 continue;
             }
             let range = self.ranges.get(rows + index);
