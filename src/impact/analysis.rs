@@ -148,6 +148,7 @@ impl Scratch {
             collected: Collected::new(problem, &self.scale, options, &name, &mut self.memory),
         };
         let lists_all = options.rejections == ListedRejections::Everything;
+        let mut kernel = None;
         let is_searched = contacts >= SEARCHED && !(lists_all && contacts <= EXPLAINED);
         if !is_searched {
             self.tableau.visit(&mut pass);
@@ -155,7 +156,7 @@ impl Scratch {
             let without_slip = self.tableau.without_slip;
             let search =
                 Search::of((problem, source), &self.scale, &mut self.relaxation, without_slip, options.rejections);
-            pass.collected.effort = search.effort;
+            (pass.collected.effort, kernel) = (search.effort, search.kernel);
             pass.shares = false;
             for modes in &search.survivors {
                 self.tableau.visit_one(modes, &mut pass);
@@ -175,7 +176,7 @@ impl Scratch {
         }
         if !undecided.is_empty() {
             let first = Precision::first(regular || is_searched && self.relaxation.is_regular, problem);
-            let mut pass = UndecidedPass { undecided, blunt: BTreeMap::new(), collected: &mut collected };
+            let mut pass = UndecidedPass { undecided, blunt: BTreeMap::new(), kernel, collected: &mut collected };
             escalate(source, first, &mut pass);
             pass.finish();
         }

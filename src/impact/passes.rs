@@ -10,7 +10,7 @@ use super::outcome::{Motion, Rejection};
 use super::problem::{ContactProblem, Precision, PrecisionTask};
 use super::reading::{motion, read, rejects};
 use crate::budget::{ROUNDS, is_spent_after};
-use crate::law::Impulse;
+use crate::law::{Impulse, Mode};
 use crate::planar::Pair;
 use crate::scalar::{Ordered, Rounded, Sign};
 use std::collections::BTreeMap;
@@ -76,6 +76,8 @@ pub struct UndecidedPass<'a, 'c> {
     pub undecided: Vec<Pending>,
     /// Solutions with outcomes that need still more digits, by the combination's number.
     pub blunt: BTreeMap<u64, Solved>,
+    /// What dependent contacts cannot do, once it is known.
+    pub kernel: Option<Kernel>,
     pub collected: &'c mut Collected<'a>,
 }
 
@@ -96,8 +98,9 @@ impl PrecisionTask for UndecidedPass<'_, '_> {
         let mut open = std::mem::take(&mut self.undecided);
         let before = open.len();
         // What the contacts' dependence excludes is not solved for; if it cannot be shown, everything is.
-        let kernel = T::freeing(|| Kernel::of(exact)).unwrap_or_default();
-        open.retain(|pending| match kernel.excludes(&pending.modes, exact.laws()) {
+        self.kernel = self.kernel.take().or_else(|| T::freeing(|| Kernel::of(exact)).ok());
+        let excludes = |modes: &[Mode]| self.kernel.as_ref().and_then(|kernel| kernel.excludes(modes, exact.laws()));
+        open.retain(|pending| match excludes(&pending.modes) {
             Some(because) => {
                 let rejection = || Rejection::of(&pending.modes, because);
                 self.collected.reject(pending.number, &pending.modes, rejection);
@@ -125,7 +128,7 @@ struct Attempt<'p, 'a, 'c, 'e, T> {
 
 impl<T: Ordered> Attempt<'_, '_, '_, '_, T> {
     fn solve(&mut self, pending: Pending) {
-        let UndecidedPass { undecided, blunt, collected } = &mut *self.pass;
+        let UndecidedPass { undecided, blunt, collected, .. } = &mut *self.pass;
         let rounds = if self.precision == Precision::Interval { ROUNDS } else { 1 };
         let stops = self.left == 0 || is_spent_after(rounds);
         let solved = if stops { Err(Unsettled) } else { self.solver.solve(&pending.modes) };

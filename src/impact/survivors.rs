@@ -29,6 +29,8 @@ pub struct Search<'a> {
     pub survivors: Vec<Vec<Mode>>,
     /// Beginnings that f64 holds for impossible and has not shown to be.
     open: Vec<Claim>,
+    /// What dependent contacts cannot do, once it was asked for.
+    pub kernel: Option<Kernel>,
     /// How many combinations more digits than those of f64 have shown to be impossible.
     pub effort: Effort,
     /// How many combinations were not looked at.
@@ -46,10 +48,11 @@ impl<'a> Search<'a> {
         rejections: ListedRejections<'a>,
     ) -> Self {
         relaxation.load(problem, scale, source.errors());
-        let (modes, survivors, open) = (Vec::new(), Vec::new(), Vec::new());
+        let (modes, survivors, open, kernel) = (Vec::new(), Vec::new(), Vec::new(), None);
         let (laws, effort) = (problem.laws(), Effort::default());
         let listed = if let ListedRejections::Only(listed) = rejections { listed } else { &[] };
-        let mut search = Self { relaxation, laws, without_slip, listed, modes, survivors, open, effort, unvisited: 0 };
+        let mut search =
+            Self { relaxation, laws, without_slip, listed, modes, survivors, open, kernel, effort, unvisited: 0 };
         search.descend(&mut |relaxation, modes, lack| {
             if relaxation.shows(modes.len() - 1, lack) { Finding::Impossible } else { Finding::Open }
         });
@@ -116,9 +119,10 @@ pub fn combinations(laws: &[Law]) -> u64 {
 
 impl PrecisionTask for Search<'_> {
     fn attempt<T: Ordered>(&mut self, problem: &ContactProblem<T>, precision: Precision) -> bool {
-        if !self.relaxation.is_regular {
+        if !self.relaxation.is_regular && self.kernel.is_none() {
             // What cannot be shown is not learned.
-            self.relaxation.learn_from(&T::freeing(|| Kernel::of(problem)).unwrap_or_default());
+            self.kernel = T::freeing(|| Kernel::of(problem)).ok();
+            self.kernel.iter().for_each(|kernel| self.relaxation.learn_from(kernel));
         }
         // The last numbers decide; what even they leave open is left to each combination's own.
         let is_last = precision == Precision::Interval;
