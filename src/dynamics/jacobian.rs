@@ -163,16 +163,18 @@ fn motion<T: Real>(
 ///     T = sum of 1/2 (m u.u + 2 omega u.turned(h) + I omega^2) + 1/2 rotor rate^2
 /// ```
 ///
-/// with u the velocity of a body's origin, h and I its first and second moments about it.
-pub fn kinetic_energy<T: Real>(plan: &Plan<T>, velocity: &[T], workspace: &Workspace<T>) -> T {
-    let (mut twice, mut motions) = (T::zero(), Vec::new());
+/// with u the velocity of a body's origin, h and I its first and second moments about it; `motions` is scratch.
+pub fn kinetic_energy<T: Real>(
+    plan: &Plan<T>,
+    velocity: &[T],
+    workspace: &Workspace<T>,
+    motions: &mut Vec<Motion<T>>,
+) -> T {
+    let mut twice = T::zero();
+    motions.clear();
     for (index, body) in plan.bodies.iter().enumerate() {
-        let (rate, origin) = if plan.is_long {
-            motions.push(motion(plan, index, velocity, &motions, workspace));
-            motions[index]
-        } else {
-            (spin(plan, index, velocity), point_velocity(plan, index, Vector::zero(), velocity, workspace))
-        };
+        let (rate, origin) = motion(plan, index, velocity, motions, workspace);
+        motions.push((rate, origin));
         let first = workspace.rotation[index].apply(body.inertia.first);
         let cross = rate * origin.dot(first.perpendicular());
         twice = twice + body.inertia.mass * origin.dot(origin) + cross + cross + body.inertia.second * rate * rate;

@@ -262,7 +262,7 @@ mod tests {
             let workspace = case.computed(&plan, &[]);
             let column = by_column(&plan, &case.velocity);
             let by_matrix = 0.5 * column.dot(&(dense(&plan, &workspace.mass_matrix) * &column));
-            let by_bodies = kinetic_energy(&plan, &case.velocity, &workspace);
+            let by_bodies = kinetic_energy(&plan, &case.velocity, &workspace, &mut Vec::new());
             let factor = &workspace.factor;
             let lower = DMatrix::from_fn(plan.columns(), plan.columns(), |row, column| match row.cmp(&column) {
                 Ordering::Greater => factor.row(row)[column],

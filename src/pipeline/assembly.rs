@@ -59,7 +59,7 @@ pub struct Assembly<T = f64> {
     /// Whether those are the rows that hold something, whatever digits the pose does not have.
     pub is_rank_certain: bool,
     column: Vec<T>,
-    motions: Vec<Motion<T>>,
+    pub(super) motions: Vec<Motion<T>>,
 }
 
 impl<T: Real> Assembly<T> {

@@ -144,7 +144,7 @@ impl Pipeline<'_> {
     ) -> Result<Option<String>> {
         let robot = self.robot;
         let Assembly { plan, workspace, loops, .. } = &self.assembly;
-        let energy = kinetic_energy(plan, velocity, workspace);
+        let energy = kinetic_energy(plan, velocity, workspace, &mut Vec::new());
         let openings = loops.iter().map(|own| own.opening(plan, velocity, workspace).length());
         let widest = openings.zip(named).enumerate().reduce(|most, next| if next.1.0 > most.1.0 { next } else { most });
         let Some((worst, (opening, own))) = widest else { return Ok(None) };

@@ -317,13 +317,14 @@ impl Pipeline<'_> {
 
     /// The kinetic energy \[J\]; it and the Delassus matrix must be numbers, or no sign means anything. The refusal
     /// names the greatest of the velocities that were `given`.
-    fn energy_in_range(&self, given: &[f64], velocity: &[f64]) -> Result<f64> {
+    fn energy_in_range(&mut self, given: &[f64], velocity: &[f64]) -> Result<f64> {
         let too_large =
             |error: Error| error.hint("positions and velocities are too large for f64: are they in SI units?");
         for &entry in &self.assembly.workspace.delassus {
             finite(entry, || "an entry of the Delassus matrix".into()).map_err(too_large)?;
         }
-        let energy = kinetic_energy(&self.assembly.plan, velocity, &self.assembly.workspace);
+        let Assembly { plan, workspace, motions, .. } = &mut self.assembly;
+        let energy = kinetic_energy(plan, velocity, workspace, motions);
         finite(energy, || "the kinetic energy".into()).map_err(|error| {
             let named = self.robot.coordinates().zip(given).enumerate();
             let greatest = named.max_by(|(_, (_, a)), (_, (_, b))| a.abs().total_cmp(&b.abs()));

@@ -263,7 +263,7 @@ fn by_stiffness_of_moving(
     };
     let apart = |a: &[f64], b: &[f64]| {
         let gap: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
-        (kinetic_energy(plan, &gap, workspace).max(0.0) / energy).sqrt()
+        (kinetic_energy(plan, &gap, workspace, &mut Vec::new()).max(0.0) / energy).sqrt()
     };
     let frozen = after(&run(problem, PLAIN, TOLERANCE)?.impulse);
     let outcomes: Vec<Vec<f64>> = outcomes.iter().map(|outcome| after(&outcome.impulse)).collect();
