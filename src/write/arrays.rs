@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 /// The answers to many states. Lists per state have one entry for each; lists per outcome one for each outcome of each
 /// state, and state `k` has those from `offsets[k]` to `offsets[k + 1]`. Matrices are row by row.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Arrays {
     /// The contacts of a matrix's columns; read back, there are no more answers to come.
     #[serde(skip)]
@@ -103,23 +103,7 @@ impl Arrays {
     }
 
     fn of(contacts: Arc<[String]>) -> Self {
-        Self {
-            contacts,
-            verdict: Vec::new(),
-            all_proven: Vec::new(),
-            offsets: vec![0],
-            modes: Vec::new(),
-            impulse: Vec::new(),
-            velocity_after: Vec::new(),
-            margin: Vec::new(),
-            index: Vec::new(),
-            proven: Vec::new(),
-            family: Vec::new(),
-            error: Texts::default(),
-            notes: Texts::default(),
-            border: Texts::default(),
-            families: Texts::default(),
-        }
+        Self { contacts, offsets: vec![0], ..Self::default() }
     }
 
     /// Adds the answer to the next state; one whose contacts have no columns is refused.
