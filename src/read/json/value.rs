@@ -100,13 +100,18 @@ impl<'de> Visitor<'de> for AnyValue {
         }
         Ok(Value::List(entries))
     }
-    fn visit_map<A: MapAccess<'de>>(self, mut object: A) -> Result<Self::Value, A::Error> {
-        let mut fields = Vec::new();
-        while let Some((Key(key), value)) = object.next_entry()? {
-            fields.push((key, value));
-        }
-        Ok(Value::Object(fields))
+    fn visit_map<A: MapAccess<'de>>(self, object: A) -> Result<Self::Value, A::Error> {
+        entries(object).map(Value::Object)
     }
+}
+
+/// Keys and values in their order, no key left out that stands twice.
+fn entries<'de, V: Deserialize<'de>, A: MapAccess<'de>>(mut object: A) -> Result<Vec<(Cow<'de, str>, V)>, A::Error> {
+    let mut entries = Vec::new();
+    while let Some((Key(key), value)) = object.next_entry()? {
+        entries.push((key, value));
+    }
+    Ok(entries)
 }
 
 /// The fields of an object, with their values as they are written.
@@ -133,12 +138,8 @@ impl<'de> Visitor<'de> for RawFieldsVisitor {
     fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str("an object")
     }
-    fn visit_map<A: MapAccess<'de>>(self, mut object: A) -> Result<Self::Value, A::Error> {
-        let mut fields = Vec::new();
-        while let Some((Key(key), value)) = object.next_entry()? {
-            fields.push((key, value));
-        }
-        Ok(RawFields(fields))
+    fn visit_map<A: MapAccess<'de>>(self, object: A) -> Result<Self::Value, A::Error> {
+        entries(object).map(RawFields)
     }
 }
 
