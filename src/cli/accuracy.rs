@@ -2,7 +2,7 @@
 
 use super::diagnostic::note;
 use super::input::InputFile;
-use super::options::{BudgetOptions, ContactOptions, SceneOptions};
+use super::options::{BudgetOptions, ContactOptions, FrictionOption};
 use super::output::OutputOptions;
 use super::picture::PlotOptions;
 use super::progress::Stopwatch;
@@ -45,7 +45,7 @@ pub struct Args {
     #[arg(long)]
     no_proof: bool,
     #[command(flatten)]
-    scene: SceneOptions,
+    friction: FrictionOption,
     #[command(flatten)]
     contacts: ContactOptions,
     #[command(flatten)]
@@ -86,7 +86,7 @@ fn own(args: &Args, robot: &Path, state: &Path, budget: Budget) -> Result<Accura
     let robot = RobotOptions { robot: robot.to_owned(), ..RobotOptions::default() }.load()?;
     let input = InputFile::read(state, InputFile::LARGE)?;
     let document = only_document(&input)?;
-    let defaults = Defaults { place_lowest: args.contacts.place_lowest(&robot)?, ..args.scene.defaults() };
+    let defaults = Defaults { place_lowest: args.contacts.place_lowest(&robot)?, ..args.friction.defaults() };
     let state = State::from_json(document.text, &robot, &defaults);
     let state = state.map_err(|error| input.refuse(document.locate(error)))?;
     let options = Options {

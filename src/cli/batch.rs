@@ -3,8 +3,8 @@
 use super::diagnostic::{is_quiet, note, note_all, with_flags};
 use super::format::RecordFormat;
 use super::options::{
-    BudgetOptions, Choices, ContactOptions, CsvOptions, DetailOptions, LoopOptions, NextOption, SceneOptions, Seconds,
-    ThreadOptions, choice, pipeline_options, seconds,
+    BudgetOptions, Choices, CsvOptions, DetailOptions, NextOption, SceneOptions, Seconds, ThreadOptions, choice,
+    pipeline_options, seconds,
 };
 use super::origin::{Asked, Origin};
 use super::output::{NewFile, apart, spare, writable};
@@ -56,10 +56,6 @@ pub struct Args {
     foreign: Vec<String>,
     #[command(flatten)]
     scene: SceneOptions,
-    #[command(flatten)]
-    loops: LoopOptions,
-    #[command(flatten)]
-    contacts: ContactOptions,
     #[command(flatten)]
     recording: RecordingOptions,
     /// Answer each state as `forces` does: the contact forces and accelerations in sustained contact
@@ -239,7 +235,7 @@ impl Args {
     /// Refuses outputs that would replace an input or each other.
     fn check_files(&self) -> Result<(), Failure> {
         let output = self.output.as_deref();
-        let inputs = [Some(&self.robot.robot), Some(&self.states), self.loops.loops.as_ref()];
+        let inputs = [Some(&self.robot.robot), Some(&self.states), self.scene.loops.as_ref()];
         self.plot.claim(&inputs, output)?;
         let Some(summary) = self.summary.as_deref() else { return Ok(()) };
         spare(Some(summary), &inputs)?;
@@ -265,9 +261,15 @@ impl Args {
             options: Options {
                 aspect: if self.forces { Aspect::Forces } else { Aspect::Impact },
                 next: self.next.next,
-                ..pipeline_options(&self.contacts, feet, self.detail, &self.robot.reductions, self.budget.budget())
+                ..pipeline_options(
+                    &self.scene.contacts,
+                    feet,
+                    self.detail,
+                    &self.robot.reductions,
+                    self.budget.budget(),
+                )
             },
-            defaults: self.loops.defaults(&self.scene, &self.contacts, robot)?,
+            defaults: self.scene.defaults(robot)?,
             detail: self.detail.detail(),
             total: self.budget.of_many(self.budget_total),
             header,

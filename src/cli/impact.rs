@@ -1,9 +1,7 @@
 //! `heelstrike impact`: every outcome of one state, or of a few.
 
 use super::diagnostic::{note, note_all};
-use super::options::{
-    BudgetOptions, ContactOptions, DetailOptions, LoopOptions, NextOption, SceneOptions, pipeline_options,
-};
+use super::options::{BudgetOptions, DetailOptions, NextOption, SceneOptions, pipeline_options};
 use super::output::{Format, OutputOptions};
 use super::picture::{MirrorOptions, PlotOptions};
 use super::robot::RobotOptions;
@@ -42,10 +40,6 @@ pub(super) struct StateArgs {
     #[command(flatten)]
     scene: SceneOptions,
     #[command(flatten)]
-    loops: LoopOptions,
-    #[command(flatten)]
-    contacts: ContactOptions,
-    #[command(flatten)]
     detail: DetailOptions,
     #[command(flatten)]
     budget: BudgetOptions<false>,
@@ -65,21 +59,26 @@ impl StateArgs {
     /// Answers every state, also with what happens `next`.
     pub fn run(&self, aspect: Aspect, next: bool) -> Completion {
         self.output.check_ending()?;
-        let inputs = [Some(&self.robot.robot), Some(&self.state), self.loops.loops.as_ref()];
+        let inputs = [Some(&self.robot.robot), Some(&self.state), self.scene.loops.as_ref()];
         self.plot.claim(&inputs, self.output.path())?;
         let robot = self.robot.load()?;
         let feet = self.robot.feet(&robot)?;
         let by_input = if input::is_ndjson(&self.state) { Format::Json } else { Format::Text };
         let format = self.output.chosen().unwrap_or(by_input);
         let detail = self.detail.detail();
-        let mut options =
-            pipeline_options(&self.contacts, feet.clone(), self.detail, &self.robot.reductions, self.budget.budget());
+        let mut options = pipeline_options(
+            &self.scene.contacts,
+            feet.clone(),
+            self.detail,
+            &self.robot.reductions,
+            self.budget.budget(),
+        );
         if format == Format::Text && !detail.brief {
             // The text sums up why the other combinations fail even if it does not list them.
             options.explain_up_to = options.explain_up_to.max(SUMMED_UP);
         }
         (options.aspect, options.next) = (aspect, next);
-        let defaults = self.loops.defaults(&self.scene, &self.contacts, &robot)?;
+        let defaults = self.scene.defaults(&robot)?;
         let plotted = self.plot.path().is_some();
         let several = Reason::Inconsistent("a picture is drawn of one state, and several are given".into());
         let several = Failure::Usage(Error::new(several).at("--plot").hint("give the states one by one"));

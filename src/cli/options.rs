@@ -17,44 +17,42 @@ use std::path::PathBuf;
 use std::thread::available_parallelism;
 use std::time::Duration;
 
-/// Values for what a state may omit.
+/// Friction for inputs that have none.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Scene")]
-pub(super) struct SceneOptions {
+pub(super) struct FrictionOption {
     /// Friction where the input gives none: a number from 0 on, or "infinite"
     #[arg(long, value_name = "MU", value_parser = str::parse::<Friction>, allow_hyphen_values = true)]
     pub friction: Option<Friction>,
 }
 
-impl SceneOptions {
+impl FrictionOption {
     pub fn defaults(&self) -> Defaults {
         Defaults { friction: self.friction, ..Defaults::default() }
     }
 }
 
-/// Closed loops of the robot.
+/// What states may leave open: friction, closed loops of the robot, contacts.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Scene")]
-pub(super) struct LoopOptions {
+pub(super) struct SceneOptions {
+    #[command(flatten)]
+    friction: FrictionOption,
     /// Loops of the robot, which its URDF cuts open: a JSON list like "loops" in a state, for states without their own
     #[arg(long, value_name = "LOOPS.json")]
     pub loops: Option<PathBuf>,
+    #[command(flatten)]
+    pub contacts: ContactOptions,
 }
 
-impl LoopOptions {
-    /// What states of `robot` take that do not say it, these loops included.
-    pub fn defaults(
-        &self,
-        scene: &SceneOptions,
-        contacts: &ContactOptions,
-        robot: &Robot,
-    ) -> Result<Defaults, Failure> {
-        let (loops, place_lowest) = (self.load(robot)?, contacts.place_lowest(robot)?);
-        Ok(Defaults { loops, place_lowest, ..scene.defaults() })
+impl SceneOptions {
+    /// What states of `robot` take that do not say it.
+    pub fn defaults(&self, robot: &Robot) -> Result<Defaults, Failure> {
+        let (loops, place_lowest) = (self.read_loops(robot)?, self.contacts.place_lowest(robot)?);
+        Ok(Defaults { loops, place_lowest, ..self.friction.defaults() })
     }
 
-    /// Reads the loops of `robot`.
-    fn load(&self, robot: &Robot) -> Result<Vec<NamedLoop>, Failure> {
+    fn read_loops(&self, robot: &Robot) -> Result<Vec<NamedLoop>, Failure> {
         let Some(path) = &self.loops else { return Ok(Vec::new()) };
         let input = InputFile::read(path, InputFile::SMALL)?;
         input.text().and_then(|text| loops_from_json(text, robot)).map_err(|error| input.refuse(error))
@@ -193,14 +191,18 @@ impl ReductionOptions {
     }
 }
 
-/// The values that an option may have: name, help and meaning of each.
+/// The values that an option may have: name, help and meaning of each; behind a name and `|` another one for it.
 pub(super) type Choices<T> = &'static [(&'static str, &'static str, T)];
 
 /// Reads one of these names.
 pub(super) fn choice<T: Copy + Send + Sync + 'static>(choices: Choices<T>) -> impl TypedValueParser<Value = T> {
-    let values = choices.iter().map(|(name, help, _)| PossibleValue::new(name).help(help));
+    let values = choices.iter().map(|(names, help, _)| {
+        let mut names = names.split('|');
+        PossibleValue::new(names.next().unwrap_or_default()).aliases(names).help(help)
+    });
     PossibleValuesParser::new(values).try_map(|given| {
-        choices.iter().find(|(name, ..)| *name == given).map(|(.., value)| *value).ok_or("expected one of its values")
+        let known = choices.iter().find(|(names, ..)| names.split('|').any(|name| name == given));
+        known.map(|(.., value)| *value).ok_or("expected one of its values")
     })
 }
 

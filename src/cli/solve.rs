@@ -1,7 +1,7 @@
 //! `heelstrike solve`: every outcome of a contact problem that is given as matrices.
 
 use super::diagnostic::note_all;
-use super::options::{BudgetOptions, DetailOptions, ReductionOptions, SceneOptions};
+use super::options::{BudgetOptions, DetailOptions, FrictionOption, ReductionOptions};
 use super::output::{Format, OutputOptions, spare};
 use super::stream::{SUMMED_UP, answer_all, append};
 use super::{Completion, input};
@@ -22,7 +22,7 @@ pub struct Args {
     #[arg(value_name = "PROBLEM.json")]
     problem: PathBuf,
     #[command(flatten)]
-    scene: SceneOptions,
+    friction: FrictionOption,
     #[command(flatten)]
     reductions: ReductionOptions,
     #[command(flatten)]
@@ -39,7 +39,7 @@ pub(super) fn run(args: &Args) -> Completion {
     let to_a_file_or_lines = args.output.path().is_some() || input::is_ndjson(&args.problem);
     let otherwise = if to_a_file_or_lines { Format::Json } else { Format::Text };
     let format = args.output.chosen().unwrap_or(otherwise);
-    let (defaults, detail, mut scratch) = (args.scene.defaults(), args.detail.detail(), Scratch::default());
+    let (defaults, detail, mut scratch) = (args.friction.defaults(), args.detail.detail(), Scratch::default());
     let mut own_friction = 0;
     let answered = answer_all("problem", &args.problem, format, &args.output, Ok(()), |problem, palette, out| {
         let problem = Problem::from_json(problem, &defaults)?;

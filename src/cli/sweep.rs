@@ -4,8 +4,7 @@ use super::diagnostic::{note_all, report};
 use super::format::RecordFormat;
 use super::input::InputFile;
 use super::options::{
-    BudgetOptions, ContactOptions, CsvOptions, DetailOptions, LoopOptions, SceneOptions, ThreadOptions,
-    pipeline_options,
+    BudgetOptions, Choices, CsvOptions, DetailOptions, SceneOptions, ThreadOptions, choice, pipeline_options,
 };
 use super::output::{Output, writable};
 use super::picture::{MirrorOptions, PlotOptions};
@@ -21,7 +20,6 @@ use crate::write::ColumnBlock;
 use crate::write::notes;
 use crate::write::sweep::{Regions, SampleRecord, columns};
 use crate::{Error, Reason};
-use clap::ValueEnum;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -44,10 +42,6 @@ pub struct Args {
     #[command(flatten)]
     scene: SceneOptions,
     #[command(flatten)]
-    loops: LoopOptions,
-    #[command(flatten)]
-    contacts: ContactOptions,
-    #[command(flatten)]
     detail: DetailOptions,
     /// Write to this file, which is replaced
     #[arg(short, long, value_name = "FILE", help_heading = "Output")]
@@ -57,7 +51,7 @@ pub struct Args {
     #[command(flatten)]
     mirror: MirrorOptions,
     /// Text lists regions, JSON regions and samples, tables samples [default: by the output's ending, else text]
-    #[arg(long, value_enum, help_heading = "Output")]
+    #[arg(long, value_parser = choice(FORMATS), help_heading = "Output")]
     format: Option<SweepFormat>,
     #[command(flatten)]
     csv: CsvOptions,
@@ -67,74 +61,45 @@ pub struct Args {
     threads: ThreadOptions,
 }
 
-/// The form of what is written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum SweepFormat {
-    /// Regions and borders for people
-    Text,
-    /// One object: regions, borders, samples
-    #[value(alias = "ndjson")]
-    Json,
-    /// A table of samples, one row per outcome
-    Csv,
-    /// The same with tabs between columns
-    Tsv,
-    /// The same as a Parquet file
-    Parquet,
-    /// The same as an Arrow IPC file
-    Arrow,
-    /// The same as an Arrow IPC stream
-    Arrows,
-}
+/// The form of what is written: a format of batches, or `None` for text.
+type SweepFormat = Option<RecordFormat>;
 
-impl SweepFormat {
-    /// The form chosen by option or by the output's ending; refuses an ending that means something else.
-    fn of(args: &Args) -> Result<Self, Failure> {
-        let ending = args.output.as_deref().and_then(Path::extension).and_then(|ending| ending.to_str());
-        let by_ending = match ending.map(str::to_ascii_lowercase).as_deref() {
-            Some("json" | "ndjson" | "jsonl") => Some(Self::Json),
-            None | Some("" | "txt") => Some(Self::Text),
-            Some(_) => args.output.as_deref().and_then(RecordFormat::table).map(|table| match table {
-                RecordFormat::Ndjson => Self::Json,
-                RecordFormat::Csv => Self::Csv,
-                RecordFormat::Tsv => Self::Tsv,
-                RecordFormat::Parquet => Self::Parquet,
-                RecordFormat::Arrow => Self::Arrow,
-                RecordFormat::Arrows => Self::Arrows,
-            }),
-        };
-        let format = args.format.or(by_ending).ok_or_else(|| {
-            let reason =
-                Reason::Unsupported("a study is written as .json, .csv, .tsv, .parquet, .arrow or .txt".into());
-            let hint = "name a file with one of these endings, or say --format; pictures and pages go to --plot";
-            Failure::Usage(Error::new(reason).at("--output").hint(hint))
-        })?;
-        RecordFormat::of(args.output.as_deref(), format.table().or(Some(RecordFormat::Ndjson)), "--format")?;
-        Ok(format)
-    }
+const FORMATS: Choices<SweepFormat> = &[
+    ("text", "Regions and borders for people", None),
+    ("json|ndjson", "One object: regions, borders, samples", Some(RecordFormat::Ndjson)),
+    ("csv", "A table of samples, one row per outcome", Some(RecordFormat::Csv)),
+    ("tsv", "The same with tabs between columns", Some(RecordFormat::Tsv)),
+    ("parquet", "The same as a Parquet file", Some(RecordFormat::Parquet)),
+    ("arrow", "The same as an Arrow IPC file", Some(RecordFormat::Arrow)),
+    ("arrows", "The same as an Arrow IPC stream", Some(RecordFormat::Arrows)),
+];
 
-    /// The table that is written, if it is one.
-    fn table(self) -> Option<RecordFormat> {
-        match self {
-            Self::Text | Self::Json => None,
-            Self::Csv => Some(RecordFormat::Csv),
-            Self::Tsv => Some(RecordFormat::Tsv),
-            Self::Parquet => Some(RecordFormat::Parquet),
-            Self::Arrow => Some(RecordFormat::Arrow),
-            Self::Arrows => Some(RecordFormat::Arrows),
-        }
-    }
+/// The form chosen by option or by the output's ending; refuses an ending that means something else.
+fn format(args: &Args) -> Result<SweepFormat, Failure> {
+    let ending = args.output.as_deref().and_then(Path::extension).and_then(|ending| ending.to_str());
+    let by_ending = match ending.map(str::to_ascii_lowercase).as_deref() {
+        Some("json" | "ndjson" | "jsonl") => Some(Some(RecordFormat::Ndjson)),
+        None | Some("" | "txt") => Some(None),
+        Some(_) => args.output.as_deref().and_then(RecordFormat::table).map(Some),
+    };
+    let format = args.format.or(by_ending).ok_or_else(|| {
+        let reason = Reason::Unsupported("a study is written as .json, .csv, .tsv, .parquet, .arrow or .txt".into());
+        let hint = "name a file with one of these endings, or say --format; pictures and pages go to --plot";
+        Failure::Usage(Error::new(reason).at("--output").hint(hint))
+    })?;
+    RecordFormat::of(args.output.as_deref(), format.or(Some(RecordFormat::Ndjson)), "--format")?;
+    Ok(format)
 }
 
 /// How many samples are answered before they are written.
 const TOGETHER: usize = 4096;
 
 pub(super) fn run(args: &Args) -> Completion {
-    let inputs = [Some(&args.robot.robot), Some(&args.study), args.loops.loops.as_ref()];
+    let inputs = [Some(&args.robot.robot), Some(&args.study), args.scene.loops.as_ref()];
     args.plot.claim(&inputs, args.output.as_deref())?;
     writable(args.output.as_deref())?;
-    let format = SweepFormat::of(args)?;
-    args.csv.check(matches!(format, SweepFormat::Csv | SweepFormat::Tsv))?;
+    let format = format(args)?;
+    args.csv.check(matches!(format, Some(RecordFormat::Csv | RecordFormat::Tsv)))?;
     let (description, reduction, robot) = args.robot.described()?;
     caution(&robot);
     let feet = args.robot.feet(&robot)?;
@@ -147,12 +112,12 @@ pub(super) fn run(args: &Args) -> Completion {
         description: &description,
         reduction: &reduction,
         robot: &robot,
-        options: pipeline_options(&args.contacts, feet.clone(), args.detail, &args.robot.reductions, None),
-        defaults: args.loops.defaults(&args.scene, &args.contacts, &robot)?,
+        options: pipeline_options(&args.scene.contacts, feet.clone(), args.detail, &args.robot.reductions, None),
+        defaults: args.scene.defaults(&robot)?,
     };
     note_all(notes::own_friction(model.has_own_friction().map_err(refuse)?.into(), "study"));
     note_all(notes::unused(&study));
-    let pieces = Findings::work(&model) + if format == SweepFormat::Text { 0 } else { SampleRecord::count(&model) };
+    let pieces = Findings::work(&model) + if format.is_none() { 0 } else { SampleRecord::count(&model) };
     let progress = progress::of(pieces);
     let done = || progress.inc(1);
     let workers = Workers { threads: args.threads.count(), done: &done };
@@ -173,11 +138,11 @@ pub(super) fn run(args: &Args) -> Completion {
     let mut output = Output::open(args.output.as_deref())?;
     let writer = &mut output.writer;
     let refused = match format {
-        SweepFormat::Text => {
+        None => {
             writer.write_all(regions.text(&robot.name, &output.palette).as_bytes())?;
             0
         }
-        SweepFormat::Json => {
+        Some(RecordFormat::Ndjson) => {
             let mut head = Vec::new();
             regions.append_head(&mut head);
             writer.write_all(&head)?;
@@ -189,8 +154,7 @@ pub(super) fn run(args: &Args) -> Completion {
             writer.write_all(b"]}\n")?;
             refused
         }
-        _ => {
-            let table = format.table().unwrap_or(RecordFormat::Csv);
+        Some(table) => {
             let contacts = regimes.iter().flat_map(|(regime, ..)| regime.contacts()).map(String::as_str);
             let columns = args.csv.columns(columns(&model, &feet, contacts)).written_as(table.form());
             let columns = if args.detail.brief { columns.in_brief() } else { columns };
