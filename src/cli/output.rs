@@ -347,7 +347,7 @@ impl Output {
     }
 }
 
-/// Bold and faint; a test keeps the sequences equal to anstyle's.
+/// Bold and faint.
 const COLORS: Palette = Palette { strong: "\x1b[1m", faint: "\x1b[2m", plain: "\x1b[0m" };
 
 /// The error, with the file's name.
@@ -358,18 +358,4 @@ pub(super) fn named(path: &Path, error: io::Error) -> io::Error {
         _ => format!("{path}: {error}"),
     };
     io::Error::new(error.kind(), reason)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use anstyle::Style;
-
-    #[test]
-    fn colors_are_those_of_anstyle() {
-        let strong = Style::new().bold();
-        assert_eq!(COLORS.strong, strong.render().to_string());
-        assert_eq!(COLORS.faint, Style::new().dimmed().render().to_string());
-        assert_eq!(COLORS.plain, strong.render_reset().to_string());
-    }
 }

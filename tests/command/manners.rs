@@ -133,6 +133,10 @@ fn colors_come_only_where_they_are_wanted() {
             assert_eq!(escapes, colored, "{arguments:?} {variables:?}");
         }
     }
+    let text = finished(command().args(["impact", BLOCK, "examples/block.json"]).env("CLICOLOR_FORCE", "1")).stdout;
+    for styled in ["\x1b[1mExactly one outcome.\x1b[0m\n", "  \x1b[2mt: along the ground, forward; "] {
+        assert!(text.contains(styled), "{text}");
+    }
 }
 
 #[cfg(unix)]
