@@ -9,74 +9,32 @@
 
 use super::VERSION;
 use super::output::{beside, named};
+use crc32fast::Hasher;
 use serde::{Deserialize, Serialize};
-use std::fmt::{self, Debug, Write as _};
+use std::fmt::Debug;
 use std::fs::File;
 use std::io::{self, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// The FNV-1a hash of 64 bits, by words of eight bytes: the same however the bytes arrive, on every machine.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) struct Digest {
-    hash: u64,
-    /// The bytes that are not a whole word yet, and how many they are.
-    word: u64,
-    bytes: u32,
-}
-
-impl Digest {
-    const EMPTY: Self = Self { hash: 0xcbf2_9ce4_8422_2325, word: 0, bytes: 0 };
-
-    /// Of all that a value holds; numbers enter with every digit.
-    pub fn of(value: &impl Debug) -> Self {
-        let mut digest = Self::EMPTY;
-        // Nothing fails here.
-        let _ = write!(digest, "{value:?}");
-        digest
-    }
-
-    fn add(&mut self, bytes: &[u8]) {
-        let (first, rest) = bytes.split_at(bytes.len().min((8 - self.bytes as usize) % 8));
-        let (words, last) = rest.as_chunks();
-        first.iter().for_each(|&byte| self.add_byte(byte));
-        words.iter().for_each(|&word| self.add_word(u64::from_le_bytes(word)));
-        last.iter().for_each(|&byte| self.add_byte(byte));
-    }
-
-    fn add_byte(&mut self, byte: u8) {
-        self.word |= u64::from(byte) << (8 * self.bytes);
-        self.bytes += 1;
-        if self.bytes == 8 {
-            self.add_word(self.word);
-            (self.word, self.bytes) = (0, 0);
-        }
-    }
-
-    fn add_word(&mut self, word: u64) {
-        // Turned, so that the highest byte of a word reaches the lowest of the hash.
-        self.hash = (self.hash ^ word).wrapping_mul(0x0100_0000_01b3).rotate_left(29);
-    }
-}
-
-impl fmt::Write for Digest {
-    fn write_str(&mut self, text: &str) -> fmt::Result {
-        self.add(text.as_bytes());
-        Ok(())
-    }
+/// The CRC-32 of all that a value holds; numbers enter with every digit.
+fn digest(value: &impl Debug) -> u32 {
+    let mut hasher = Hasher::new();
+    hasher.update(format!("{value:?}").as_bytes());
+    hasher.finalize()
 }
 
 /// The robot and the options of a run, as far as answers depend on them.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Asked {
     version: String,
-    robot: Digest,
-    options: Digest,
+    robot: u32,
+    options: u32,
 }
 
 impl Asked {
     pub fn new(robot: &impl Debug, options: &impl Debug) -> Self {
-        Self { version: VERSION.to_owned(), robot: Digest::of(robot), options: Digest::of(options) }
+        Self { version: VERSION.to_owned(), robot: digest(robot), options: digest(options) }
     }
 
     /// What an earlier run had otherwise.
@@ -90,18 +48,11 @@ impl Asked {
     }
 }
 
-/// The beginning of an input.
+/// The beginning of an input: how many bytes, and their CRC-32.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 struct Beginning {
     bytes: u64,
-    digest: Digest,
-}
-
-impl Beginning {
-    fn add(&mut self, bytes: &[u8]) {
-        self.bytes += bytes.len() as u64;
-        self.digest.add(bytes);
-    }
+    digest: u32,
 }
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -123,7 +74,8 @@ pub(super) enum Again {
 }
 
 struct Reading {
-    read: Beginning,
+    bytes: u64,
+    hasher: Hasher,
     /// What an earlier run had read, until as much is read again.
     earlier: Option<Beginning>,
     again: Again,
@@ -133,18 +85,29 @@ struct Reading {
 impl Reading {
     fn add(&mut self, mut bytes: &[u8]) {
         if let Some(earlier) = self.earlier
-            && let Ok(left) = usize::try_from(earlier.bytes - self.read.bytes)
+            && let Ok(left) = usize::try_from(earlier.bytes - self.bytes)
             && left <= bytes.len()
         {
-            self.read.add(&bytes[..left]);
+            self.hash(&bytes[..left]);
             bytes = &bytes[left..];
             self.earlier = None;
-            self.again = if self.read == earlier { Again::Same } else { Again::Other };
+            self.again = if self.beginning() == earlier { Again::Same } else { Again::Other };
         }
-        self.read.add(bytes);
+        self.hash(bytes);
+        let read = self.beginning();
         if let Some((_, record)) = &mut self.kept {
-            record.input = self.read;
+            record.input = read;
         }
+    }
+
+    fn hash(&mut self, bytes: &[u8]) {
+        self.bytes += bytes.len() as u64;
+        self.hasher.update(bytes);
+    }
+
+    /// What was read so far.
+    fn beginning(&self) -> Beginning {
+        Beginning { bytes: self.bytes, digest: self.hasher.clone().finalize() }
     }
 
     /// Writes the record; a file that it does not fit into is left as one without a record.
@@ -172,10 +135,10 @@ impl Origin {
         let path = path.filter(|path| *path != Path::new("-")).map(|path| beside(path, ".run"));
         let bytes = path.as_ref().filter(|_| resume).and_then(|path| std::fs::read(path).ok()).unwrap_or_default();
         let earlier = serde_json::Deserializer::from_slice(&bytes).into_iter::<Record>().next().and_then(Result::ok);
-        let read = Beginning { bytes: 0, digest: Digest::EMPTY };
         let known = earlier.as_ref().map(|record| record.input);
         let again = if known.is_some() { Again::Unknown } else { Again::Same };
-        Self { path, earlier, reading: Arc::new(Mutex::new(Reading { read, earlier: known, again, kept: None })) }
+        let reading = Reading { bytes: 0, hasher: Hasher::new(), earlier: known, again, kept: None };
+        Self { path, earlier, reading: Arc::new(Mutex::new(reading)) }
     }
 
     fn reading(&self) -> MutexGuard<'_, Reading> {
@@ -211,7 +174,7 @@ impl Origin {
         let Some(path) = &self.path else { return Ok(()) };
         let file = File::create(path).map_err(|error| named(path, error))?;
         let mut reading = self.reading();
-        let input = reading.read;
+        let input = reading.beginning();
         reading.kept = Some((file, Record { asked, part, input }));
         reading.keep();
         Ok(())
