@@ -175,7 +175,7 @@ fn rows_that_do_not_fit_are_refused_with_their_place() {
     let rows: [&[u8]; 19] = [
         b"a,x,1,,,,",
         b"a,,1,,,,",
-        b"\"a,b\",NaN,1,,,,",
+        b"\"\xc3\xa9,\"\"b\",NaN,1,,,,",
         b"a,1e999,1,,,,",
         b"a,\"1,5\",1,,,,",
         b"a,\xff,1,,,,",

@@ -213,22 +213,4 @@ mod tests {
             [Misplaced, Open, Misplaced, Misplaced]
         );
     }
-
-    #[test]
-    fn a_quoting_fault_is_found_with_its_field() {
-        let fault = |bytes, form| Record { bytes, form }.quoting_fault();
-        assert_eq!(fault(b"a,\"b\"\"\",\"c\" \n", Form::Csv), None);
-        assert_eq!(fault(b"\"a,b\",\"c\"d,\"e", Form::Csv), Some((1, "text follows a closing quote")));
-        assert_eq!(fault(b"\"a,b\"\t\"c\"d\t\"e", Form::Tsv), Some((1, "text follows a closing quote")));
-        assert_eq!(fault(b"a,\"b,c\n", Form::Csv), Some((1, "a quote is not closed")));
-    }
-
-    #[test]
-    fn fields_are_found_behind_wide_characters() {
-        let place = |bytes, index| Record { bytes, form: Form::Csv }.place_of(index, "");
-        assert_eq!(place(b"a,bc,d", 2), (0, 6));
-        assert_eq!(place(b"\"a,\"\"b\",c", 1), (0, 9));
-        assert_eq!(place("\u{e9}\u{e9},c".as_bytes(), 1), (0, 4));
-        assert_eq!(place(b"\"a\nbc\",d", 1), (1, 5));
-    }
 }
