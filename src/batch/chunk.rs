@@ -339,21 +339,6 @@ mod tests {
     }
 
     #[test]
-    fn what_is_at_hand_is_not_held_back() {
-        let mut chunks = Chunks::of_lines(Parts(vec![b"a\nb\nc", b"\n"]));
-        assert_eq!(chunks.record().unwrap().unwrap().records().collect::<Vec<_>>(), [(1, &b"a\n"[..])]);
-        assert!(!chunks.keeps_waiting());
-        assert_eq!(chunks.next().unwrap().unwrap().records().collect::<Vec<_>>(), [(2, &b"b\n"[..])]);
-        assert!(chunks.keeps_waiting());
-    }
-
-    #[test]
-    fn a_record_of_a_table_may_have_line_breaks() {
-        let table = chunks(Chunks::of_table(Parts(vec![b"a\n\"b", b"\nc\"\n", b"d\n\"e\n"]), Form::Csv));
-        assert_eq!(table, [r"1:a\n", r#"2:\"b\nc\"\n"#, r#"4:d\n 5:\"e\n"#]);
-    }
-
-    #[test]
     fn a_line_whose_quote_stays_open_swallows_no_other() {
         for (text, expected) in [
             // Never closed, and closed before text.

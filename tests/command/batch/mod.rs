@@ -134,15 +134,11 @@ fn line_ends_may_be_of_either_kind_or_missing() {
 }
 
 #[test]
-fn a_long_line_is_read_and_its_refusal_is_short() {
+fn a_long_line_is_read() {
     let blanks = " ".repeat(1 << 20);
     let run =
         batch(&["-", "--friction", "1"], strike(1, 0.0).replace(", ", &blanks).replace(':', &format!(":{blanks}")));
     assert_eq!((run.status, &run.lines()[0]["verdict"]), (0, &json!("unique")));
-    let name = "x".repeat(1 << 20);
-    let run = batch(&["-"], format!("{{\"{name}\": 1}}\n{}", strike(2, 0.0)));
-    assert_eq!((run.status, run.lines().len()), (1, 2));
-    assert!(run.stderr.len() < 5000, "{} bytes", run.stderr.len());
 }
 
 #[test]

@@ -201,10 +201,3 @@ fn a_column_that_resembles_a_missing_one_is_refused() {
     let absent = batch(&[&arguments[..], &["--foreign", "nobody"]].concat(), table(given)).refusal(1);
     assert!(absent.contains("column \"nobody\", given as foreign, is missing"), "{absent}");
 }
-
-#[test]
-fn a_result_is_not_read_as_states() {
-    let results = batch(&["-", "--friction", "1", "--output-format", "csv"], strike(1, 0.0)).stdout;
-    let stderr = batch(&["-", "--input-format", "csv", "--friction", "1"], results).refusal(1);
-    assert!(stderr.contains("hint: results are not read as states; give --foreign v_after_base_x"), "{stderr}");
-}
