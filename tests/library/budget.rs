@@ -2,13 +2,12 @@
 
 use crate::support::impact::{robot, try_impact};
 use crate::support::nearly::nearly_dependent;
+use crate::sweep::studies::with;
 use heelstrike::budget::{BudgetSpent, SharedBudget};
-use heelstrike::description::Description;
 use heelstrike::impact::{Analysis, AnalysisOptions, OpenCombinations, Scratch};
 use heelstrike::pipeline::Options;
 use heelstrike::read::{Problem, Study};
-use heelstrike::robot::Reduction;
-use heelstrike::sweep::{Findings, RobotStudy, Workers};
+use heelstrike::sweep::{Findings, Workers};
 use heelstrike::{Budget, Defaults, Reason, Robot, Verdict};
 use serde_json::json;
 use std::cell::Cell;
@@ -81,40 +80,27 @@ fn a_box_beyond_the_budget_is_unknown() {
 
 #[test]
 fn a_study_beyond_the_budget_is_refused() {
-    let description = Description::from_urdf(include_str!("../../urdf/minimalistic.urdf")).expect("a description");
-    let robot = Robot::reduce(&description, &Reduction::default()).expect("a robot");
     let study = |parameters: serde_json::Value| {
         let position = json!({"base": {"pitch": "-alpha"}, "joints": {"hip": "-2*alpha"}});
         let velocity = json!({"base": {"pitch": -1.0}});
         let state = json!({"position": position, "velocity": velocity, "stance": "left_leg", "friction": "mu"});
-        json!({"parameters": parameters, "constants": {"one": 1}, "state": state}).to_string()
+        json!({"parameters": parameters, "constants": {"one": 1}, "state": state})
     };
     for (parameters, place) in [
         (json!({"alpha": {"from": 0, "to": 1e17, "steps": 300}, "mu": {"from": 0, "to": 1, "steps": 2}}), "alpha"),
         (json!({"alpha": {"from": 0.1, "to": 1, "steps": 5}, "mu": {"from": 0, "to": 1, "steps": 90}}), "mu"),
     ] {
-        let text = study(parameters);
-        let study = Study::from_json(&text).expect("a study");
-        let (reduction, options, defaults) = (Reduction::default(), Options::default(), Defaults::default());
-        let model = RobotStudy {
-            study: &study,
-            description: &description,
-            reduction: &reduction,
-            robot: &robot,
-            options,
-            defaults,
-        };
-        let shared = SharedBudget::new(looks(4));
-        let spent = shared.within(|| Findings::of(&model, Workers { threads: 2, done: &|| () })).expect_err("too long");
-        assert_eq!(spent, BudgetSpent(Duration::from_secs(4)));
-        let refused = study.beyond(spent);
-        assert_eq!(
-            (refused.reason(), refused.place()),
-            (&Reason::BeyondBudget, Some(&*format!("parameters.{place}.steps")))
-        );
-        assert!(
-            refused.location().is_some() && refused.remedy().is_some_and(|remedy| remedy.contains("`budget: 40.0`"))
-        );
+        with(include_str!("../../urdf/minimalistic.urdf"), &study(parameters), 0, |model| {
+            let shared = SharedBudget::new(looks(4));
+            let workers = Workers { threads: 2, done: &|| () };
+            let spent = shared.within(|| Findings::of(model, workers)).expect_err("too long");
+            assert_eq!(spent, BudgetSpent(Duration::from_secs(4)));
+            let refused = model.study.beyond(spent);
+            let place = format!("parameters.{place}.steps");
+            assert_eq!((refused.reason(), refused.place()), (&Reason::BeyondBudget, Some(&*place)));
+            assert!(refused.location().is_some());
+            assert!(refused.remedy().is_some_and(|remedy| remedy.contains("`budget: 40.0`")));
+        });
     }
 }
 
