@@ -3,7 +3,6 @@
 use crate::constraints::{assert_near, flat, impact, matrices, try_impact};
 use crate::support::impact::{modes, outcomes, robot, velocities_after};
 use crate::support::mechanism::{Kind, Mechanism, point};
-use crate::support::scaled::matrix;
 use heelstrike::impact::Mode;
 use heelstrike::pipeline::Impact;
 use nalgebra::{DMatrix, DVector};
@@ -77,20 +76,6 @@ proptest! {
             prop_assert!(error < 100.0 * ROUNDINGS * f64::EPSILON, "{error:e}");
         }
     }
-}
-
-/// The same robot with all joints free gives M_all, which T reduces.
-#[test]
-fn mimic_joint_equals_tied_free_matrices() {
-    let tied = mechanism();
-    let mut free = tied.clone();
-    free.links.iter_mut().for_each(|link| link.follows = None);
-    let (all, map) = tied.tied(&Q);
-    let own = strike(&free, &state(&free, &all, &[0.0; 9]));
-    let found = strike(&tied, &state(&tied, &Q, &[0.0; 6]));
-    let (own, found) = (matrices(&own), matrices(&found));
-    assert_near(&found.mass_matrix, &(map.transpose() * matrix(&own.mass_matrix) * &map), ROUNDINGS);
-    assert_near(&found.contact_jacobian, &(matrix(&own.contact_jacobian) * &map), ROUNDINGS);
 }
 
 /// A rod of mass m and length l on a floating hub of mass m, and a second rod on its end that follows with multiplier

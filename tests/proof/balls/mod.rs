@@ -29,7 +29,6 @@ use crate::support::random::Random;
 use census::{Finding, census, compare};
 use heelstrike::impact::{Mode, Verdict};
 use heelstrike::pipeline::{Impact, Options, Pipeline};
-use heelstrike::state::{Defaults, State};
 use oracle::Index;
 use std::time::Instant;
 
@@ -110,18 +109,4 @@ fn a_mistake_is_found() {
         }
     }
     assert!(seen.iter().all(|&count| count > 200), "{seen:?}");
-}
-
-#[test]
-fn states_are_written_as_they_are() {
-    for model in &states::models() {
-        let mut random = Random::new(3);
-        for _ in 0..20 {
-            let state = model.random(&mut random);
-            let text = state.to_json(&model.robot);
-            let read = State::from_json(&text, &model.robot, &Defaults::default());
-            let read = read.unwrap_or_else(|error| panic!("{error}\n{text}"));
-            assert_eq!(oracle::answer(&model.robot, &read, &[]), oracle::answer(&model.robot, &state, &[]), "{text}");
-        }
-    }
 }

@@ -3,9 +3,9 @@
 use super::case::Case;
 use super::cells::{cells, impulse_range};
 use super::enumeration::{Enumeration, Friction, Problem, enumerate};
-use super::tree::{Body, Motion, Motions, Tree};
+use super::tree::{Motion, Tree};
 use crate::support::random::Random;
-use crate::support::rational::{Matrix, cramer, delassus, dot, ratio, times, to_f64};
+use crate::support::rational::{Matrix, cramer, dot, ratio, times, to_f64};
 use crate::support::scaled::near;
 use dashu_int::IBig;
 use dashu_ratio::RBig;
@@ -63,27 +63,6 @@ fn a_finite_cone_has_its_own_scale() {
     assert!((stick.margin + 0.5 / (2.0 * (1.0f64 / 16.0 + 1.0).sqrt())).abs() < 1e-15);
     let modes: Vec<_> = all.outcomes().map(|o| o.modes.clone()).collect();
     assert_eq!(modes, [[Mode::SlidePlus]]);
-}
-
-/// The paper's block as a tree: CoG at (-1, 1) from the contact, m = j = 1.
-#[test]
-fn the_block_as_a_tree_has_its_delassus_matrix() {
-    let body = Body {
-        parent: None,
-        motion: Motion::Fixed,
-        axis_length: 1,
-        origin: [RBig::ZERO, RBig::ZERO],
-        mass: RBig::ONE,
-        com: [ratio(-1, 1), ratio(1, 1)],
-        moment: RBig::ONE,
-    };
-    let tree = Tree { bodies: vec![body], link_order: vec![0], joint_order: vec![] };
-    let still = vec![RBig::ZERO; 3];
-    let motions = Motions { cos: vec![RBig::ONE; 3], sin: still.clone(), displacement: still.clone(), velocity: still };
-    let placed = tree.place(&motions);
-    let jacobian: Matrix = placed[0].bottom_jacobian(&[RBig::ZERO, RBig::ZERO], &RBig::ZERO).to_vec();
-    let [_, delassus] = delassus(&tree.mass_matrix(&placed), &jacobian).expect("regular");
-    assert_eq!(delassus, matrix(&[&[2, 1], &[1, 2]]));
 }
 
 /// Every column of a point's Jacobian is its central difference; the angles are turned by 2 atan(2^-20), the error of
