@@ -2,7 +2,7 @@
 
 use super::table::number;
 use crate::error::visible;
-use crate::impact::OpenCombinations;
+use crate::impact::{Border, OpenCombinations};
 use crate::pipeline::Aspect;
 use crate::{Mode, Outcome, Verdict};
 use serde::Serialize;
@@ -34,6 +34,12 @@ pub(crate) fn modes(names: impl IntoIterator<Item: AsRef<str>>, modes: &[Mode]) 
     let clauses =
         names.into_iter().zip(modes).map(|(name, mode)| format!("{} {}", visible(name.as_ref()), verb(*mode)));
     clauses.collect::<Vec<_>>().join(", ")
+}
+
+/// What is zero on a border: `the normal impulse of left_foot reaches zero`.
+pub(crate) fn at_zero(border: &Border) -> String {
+    let zeros = border.at_zero.iter().map(|zero| zero.inequality.reached_by(&visible(&zero.contact)));
+    zeros.collect::<Vec<_>>().join(", ")
 }
 
 const NUMBERS: [&str; 10] = ["No", "One", "Two", "Three", "Four", "Five", "Six", "Seven", "Eight", "Nine"];

@@ -209,3 +209,10 @@ fn what_rounding_left_of_zero_is_written_as_such() {
         assert!(tiny.is_empty(), "{arguments:?}: {tiny:?}");
     }
 }
+
+#[test]
+fn a_border_at_zero_has_no_digits_of_rounding() {
+    let text = heelstrike(&["sweep", "urdf/block.urdf", "examples/paper/figure_9.json"]).text();
+    assert!(text.contains(" .. ~0 ") && text.contains("  at ~0: the normal impulse of block"), "{text}");
+    assert!(!text.contains("e-17"), "{text}");
+}

@@ -70,12 +70,12 @@ pub(super) struct Limits {
     pub horizon: f64,
 }
 
-/// Integrates from `start`, whose length is 4, 8, 16, 32, 40, 64 or 128: the integrator takes arrays. Entries beyond
-/// the model's rates stay as they are.
+/// Integrates from `start`, whose length is 4, 8, 16, 32, 40, 64 or 128: the integrator takes arrays, and is compiled for
+/// each length. Entries beyond the model's rates stay as they are.
 ///
 /// # Errors
 /// [`Reason::Unsupported`] if the integrator gives up, and for other lengths.
-pub(super) fn integrate(model: &impl StiffEquations, start: &[f64], limits: Limits) -> Result<RunEnd> {
+pub(super) fn integrate(model: &dyn StiffEquations, start: &[f64], limits: Limits) -> Result<RunEnd> {
     match start.len() {
         4 => integrate_array::<4>(model, start, limits),
         8 => integrate_array::<8>(model, start, limits),
@@ -89,7 +89,7 @@ pub(super) fn integrate(model: &impl StiffEquations, start: &[f64], limits: Limi
     }
 }
 
-fn integrate_array<const N: usize>(model: &impl StiffEquations, start: &[f64], limits: Limits) -> Result<RunEnd> {
+fn integrate_array<const N: usize>(model: &dyn StiffEquations, start: &[f64], limits: Limits) -> Result<RunEnd> {
     let Limits { relative, absolute, horizon } = limits;
     // One tolerance for each entry: of a single one version 0.7 takes the power 2/3 once per entry.
     let mut method =
@@ -108,9 +108,9 @@ fn gave_up(error: &impl std::fmt::Debug) -> Error {
 }
 
 /// A model as the integrator takes it.
-struct System<'m, M>(&'m M);
+struct System<'m>(&'m dyn StiffEquations);
 
-impl<M: StiffEquations, const N: usize> ODE<f64, [f64; N]> for System<'_, M> {
+impl<const N: usize> ODE<f64, [f64; N]> for System<'_> {
     fn diff(&self, _: f64, state: &[f64; N], rates: &mut [f64; N]) {
         rates.fill(0.0);
         rates.iter_mut().zip(self.0.rates(state)).for_each(|(rate, own)| *rate = own);
@@ -125,12 +125,12 @@ impl<M: StiffEquations, const N: usize> ODE<f64, [f64; N]> for System<'_, M> {
 }
 
 /// Ends a run with its model, and keeps the last state.
-struct Run<'m, M> {
-    model: &'m M,
+struct Run<'m> {
+    model: &'m dyn StiffEquations,
     end: RunEnd,
 }
 
-impl<M: StiffEquations, const N: usize> Solout<f64, [f64; N]> for Run<'_, M> {
+impl<const N: usize> Solout<f64, [f64; N]> for Run<'_> {
     fn solout<I: Interpolation<f64, [f64; N]> + ?Sized>(
         &mut self,
         _: f64,

@@ -46,6 +46,8 @@ class Robot {
   /** A velocity before whose angle to another arrow has a smaller sine is drawn so far aside [px]. */
   static ALONG = 0.15;
   static ASIDE = 12;
+  /** The shortest arrow of a velocity after [px]. */
+  static SEEN = 4;
 
   constructor(element, key, data) {
     this.element = element;
@@ -158,9 +160,17 @@ class Robot {
       const words = [...(link ? [link] : []), ...(outcomes.length > 1 ? numbers : [])].join(", ");
       if (words) shapes.push(svg("text", { x, y, dx: 5, dy: -4 }, words));
     }
-    const named = pose.contacts.map(({ point, name }) => ({ at: this.at(point), name: this.data.texts[name] }));
+    const named = pose.contacts.map(({ point, name }, contact) => {
+      const signs = shown.map(({ after }) => after[contact]).filter((pair) => this.isSmall(pair)).map(([t, n]) => (n !== 0 ? "↑" : t > 0 ? "→" : "←"));
+      return { at: this.at(point), name: [this.data.texts[name], ...new Set(signs)].join(" ") };
+    });
     shapes.push(...named.map(({ at: [cx, cy] }) => svg("circle", { class: "contact", cx, cy, r: 3.2 })));
     return [...shapes, ...this.names(named)];
+  }
+
+  /** Whether a velocity after is too small for an arrow. */
+  isSmall(pair) {
+    return moves(pair) && Math.hypot(...pair) * this.length.velocity < Robot.SEEN;
   }
 
   /** Names below points; those of near points stand below each other. */
@@ -223,11 +233,13 @@ class Robot {
   key() {
     const { frames, scale: { impulse, velocity, before }, wording: { given, taken, moving } } = this.data;
     const some = (chosen) => frames.some((frame) => frame.pose && chosen(frame));
+    const after = (chosen) => some((frame) => frame.outcomes.some((outcome) => outcome.after.some(chosen)));
+    const small = after((pair) => this.isSmall(pair)) ? " (← → ↑: too small for an arrow)" : "";
     const entries = [
       ["impulse", "impulse", impulse, given[1], `${given[0]} of the ground`, some((frame) => frame.outcomes.some((outcome) => outcome.impulse.some(moves)))],
       ["applied", "impulse", impulse, given[1], `applied ${given[0]}`, some((frame) => frame.pose.applied)],
       ["in-loop", "impulse", impulse, given[1], `${given[0]} in a loop, on the link at its tip`, some((frame) => frame.pose.loops)],
-      ["velocity", "velocity", velocity, taken[1], taken[0], some((frame) => frame.outcomes.some((outcome) => outcome.after.some(moves)))],
+      ["velocity", "velocity", velocity, taken[1], taken[0], after(moves)],
       ["before", "before", before, "m/s", `${moving}, toward the contact`, some((frame) => frame.pose.contacts.some((contact) => moves(contact.before)))],
     ];
     this.legend.replaceChildren();
@@ -236,7 +248,7 @@ class Robot {
       const value = round(0.9 * usual);
       const length = value * this.length[unit];
       const sign = svg("svg", { width: length, height: 12, "aria-hidden": true }, arrow(kind, [0, 6], [length, 6]));
-      this.legend.append(html("span", {}, sign, `${words}, ${Number(value.toPrecision(1))} ${name}`));
+      this.legend.append(html("span", {}, sign, `${words}, ${Number(value.toPrecision(1))} ${name}${kind === "velocity" ? small : ""}`));
     }
     const isCut = (usual) => ([x, z]) => Math.hypot(x, z) * Robot.USUAL > usual * Robot.LONGEST;
     const cut = ({ outcomes }) => outcomes.some((outcome) => outcome.impulse.some(isCut(impulse)) || outcome.after.some(isCut(velocity)));

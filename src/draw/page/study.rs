@@ -135,7 +135,8 @@ fn along(sweep: Sweep, survey: &Survey) -> (Vec<PageRegion>, Vec<String>) {
     let border = |at: Option<usize>, side: &str| {
         let border = sweep.borders.get(at?)?;
         let sides = [at?, at? + 1].map(|at| sweep.regions[at].side());
-        Some([format!("{side}, at {}", significant(border.at, 9)), border.transition.in_words(sides)])
+        let at = sweep.place(border.at, |at| significant(at, 9).to_string());
+        Some([format!("{side}, at {at}"), border.transition.in_words(sides)])
     };
     let fills = fills_along(survey);
     let region = |(at, region): (usize, &RegionRecord)| PageRegion {

@@ -47,75 +47,70 @@ const NEXT: f64 = 22.0;
 
 /// A legend in as many columns as fit below the panels.
 pub(super) struct Legend<'p> {
-    entries: &'p [LegendEntry],
-    /// The lines of each name.
-    lines: Vec<Vec<String>>,
-    columns: Vec<Column>,
+    columns: Vec<Column<'p>>,
     /// The pixels of one unit of the first panel's x axis.
     scale: f64,
 }
 
-/// The widths of the widest key and the widest line of a column \[px\].
-#[derive(Debug, Clone, Copy)]
-struct Column {
+/// Entries below each other, each with the lines of its name, and the widths of the widest key and line \[px\].
+struct Column<'p> {
+    entries: &'p [LegendEntry],
+    lines: Vec<Vec<String>>,
     key: f64,
     name: f64,
 }
 
-impl Column {
-    fn width(self) -> f64 {
+impl<'p> Column<'p> {
+    /// Entries in a column that is at most so wide \[px\].
+    fn new(entries: &'p [LegendEntry], most: f64, scale: f64) -> Self {
+        let key = entries.iter().map(|entry| entry.key.width(scale)).fold(0.0, f64::max);
+        let lines: Vec<_> = entries.iter().map(|entry| font::lines(&entry.name, SIZE, most - key - GAP)).collect();
+        let name = lines.iter().flatten().map(|line| font::width(line, SIZE)).fold(0.0, f64::max);
+        Self { entries, lines, key, name }
+    }
+
+    fn width(&self) -> f64 {
         self.key + GAP + self.name
+    }
+
+    fn heights(&self) -> impl Iterator<Item = f64> {
+        self.lines.iter().map(|lines| ROW + LINE * lines.len().saturating_sub(1) as f64)
     }
 }
 
 impl<'p> Legend<'p> {
     /// A legend at most as wide as the panels \[px\]; one unit of the first one's x axis has `scale` pixels.
     pub fn new(entries: &'p [LegendEntry], width: f64, scale: f64) -> Self {
-        let key = entries.iter().map(|entry| entry.key.width(scale)).fold(0.0, f64::max);
-        let lines: Vec<Vec<String>> =
-            entries.iter().map(|entry| font::lines(&entry.name, SIZE, width - key - GAP)).collect();
-        let columns = |count: usize| -> Vec<Column> {
-            let column = |at: usize| {
-                let names = lines.iter().skip(at).step_by(count).flatten().map(|line| font::width(line, SIZE));
-                let keys = entries.iter().skip(at).step_by(count).map(|entry| entry.key.width(scale));
-                Column { key: keys.fold(0.0, f64::max), name: names.fold(0.0, f64::max) }
-            };
-            (0..count).map(column).collect()
+        let columns = |rows: usize| -> Vec<Column> {
+            entries.chunks(rows).map(|entries| Column::new(entries, width, scale)).collect()
         };
-        let fitting = (2..=entries.len()).rev().map(columns).find(|columns| total(columns) <= width);
-        let columns = fitting.unwrap_or_else(|| columns(1));
-        Self { entries, lines, columns, scale }
+        let fitting = (1..entries.len()).map(columns).find(|columns| total(columns) <= width);
+        Self { columns: fitting.unwrap_or_else(|| columns(entries.len().max(1))), scale }
     }
 
     pub fn size(&self) -> Pixel {
-        (total(&self.columns), self.rows().sum())
-    }
-
-    fn rows(&self) -> impl Iterator<Item = f64> {
-        let extra = |lines: &Vec<String>| LINE * lines.len().saturating_sub(1) as f64;
-        self.lines.chunks(self.columns.len()).map(move |row| ROW + row.iter().map(extra).fold(0.0, f64::max))
+        (total(&self.columns), self.columns.iter().map(|column| column.heights().sum()).fold(0.0, f64::max))
     }
 
     /// Draws it with its upper left corner at a pixel.
-    pub fn draw(&self, (left, mut top): Pixel, out: &mut PlotLayer) {
-        let entries: Vec<(&LegendEntry, &Vec<String>)> = self.entries.iter().zip(&self.lines).collect();
-        for (row, height) in entries.chunks(self.columns.len()).zip(self.rows()) {
-            let (mut left, middle) = (left, top + 0.5 * ROW);
-            for ((entry, lines), column) in row.iter().zip(&self.columns) {
+    pub fn draw(&self, (mut left, top): Pixel, out: &mut PlotLayer) {
+        for column in &self.columns {
+            let mut middle = top + 0.5 * ROW;
+            for ((entry, lines), height) in column.entries.iter().zip(&column.lines).zip(column.heights()) {
                 entry.key.draw((left, middle), self.scale, column.key, out);
                 for (at, line) in lines.iter().enumerate() {
                     let baseline = TextLine::baseline(middle, SIZE) + LINE * at as f64;
                     out.text(TextLine::new((left + column.key + GAP, baseline), line, SIZE, Anchor::Start));
                 }
-                left += column.width() + NEXT;
+                middle += height;
             }
-            top += height;
+            left += column.width() + NEXT;
         }
     }
 }
 
 fn total(columns: &[Column]) -> f64 {
-    columns.iter().map(|column| column.width()).sum::<f64>() + NEXT * columns.len().saturating_sub(1) as f64
+    columns.iter().map(Column::width).sum::<f64>() + NEXT * columns.len().saturating_sub(1) as f64
 }
 
 impl LegendKey {

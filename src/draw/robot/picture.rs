@@ -6,7 +6,6 @@ use crate::draw::Forward;
 use crate::draw::plot::{
     Color, Dash, LegendEntry, LegendKey, Mark, Panel, Picture, PlotAxis, PlotPoint, PlotShape, Stroke, significant,
 };
-use crate::error::visible;
 use crate::pipeline::Aspect;
 use crate::planar::Vector;
 use crate::robot::{Body, ParentJoint};
@@ -40,7 +39,7 @@ const SHORT: f64 = 0.08;
 const BELOW: f64 = 0.1;
 const AXES: f64 = 0.18;
 const LONGEST: f64 = 0.4;
-const KEY: f64 = 0.15;
+const KEY: f64 = 0.1;
 /// A velocity before whose angle to another arrow has a smaller sine is drawn so far aside.
 const ALONG: f64 = 0.15;
 const ASIDE: f64 = 0.02;
@@ -152,11 +151,7 @@ pub(in crate::draw) fn modes(contacts: impl IntoIterator<Item: AsRef<str>>, outc
 
 /// How sure and how special it is.
 pub(in crate::draw) fn remarks(outcome: &Outcome, aspect: Aspect) -> Vec<String> {
-    let border = outcome.border.as_ref().map(|border| {
-        let zeros: Vec<String> =
-            border.at_zero.iter().map(|zero| zero.inequality.reached_by(&visible(&zero.contact))).collect();
-        format!("on a border: {}", zeros.join(", "))
-    });
+    let border = outcome.border.as_ref().map(|border| format!("on a border: {}", words::at_zero(border)));
     let one_of_many = match aspect {
         Aspect::Impact => "one of many impulses",
         Aspect::Forces => "one of many forces",
@@ -357,19 +352,20 @@ impl<'d> DrawnScene<'d> {
         let DrawnNames { given, taken, moving, .. } = Wording::of(self.drawing.aspect).drawn;
         let is_small = |reach: Vector<f64>| reach != Vector::zero() && reach.length() < SEEN * self.size;
         let small = arrows.iter().any(|(_, reach, stroke)| *stroke == AFTER && is_small(*reach));
-        let arrowless = if small { " (\u{2190} \u{2192} \u{2191}: too small for an arrow)" } else { "" };
         let kinds = [
             (IMPULSE, self.impulse_scale, given.1, format!("{} of the ground", given.0)),
             (APPLIED, self.impulse_scale, given.1, format!("applied {}", given.0)),
             (IN_LOOP, self.impulse_scale, given.1, format!("{} in a loop, on the link at its tip", given.0)),
-            (AFTER, self.after_scale, taken.1, format!("{}{arrowless}", taken.0)),
+            (AFTER, self.after_scale, taken.1, taken.0.to_owned()),
             (BEFORE, self.before_scale, "m/s", format!("{moving}, toward the contact")),
         ];
         let drawn = kinds.into_iter().filter(|(stroke, ..)| is_drawn(*stroke));
         let entries = drawn.filter_map(|(stroke, scale, unit, what)| {
             let round = round(KEY * self.size / scale)?;
             let key = LegendKey::Arrow { stroke, length: round * scale };
-            Some(LegendEntry::new(format!("{what}: {round} {unit}"), key))
+            let is_written = small && stroke == AFTER;
+            let arrowless = if is_written { "\n(\u{2190} \u{2192} \u{2191}: too small for an arrow)" } else { "" };
+            Some(LegendEntry::new(format!("{what}: {round} {unit}{arrowless}"), key))
         });
         let contacts = !self.drawing.contacts.is_empty();
         let signs = [
@@ -428,10 +424,10 @@ impl Drawing {
         let shaped = |last: bool| self.bodies.iter().any(|body| body.is_last == last && is_shaped(body));
         entries_of([
             (!self.joints.is_empty(), LegendKey::Mark(Mark::Ring, joint), "joint"),
-            (!self.loops.is_empty(), LegendKey::Mark(Mark::Ring, IN_LOOP.color), "point where a loop is closed"),
-            (true, LegendKey::Mark(Mark::Center, Color::Black), "CoG, its area by mass"),
-            (shaped(true), LegendKey::Fill(LAST), "shape of an outermost body"),
-            (shaped(false), LegendKey::Fill(INNER), "shape of an inner body"),
+            (!self.loops.is_empty(), LegendKey::Mark(Mark::Ring, IN_LOOP.color), "point of a loop"),
+            (true, LegendKey::Mark(Mark::Center, Color::Black), "CoG, area by mass"),
+            (shaped(true), LegendKey::Fill(LAST), "outermost body"),
+            (shaped(false), LegendKey::Fill(INNER), "inner body"),
         ])
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{Happening, MapSweep, RegionSide, Regions, Sweep};
 use crate::error::visible;
-use crate::sweep::{BorderCurve, EndedOutcome, Side, Transition};
+use crate::sweep::{BorderCurve, EndedOutcome, RESOLUTION, Side, Transition};
 use crate::write::{Palette, words, written};
 use crate::{Mode, Verdict};
 use std::fmt::Write;
@@ -32,8 +32,9 @@ impl Regions<'_> {
 
 impl Sweep<'_> {
     fn write(&self, Palette { strong, faint, plain }: &Palette, out: &mut String) -> std::fmt::Result {
+        let end = |at| self.place(at, brief);
         let places: Vec<String> =
-            self.regions.iter().map(|region| format!("{} .. {}", brief(region.from), brief(region.to))).collect();
+            self.regions.iter().map(|region| format!("{} .. {}", end(region.from), end(region.to))).collect();
         let width = places.iter().map(String::len).max().unwrap_or(0);
         let letters = self.regions.iter().map(|region| region.letter.len()).max().unwrap_or(1);
         for (index, (region, place)) in self.regions.iter().zip(&places).enumerate() {
@@ -43,11 +44,18 @@ impl Sweep<'_> {
             }
             if let Some(border) = self.borders.get(index) {
                 let sides = [index, index + 1].map(|at| self.regions[at].side());
+                let at = self.place(border.at, |at| format!("{at:?}"));
                 let transition = border.transition.in_words(sides);
-                writeln!(out, "{:letters$}  {faint}at {:?}: {transition}{plain}", "", border.at)?;
+                writeln!(out, "{:letters$}  {faint}at {at}: {transition}{plain}", "")?;
             }
         }
         Ok(())
+    }
+
+    /// A value of the parameter as a text: a border that may as well be at zero is `~0`.
+    pub(crate) fn place(&self, at: f64, text: impl Fn(f64) -> String) -> String {
+        let range = self.regions.iter().map(|region| region.to - region.from).sum::<f64>();
+        if at != 0.0 && at.abs() < RESOLUTION * range { "~0".to_owned() } else { text(at) }
     }
 }
 

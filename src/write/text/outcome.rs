@@ -1,7 +1,6 @@
 //! Each outcome, and the velocities after all of them.
 
 use super::Writer;
-use crate::error::visible;
 use crate::impact::{Family, Next, Verdict};
 use crate::pipeline::{Driven, Sustained, Unrealized};
 use crate::planar::Vector;
@@ -81,8 +80,7 @@ impl Writer<'_> {
     /// What is exactly zero, and what lies beyond.
     fn border(&mut self, outcome: &Outcome) -> std::fmt::Result {
         let Some(border) = &outcome.border else { return Ok(()) };
-        let zeros = border.at_zero.iter().map(|zero| format!("{} has {}", visible(&zero.contact), zero.inequality));
-        write!(self.out, "  exactly on a border: {}", zeros.collect::<Vec<_>>().join(", "))?;
+        write!(self.out, "  exactly on a border: {}", words::at_zero(border))?;
         let beyond: Vec<String> = border.neighbours.iter().map(|modes| self.in_words(modes)).collect();
         let beyond = if beyond.is_empty() { String::new() } else { format!("; beyond it {}", beyond.join("; or ")) };
         writeln!(self.out, "{beyond}")

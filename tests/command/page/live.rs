@@ -1,7 +1,8 @@
 //! What a page does: keys, sliders and clicks move the robot, the cursors and the answers.
 
 use super::browser::found;
-use super::{HOSTILE, WALK, WALKER, data, each, file, five_bar, grid, hostile, list, near_a_border, page, swept};
+use super::{HOSTILE, RAMONE, WALK, WALKER, data, each, file, five_bar, grid, hostile, list, near_a_border};
+use super::{page, parsed, read, swept};
 use crate::result;
 use serde_json::{Value, json};
 
@@ -173,6 +174,15 @@ fn a_velocity_along_an_impulse_is_drawn_aside() {
     let [aside, down] = [&found["aside"], &found["down"]].map(|way| way.as_f64().expect("a number"));
     assert!(close(aside, 12.0, 0.01) && close(down, 0.0, 6.0), "{found}");
     assert_eq!(found["up"], json!(true));
+}
+
+#[test]
+fn a_slide_without_an_arrow_has_its_direction() {
+    let state = parsed(&read("examples/ramone.json")).to_string();
+    let (_, path) = page(&["batch", RAMONE, "-"], &state, "small_slide.html");
+    let script = r##"found(all("#scene text").map((name) => name.textContent));"##;
+    let Some(found) = found(&path, WINDOW, script) else { return };
+    assert_eq!(found, json!(["right_foot", "left_foot \u{2192}"]));
 }
 
 #[test]
