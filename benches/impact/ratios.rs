@@ -182,7 +182,7 @@ fn of_one_line(robot: &Robot, rounds: usize) {
     for (what, brief) in [("batch --brief", true), ("batch", false)] {
         let question = Question {
             robot,
-            options: Options::default(),
+            options: Options { friction_needed: true, ..Options::default() },
             defaults: Defaults { friction: Some(Friction::Finite(0.6)), ..Defaults::default() },
             detail: Detail { brief, ..Detail::default() },
             total: None,

@@ -11,7 +11,7 @@ import sys
 import numpy as np
 import pyarrow as pa
 from pyspark.sql import SparkSession
-from pyspark.sql.pandas.types import from_arrow_schema
+from pyspark.sql.pandas.types import from_arrow_schema, to_arrow_schema
 
 
 @functools.cache
@@ -41,8 +41,7 @@ def answered(urdf, batches):
 
 def answer(spark, urdf, states):
     """The data frame of results."""
-    empty = pa.table({name: pa.array([], pa.string() if name == "id" else pa.float64()) for name in states.columns})
-    schema = from_arrow_schema(table(urdf, empty).schema)
+    schema = from_arrow_schema(table(urdf, to_arrow_schema(states.schema).empty_table()).schema)
     return states.mapInArrow(functools.partial(answered, urdf), schema)
 
 

@@ -13,7 +13,7 @@ _Friction: TypeAlias = float | Literal["infinite", "inf"]
 
 @type_check_only
 class _Reading(TypedDict, total=False):
-    plane: Literal["xz", "yz", "xy"] | None
+    plane: Literal["auto", "xz", "yz", "xy"] | None
     hold: dict[str, float]
     base: Literal["fixed", "floating"] | None
     axis_tolerance: float | None
@@ -109,8 +109,10 @@ class Robot:
         *,
         friction: _Friction | None = None,
         velocity: Literal["central", "backward"] | None = None,
-        at: Literal["crossing", "row"] = "crossing",
+        at: Literal["crossing", "row"] | None = None,
         touching: str | None = None,
+        drop: float | None = None,
+        ground_height: float | None = None,
         simulated: bool = False,
     ) -> list[dict[str, Any]]: ...
     @staticmethod

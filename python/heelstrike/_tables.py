@@ -8,7 +8,11 @@ from ._core import Answers
 
 
 def to_arrow(answers: Answers, id: Any = None) -> Any:
-    import pyarrow as pa  # type: ignore[import-untyped, unused-ignore]
+    try:
+        import pyarrow as pa  # type: ignore[import-untyped, unused-ignore]
+    except ModuleNotFoundError as error:
+        needs = "a table needs pyarrow, and a data frame pandas as well: pip install pyarrow pandas"
+        raise ModuleNotFoundError(needs, name=error.name) from None
 
     table = pa.ipc.open_stream(answers._stream()).read_all()
     if id is None:

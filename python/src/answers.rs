@@ -52,22 +52,38 @@ impl<T: Element + Clone> Column<T> {
     }
 }
 
+/// The lists of [`Arrays`] that become arrays.
+macro_rules! lists {
+    ($($name:ident: $entry:ty),*) => {
+        struct Lists {
+            $($name: Column<$entry>),*
+        }
+
+        impl Lists {
+            fn new(arrays: &mut Arrays) -> Self {
+                Self { $($name: Column::new(std::mem::take(&mut arrays.$name))),* }
+            }
+
+            fn copy(&self, py: Python<'_>, into: &mut Arrays) -> PyResult<()> {
+                $(into.$name = self.$name.copy(py)?;)*
+                Ok(())
+            }
+        }
+    };
+}
+
+lists! {
+    verdict: u8, all_proven: bool, offsets: i64, modes: i8, impulse: f64, velocity_after: f64, margin: f64, index: i8,
+    proven: bool, family: bool
+}
+
 /// The answers to many states: arrays with an entry per state or per outcome.
 #[pyclass(frozen, module = "heelstrike")]
 pub struct Answers {
     table: Arc<Table>,
     states: usize,
     outcomes: usize,
-    verdict: Column<u8>,
-    all_proven: Column<bool>,
-    offsets: Column<i64>,
-    modes: Column<i8>,
-    impulse: Column<f64>,
-    velocity_after: Column<f64>,
-    margin: Column<f64>,
-    index: Column<i8>,
-    proven: Column<bool>,
-    family: Column<bool>,
+    lists: Lists,
     texts: [TextColumn; 4],
 }
 
@@ -95,21 +111,12 @@ impl Table {
 }
 
 impl Answers {
-    pub fn new(table: Arc<Table>, arrays: Arrays) -> Self {
+    pub fn new(table: Arc<Table>, mut arrays: Arrays) -> Self {
         Self {
             table,
             states: arrays.verdict.len(),
             outcomes: arrays.margin.len(),
-            verdict: Column::new(arrays.verdict),
-            all_proven: Column::new(arrays.all_proven),
-            offsets: Column::new(arrays.offsets),
-            modes: Column::new(arrays.modes),
-            impulse: Column::new(arrays.impulse),
-            velocity_after: Column::new(arrays.velocity_after),
-            margin: Column::new(arrays.margin),
-            index: Column::new(arrays.index),
-            proven: Column::new(arrays.proven),
-            family: Column::new(arrays.family),
+            lists: Lists::new(&mut arrays),
             texts: [arrays.error, arrays.notes, arrays.border, arrays.families]
                 .map(|texts| TextColumn { texts, list: PyOnceLock::new() }),
         }
@@ -117,17 +124,8 @@ impl Answers {
 
     /// A copy of all.
     fn copy(&self, py: Python<'_>) -> PyResult<Arrays> {
-        let mut arrays = self.table.empty.none();
-        arrays.verdict = self.verdict.copy(py)?;
-        arrays.all_proven = self.all_proven.copy(py)?;
-        arrays.offsets = self.offsets.copy(py)?;
-        arrays.modes = self.modes.copy(py)?;
-        arrays.impulse = self.impulse.copy(py)?;
-        arrays.velocity_after = self.velocity_after.copy(py)?;
-        arrays.margin = self.margin.copy(py)?;
-        arrays.index = self.index.copy(py)?;
-        arrays.proven = self.proven.copy(py)?;
-        arrays.family = self.family.copy(py)?;
+        let mut arrays = self.table.empty.for_states(0);
+        self.lists.copy(py, &mut arrays)?;
         let texts = self.texts.each_ref().map(|column| column.texts.clone());
         [arrays.error, arrays.notes, arrays.border, arrays.families] = texts;
         Ok(arrays)
@@ -178,77 +176,77 @@ impl Answers {
     /// Of each state the `Verdict`, (n,) of uint8.
     #[getter]
     fn verdict(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.verdict.array(py, &[self.states])
+        self.lists.verdict.array(py, &[self.states])
     }
 
     /// Of each state whether every combination is decided by an error bound, (n,).
     #[getter]
     fn all_proven(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.all_proven.array(py, &[self.states])
+        self.lists.all_proven.array(py, &[self.states])
     }
 
     /// State k has the outcomes from offsets[k] to offsets[k + 1], (n + 1,).
     #[getter]
     fn offsets(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.offsets.array(py, &[self.states + 1])
+        self.lists.offsets.array(py, &[self.states + 1])
     }
 
     /// Of each outcome and contact the `Mode`, (m, contacts) of int8; OPEN if the contact is not closed.
     #[getter]
     fn modes(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.modes.array(py, &[self.outcomes, self.table.columns.contacts().len()])
+        self.lists.modes.array(py, &[self.outcomes, self.table.columns.contacts().len()])
     }
 
     /// Of each outcome and contact [tangential, normal] [N s], (m, contacts, 2); NaN if the contact is not closed.
     #[getter]
     fn impulse(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.of(Aspect::Impact, "impulse")?;
-        self.impulse.array(py, &[self.outcomes, self.table.columns.contacts().len(), 2])
+        self.lists.impulse.array(py, &[self.outcomes, self.table.columns.contacts().len(), 2])
     }
 
     /// Of each outcome and contact [tangential, normal] [N], (m, contacts, 2); NaN if the contact is not closed.
     #[getter]
     fn force(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.of(Aspect::Forces, "force")?;
-        self.impulse.array(py, &[self.outcomes, self.table.columns.contacts().len(), 2])
+        self.lists.impulse.array(py, &[self.outcomes, self.table.columns.contacts().len(), 2])
     }
 
     /// Of each outcome v after the impact, (m, nq) in the order of `coordinates` [m/s, rad/s].
     #[getter]
     fn velocity_after(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.of(Aspect::Impact, "velocity_after")?;
-        self.velocity_after.array(py, &[self.outcomes, self.table.coordinates.len()])
+        self.lists.velocity_after.array(py, &[self.outcomes, self.table.coordinates.len()])
     }
 
     /// Of each outcome the rate of v, (m, nq) in the order of `coordinates` [m/s^2, rad/s^2].
     #[getter]
     fn acceleration(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.of(Aspect::Forces, "acceleration")?;
-        self.velocity_after.array(py, &[self.outcomes, self.table.coordinates.len()])
+        self.lists.velocity_after.array(py, &[self.outcomes, self.table.coordinates.len()])
     }
 
     /// Of each outcome the smallest slack, free of units, (m,); NaN if it has no inequality.
     #[getter]
     fn margin(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.margin.array(py, &[self.outcomes])
+        self.lists.margin.array(py, &[self.outcomes])
     }
 
     /// Of each outcome the sign of det A, (m,) of int8; 0 if it is not defined, as on a border.
     #[getter]
     fn index(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.index.array(py, &[self.outcomes])
+        self.lists.index.array(py, &[self.outcomes])
     }
 
     /// Of each outcome whether an error bound shows every sign, (m,).
     #[getter]
     fn proven(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.proven.array(py, &[self.outcomes])
+        self.lists.proven.array(py, &[self.outcomes])
     }
 
     /// Of each outcome whether it is a corner of a family of outcomes, (m,).
     #[getter]
     fn family(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.family.array(py, &[self.outcomes])
+        self.lists.family.array(py, &[self.outcomes])
     }
 
     /// Of each state why it was refused, or None.
@@ -282,7 +280,7 @@ impl Answers {
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let mut counts = [0; Arrays::REFUSED as usize + 1];
-        self.verdict.copy(py)?.into_iter().for_each(|verdict| counts[usize::from(verdict)] += 1);
+        self.lists.verdict.copy(py)?.into_iter().for_each(|verdict| counts[usize::from(verdict)] += 1);
         let names = Verdict::ALL.map(Verdict::name).into_iter().chain(["refused"]);
         let verdicts = counts.into_iter().zip(names).filter(|(count, _)| *count > 0);
         let verdicts: Vec<String> = verdicts.map(|(count, name)| format!("{count} {name}")).collect();

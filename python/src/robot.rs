@@ -3,14 +3,15 @@
 use crate::answers::{Answers, Table};
 use crate::rows::{Asker, Rows, rough};
 use crate::study::limit;
-use crate::values::{from_json, refused, to_json};
+use crate::values::{choice, from_json, refused, to_json};
 use crate::watch::{budget, without_python};
 use crate::{picture, study};
-use heelstrike::cli::{Meshes, Seconds, from_zero};
+use heelstrike::cli::{BASES, DIFFERENCES, Meshes, PLANES, ROWS, RecordingOptions, Seconds, from_zero};
+use heelstrike::gait::Touching;
 use heelstrike::pipeline::{Aspect, Options};
 use heelstrike::read::documents::utf8;
 use heelstrike::reductions::Reductions;
-use heelstrike::robot::{Base, Plane, Reduction};
+use heelstrike::robot::Reduction;
 use heelstrike::state::NamedContact;
 use heelstrike::write::append_line;
 use heelstrike::{Defaults, Description, Detail, Error, Friction, Inspection, Pipeline, Reason, Report, State};
@@ -57,9 +58,9 @@ impl Model {
             (Options::default(), Some(Duration::from_secs(10)), Vec::new(), None);
         for (name, value) in options.into_iter().flatten() {
             match name.extract::<String>()?.as_str() {
-                "plane" => reduction.plane = plane(value.extract()?)?,
+                "plane" => reduction.plane = choice("plane", PLANES, value.extract()?)?.flatten(),
                 "hold" => reduction.hold = held(&description, value.cast()?)?,
-                "base" => reduction.base = base(value.extract()?)?,
+                "base" => reduction.base = choice("base", BASES, value.extract()?)?,
                 "axis_tolerance" => reduction.axis_tolerance = positive("axis_tolerance", &value)?,
                 "package_path" => package_path = value.extract::<Vec<PathBuf>>()?,
                 "feet" => feet = Some(value),
@@ -108,16 +109,6 @@ pub struct Asked {
     pub next: bool,
 }
 
-fn choice<T>(what: &str, name: &str, choices: &[(&str, T)]) -> PyResult<T>
-where
-    T: Copy,
-{
-    choices.iter().find(|(own, _)| *own == name).map(|&(_, value)| value).ok_or_else(|| {
-        let names: Vec<&str> = choices.iter().map(|(own, _)| *own).collect();
-        PyValueError::new_err(format!("{what} is one of {}, not \"{name}\"", names.join(", ")))
-    })
-}
-
 /// A finite number from 0 on, or `None` for what is usual.
 fn positive(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
     let check = |number: f64| {
@@ -125,16 +116,6 @@ fn positive(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
             .map_err(|expected| PyValueError::new_err(format!("{what}: {expected}, not {number}")))
     };
     value.extract::<Option<f64>>()?.map(check).transpose()
-}
-
-fn plane(name: Option<String>) -> PyResult<Option<Plane>> {
-    let all = Plane::ALL.map(|plane| (plane.name(), plane));
-    name.map(|name| choice("plane", &name, &all)).transpose()
-}
-
-fn base(name: Option<String>) -> PyResult<Option<Base>> {
-    let all = [("fixed", Base::Fixed), ("floating", Base::Floating)];
-    name.map(|name| choice("base", &name, &all)).transpose()
 }
 
 fn held(description: &Description, by_name: &Bound<'_, PyDict>) -> PyResult<Vec<(usize, f64)>> {
@@ -332,24 +313,37 @@ impl Robot {
 
     /// The impacts at the touchdowns of a recording, as `heelstrike batch --touchdowns` writes them.
     ///
-    /// `table` is a path (CSV, TSV, Parquet, Arrow), a data frame, an Arrow table or a dictionary of columns: `time` [s],
-    /// `q_base_x`, `q_base_z`, `q_base_pitch`, `q_<joint>` [m, rad], and rates likewise with `v_` unless `velocity` is
-    /// "central" or "backward". `at` is "crossing" or "row", `touching` strike, slow:SPEED,HEIGHT or near:HEIGHT;
-    /// `simulated` takes z = 0 as the ground. Raises Refused for the table; a refused touchdown has an `error`.
+    /// `table` is a path (CSV, TSV, Parquet, Arrow), a data frame, an Arrow table or a dictionary of columns: `time`
+    /// [s], `q_base_x`, `q_base_z`, `q_base_pitch`, `q_<joint>` [m, rad], and rates likewise with `v_` unless `velocity`
+    /// is "central" or "backward". `at` is "crossing" or "row", `touching` strike, slow:SPEED,HEIGHT or near:HEIGHT. A
+    /// foot must descend by `drop` to at most `ground_height` [m], which depend on the robot's size; `simulated` takes
+    /// z = 0 as the ground. Raises Refused for the table; a refused touchdown has an `error`.
     #[pyo3(signature = (
-        table, *, friction = None, velocity = None, at = "crossing", touching = None, simulated = false
+        table, *, friction = None, velocity = None, at = None, touching = None, drop = None, ground_height = None,
+        simulated = false
     ))]
     fn touchdowns<'py>(
         slf: &Bound<'py, Self>,
         table: &Bound<'py, PyAny>,
         friction: Option<&Bound<'py, PyAny>>,
         velocity: Option<&str>,
-        at: &str,
+        at: Option<&str>,
         touching: Option<&str>,
+        drop: Option<&Bound<'py, PyAny>>,
+        ground_height: Option<&Bound<'py, PyAny>>,
         simulated: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let recording = study::Recorded::new(velocity, at, touching, simulated)?;
-        study::touchdowns(slf, table, friction, recording)
+        let height = |what, value: Option<_>| value.map_or(Ok(None), |value| positive(what, value));
+        let recording = RecordingOptions {
+            touchdowns: true,
+            simulated,
+            at: choice("at", ROWS, at)?.unwrap_or_default(),
+            touching: touching.map_or_else(|| Ok(Touching::default()), str::parse).map_err(refused)?,
+            drop: height("drop", drop)?,
+            ground_height: height("ground_height", ground_height)?,
+            velocity: choice("velocity", DIFFERENCES, velocity)?,
+        };
+        study::touchdowns(slf, table, friction, &recording)
     }
 
     /// A picture of the robot, as SVG, and its description.

@@ -51,13 +51,14 @@ pub struct Common {
 /// States as rows of arrays.
 pub struct Rows<'py> {
     model: Arc<Model>,
-    q: PyReadonlyArrayDyn<'py, f64>,
-    v: PyReadonlyArrayDyn<'py, f64>,
+    rows: usize,
+    q: Given<'py>,
+    v: Given<'py>,
     /// What all rows have in common.
     common: State,
     table: Arc<Table>,
-    friction: Option<PyReadonlyArrayDyn<'py, f64>>,
-    restitution: Option<PyReadonlyArrayDyn<'py, f64>>,
+    friction: Option<Given<'py>>,
+    restitution: Option<Given<'py>>,
 }
 
 /// The same without the interpreter.
@@ -69,8 +70,26 @@ struct Numbers<'a> {
     restitution: Option<&'a [f64]>,
 }
 
+/// The numbers of an array; few are copied, since NumPy's record of a borrow takes longer.
+enum Given<'py> {
+    Few(Vec<f64>),
+    Many(PyReadonlyArrayDyn<'py, f64>),
+}
+
+impl Given<'_> {
+    /// So many are few.
+    const FEW: usize = 256;
+
+    fn numbers(&self) -> PyResult<&[f64]> {
+        match self {
+            Self::Few(numbers) => Ok(numbers),
+            Self::Many(array) => Ok(array.as_slice()?),
+        }
+    }
+}
+
 /// The array as f64 in C order, with this many numbers in each of its rows; it is copied only if it is something else.
-fn array<'py>(what: &str, value: &Bound<'py, PyAny>, columns: Option<usize>) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
+fn array<'py>(what: &str, value: &Bound<'py, PyAny>, columns: Option<usize>) -> PyResult<(usize, Given<'py>)> {
     let py = value.py();
     let own = value.cast::<PyArrayDyn<f64>>().ok().filter(|own| own.is_c_contiguous() && own.is_aligned()).cloned();
     let own = match own {
@@ -99,7 +118,8 @@ fn array<'py>(what: &str, value: &Bound<'py, PyAny>, columns: Option<usize>) -> 
         let hint = if own.ndim() == 1 && columns == Some(own.len()) { "; one state is q[None, :]" } else { "" };
         return Err(PyValueError::new_err(format!("{what} has the shape {:?}, not {wanted}{hint}", own.shape())));
     }
-    Ok(own.readonly())
+    let few = own.len() <= Given::FEW;
+    Ok((own.shape()[0], if few { Given::Few(own.to_vec()?) } else { Given::Many(own.readonly()) }))
 }
 
 impl Asker {
@@ -153,22 +173,29 @@ fn same(a: &Bound<'_, PyAny>, b: &Bound<'_, PyAny>) -> bool {
     plain && a.eq(b).unwrap_or(false)
 }
 
-/// An argument that is a number for all rows, a number per row, or something else that a state may have.
-enum Argument<'py> {
-    Rows(PyReadonlyArrayDyn<'py, f64>),
-    Value(Bound<'py, PyAny>),
-}
+/// An argument that has a number per row, or one for all of them; by link it is one of the state's `fields`.
+type Argument<'py> = (Option<Given<'py>>, Option<Bound<'py, PyAny>>);
 
-impl<'py> Argument<'py> {
-    fn read(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Self> {
-        // To ask a dictionary whether it is a number takes a microsecond.
-        if value.is_instance_of::<PyDict>() {
-            return Ok(Self::Value(value.clone()));
-        }
-        let is_list = value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>();
-        let is_array = || Ok::<_, PyErr>(is_list || value.hasattr("shape")? && !value.getattr("shape")?.is_empty()?);
-        let number = value.extract::<f64>().is_ok();
-        if !number && is_array()? { Ok(Self::Rows(array(what, value, None)?)) } else { Ok(Self::Value(value.clone())) }
+fn argument<'py>(
+    what: &str,
+    value: Option<&Bound<'py, PyAny>>,
+    rows: usize,
+    fields: &mut Option<Bound<'py, PyDict>>,
+) -> PyResult<Argument<'py>> {
+    let Some(value) = value else { return Ok((None, None)) };
+    // To ask a dictionary whether it is a number takes a microsecond.
+    if value.is_instance_of::<PyDict>() {
+        fields.get_or_insert_with(|| PyDict::new(value.py())).set_item(what, value)?;
+        return Ok((None, None));
+    }
+    let is_list = value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>();
+    let is_array = || Ok::<_, PyErr>(is_list || value.hasattr("shape")? && !value.getattr("shape")?.is_empty()?);
+    if value.extract::<f64>().is_ok() || !is_array()? {
+        return Ok((None, Some(value.clone())));
+    }
+    match array(what, value, None)? {
+        (entries, given) if entries == rows => Ok((Some(given), None)),
+        (entries, _) => Err(PyValueError::new_err(format!("{what} has {entries} entries for {rows} states"))),
     }
 }
 
@@ -184,34 +211,16 @@ impl<'py> Rows<'py> {
     ) -> PyResult<Self> {
         let model = &robot.model;
         let nq = model.robot.dofs();
-        let (q, v) = (array("q", q, Some(nq))?, array("v", v, Some(nq))?);
-        if q.shape() != v.shape() {
-            return Err(PyValueError::new_err(format!("q has {} rows and v {}", q.shape()[0], v.shape()[0])));
-        }
         let mut fields = scene.cloned();
-        let fields_of =
-            |fields: &mut Option<Bound<'py, PyDict>>| fields.get_or_insert_with(|| PyDict::new(q.py())).clone();
         if let Some(contacts) = contacts {
-            fields_of(&mut fields).set_item("contacts", contacts)?;
+            fields.get_or_insert_with(|| PyDict::new(q.py())).set_item("contacts", contacts)?;
         }
-        let (mut friction_of_all, mut restitution_of_all) = (None, None);
-        let (mut friction_rows, mut restitution_rows) = (None, None);
-        match mu.map(|mu| Argument::read("friction", mu)).transpose()? {
-            Some(Argument::Rows(rows)) => friction_rows = Some(rows),
-            Some(Argument::Value(by_link)) if by_link.is_instance_of::<PyDict>() => {
-                fields_of(&mut fields).set_item("friction", by_link)?;
-            }
-            Some(Argument::Value(value)) => friction_of_all = Some(friction(&value)?),
-            None => {}
+        let ((rows, q), (others, v)) = (array("q", q, Some(nq))?, array("v", v, Some(nq))?);
+        if rows != others {
+            return Err(PyValueError::new_err(format!("q has {rows} rows and v {others}")));
         }
-        match restitution.map(|own| Argument::read("restitution", own)).transpose()? {
-            Some(Argument::Rows(rows)) => restitution_rows = Some(rows),
-            Some(Argument::Value(value)) if value.is_instance_of::<PyDict>() => {
-                fields_of(&mut fields).set_item("restitution", value)?;
-            }
-            Some(Argument::Value(value)) => restitution_of_all = Some(restituted(value.extract()?).map_err(refused)?),
-            None => {}
-        }
+        let (friction_rows, mu) = argument("friction", mu, rows, &mut fields)?;
+        let (restitution_rows, own) = argument("restitution", restitution, rows, &mut fields)?;
         let (mut common, table) = match &fields {
             None => (State::zero(&model.robot), Arc::clone(&asker.table)),
             Some(fields) => {
@@ -219,16 +228,15 @@ impl<'py> Rows<'py> {
                 (known.state.clone(), Arc::clone(&known.table))
             }
         };
-        common.scene.friction.default = friction_of_all.or(common.scene.friction.default);
-        common.scene.restitution.default = restitution_of_all.or(common.scene.restitution.default);
-        let rows = q.shape()[0];
-        for (what, given) in [("friction", &friction_rows), ("restitution", &restitution_rows)] {
-            if let Some(given) = given.as_ref().filter(|given| given.len() != rows) {
-                return Err(PyValueError::new_err(format!("{what} has {} entries for {rows} states", given.len())));
-            }
+        if let Some(mu) = mu {
+            common.scene.friction.default = Some(friction(&mu)?);
+        }
+        if let Some(own) = own {
+            common.scene.restitution.default = Some(restituted(own.extract()?).map_err(refused)?);
         }
         Ok(Self {
             model: Arc::clone(model),
+            rows,
             q,
             v,
             common,
@@ -240,20 +248,20 @@ impl<'py> Rows<'py> {
 
     /// Answers all rows.
     pub fn answer(self, py: Python<'py>, asker: &Asker, count: Option<usize>) -> PyResult<Answers> {
-        let Self { model, q, v, common, table, friction, restitution } = self;
-        let rows = q.shape()[0];
+        let Self { model, rows, q, v, common, table, friction, restitution } = self;
         let threads = if rows <= TOGETHER { 1 } else { threads(count.unwrap_or(0)).min(rows.div_ceil(TOGETHER)) };
         let numbers = Numbers {
             coordinates: &table.coordinates,
-            q: q.as_slice()?,
-            v: v.as_slice()?,
-            friction: friction.as_ref().map(|own| own.as_slice()).transpose()?,
-            restitution: restitution.as_ref().map(|own| own.as_slice()).transpose()?,
+            q: q.numbers()?,
+            v: v.numbers()?,
+            friction: friction.as_ref().map(Given::numbers).transpose()?,
+            restitution: restitution.as_ref().map(Given::numbers).transpose()?,
         };
         // One row has no others to share with.
         let total = model.budget.filter(|_| rows > 1).map(|each| TotalBudget::new(budget(Some(each)), None));
         let arrays = without_python(py, || {
-            let (numbers, total, table, mut all) = (&numbers, total.as_ref(), &table, All(table.empty.none()));
+            let (numbers, total, table, mut all) =
+                (&numbers, total.as_ref(), &table, All(table.empty.for_states(rows)));
             if threads <= 1 {
                 // What it computes is written once.
                 let mut worker = Worker::new(&model, asker, common);
@@ -268,7 +276,7 @@ impl<'py> Rows<'py> {
             let answerer = || {
                 let mut worker = Worker::new(&model, asker, common.clone());
                 move |rows: Range<usize>| {
-                    let mut block = table.empty.none();
+                    let mut block = table.empty.for_states(rows.len());
                     rows.for_each(|row| worker.row(numbers, row, total, &mut block));
                     block
                 }

@@ -3,14 +3,12 @@
 use crate::robot::{Robot, friction};
 use crate::values::{from_json, refused, to_json, warn};
 use crate::watch::{budget, interrupted, raised, shared, without_python};
-use heelstrike::batch::{Batch, Chunks, Question, Recording, RowOrigin, TaskSource, samples, samples_of_parts};
+use heelstrike::batch::{Batch, Question, Recording, States, Summary, TaskSource};
 use heelstrike::budget::TotalBudget;
-use heelstrike::cli::{RecordFormat, Seconds, seconds, threads};
-use heelstrike::error::Location;
-use heelstrike::gait::{self, At, Difference, Heights, Sampled, Thresholds, Touching};
+use heelstrike::cli::{RecordFormat, RecordingOptions, Seconds, seconds, threads};
 use heelstrike::impact::{AnalysisOptions, Scratch};
 use heelstrike::read::Problem;
-use heelstrike::read::table::{Form, Header, Parts, Rates};
+use heelstrike::read::table::Form;
 use heelstrike::sweep::{Findings, RobotStudy, Solver, Workers};
 use heelstrike::write::notes;
 use heelstrike::write::sweep::{Regions, SampleRecord};
@@ -18,6 +16,7 @@ use heelstrike::{Defaults, Detail, Error, Friction, Reason, Report, Study};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::fs::File;
+use std::io::Cursor;
 use std::path::PathBuf;
 use std::sync::Mutex;
 use std::time::Duration;
@@ -97,94 +96,40 @@ pub fn sweep<'py>(
     from_json(py, &out, Some((robot, "sweep", text, mu).into_pyobject(py)?.into_any()))
 }
 
-/// How a recording is read.
-pub struct Recorded {
-    velocity: Option<Difference>,
-    at: At,
-    touching: Touching,
-    heights: Heights,
-}
-
-impl Recorded {
-    pub fn new(velocity: Option<&str>, at: &str, touching: Option<&str>, simulated: bool) -> PyResult<Self> {
-        let unknown =
-            |what: &str, all: &str, name: &str| Err(PyValueError::new_err(format!("{what} is {all}, not \"{name}\"")));
-        let velocity = match velocity {
-            None => None,
-            Some("central") => Some(Difference::Central),
-            Some("backward") => Some(Difference::Backward),
-            Some(other) => return unknown("velocity", "central or backward", other),
-        };
-        let at = match at {
-            "crossing" => At::Crossing,
-            "row" => At::Row,
-            other => return unknown("at", "crossing or row", other),
-        };
-        let touching = touching.map_or_else(|| Ok(Touching::default()), str::parse).map_err(refused)?;
-        Ok(Self { velocity, at, touching, heights: if simulated { Heights::True } else { Heights::Recorded } })
-    }
-}
-
 pub fn touchdowns<'py>(
     robot: &Bound<'py, Robot>,
     table: &Bound<'py, PyAny>,
     mu: Option<&Bound<'py, PyAny>>,
-    recorded: Recorded,
+    recording: &RecordingOptions,
 ) -> PyResult<Bound<'py, PyAny>> {
     let py = robot.py();
     let path = table.extract::<PathBuf>().ok();
     let format = path.as_deref().and_then(RecordFormat::table);
-    let table = match (path, format) {
-        (Some(path), Some(format)) if !format.is_text() => {
-            Table::Columns(format.parts(File::open(path)?).map_err(refused)?)
-        }
+    let states = match (path, format) {
+        (Some(path), Some(format)) if !format.is_text() => format.parts(File::open(path)?).map(States::Columns),
         _ => {
             let text = py.import("heelstrike._values")?.call_method1("to_csv", (table,))?;
-            Table::Text(text.extract()?, format.map_or(Form::Csv, RecordFormat::form))
+            States::of_text(Cursor::new(text.extract::<Vec<u8>>()?), format.map_or(Form::Csv, RecordFormat::form))
         }
     };
+    let states = states.map_err(refused)?;
     let defaults = Defaults { friction: mu.map(friction).transpose()?, ..Defaults::default() };
     let model = &robot.get().model;
-    let (out, notes) = without_python(py, || found(model, table, defaults, &recorded))?.map_err(refused)?;
+    let (out, notes) = without_python(py, || found(model, states, defaults, recording))?.map_err(refused)?;
     warn(py, notes)?;
     from_json(py, &out, None)
-}
-
-/// What a recording is read from.
-enum Table {
-    Text(Vec<u8>, Form),
-    Columns(Parts),
 }
 
 /// The answers to the touchdowns of a table, as a JSON list, and what a reader should know of them.
 fn found(
     model: &crate::robot::Model,
-    table: Table,
+    mut states: States,
     defaults: Defaults,
-    recorded: &Recorded,
+    recording: &RecordingOptions,
 ) -> heelstrike::Result<(Vec<u8>, Vec<String>)> {
-    let Recorded { velocity, at, touching, heights } = recorded;
-    let robot = &model.robot;
-    let rates = if velocity.is_some() { Rates::Time } else { Rates::Columns };
-    let header;
-    let mut rows: Box<dyn Iterator<Item = Sampled<RowOrigin>> + Send> = match table {
-        Table::Columns(mut parts) => {
-            header = parts.header(robot, rates, &[])?.with_time()?;
-            Box::new(samples_of_parts(parts, &header, robot, &defaults))
-        }
-        Table::Text(ref text, form) => {
-            let mut chunks = Chunks::of_table(&text[..], form);
-            let (line, record) = chunks.first()?.ok_or_else(|| Error::new(Reason::Missing("a header".into())))?;
-            let read = Header::read(&record, form, robot, rates, &[]).map_err(|error| match error.location() {
-                Some(Location { line: own, column }) => error.on(line + own - 1, column),
-                None => error,
-            });
-            header = read?.with_time()?;
-            chunks.expect_columns(header.count());
-            Box::new(samples(chunks, &header, robot, &defaults))
-        }
-    };
-    rows = Box::new(rows.take_while(|_| !interrupted()));
+    let (robot, feet) = (&model.robot, &model.options.feet[..]);
+    let header = states.header(robot, recording.rates(), &[], true).map_err(|refused| refused.error)?;
+    let header = header.ok_or_else(|| Error::new(Reason::Missing("a header".into())))?;
     let question = Question {
         robot,
         options: model.options.clone(),
@@ -195,21 +140,15 @@ fn found(
         columns: None,
         keyframes: false,
     };
-    let dropped = Mutex::default();
-    if header.is_spatial() {
-        rows = Box::new(gait::sagittal(rows, &dropped));
-    }
-    if let Some(difference) = velocity {
-        rows = Box::new(gait::rates(rows, *difference));
-    }
-    let rows = gait::find(rows, robot, &model.options.feet, *at, *touching)?.meaning(*heights);
+    let (thresholds, dropped) = (recording.thresholds(robot, feet)?, Mutex::default());
+    let rows = states.samples(&header, robot, &defaults).take_while(|_| !interrupted());
+    let rows = recording.chosen(Box::new(rows), &header, (robot, feet), thresholds, &dropped)?;
     let (mut source, mut batch, mut lines) = (Recording::new(rows), Batch::new(&question), Vec::new());
-    let (mut own_friction, mut answered) = (0, 0);
+    let mut summary = Summary::default();
     while let Some(states) = source.next()? {
         let block = batch.samples(states);
         lines.extend(block.out);
-        own_friction += block.summary.own_friction;
-        answered += block.summary.states;
+        summary.merge(block.summary);
         if interrupted() {
             break;
         }
@@ -217,9 +156,8 @@ fn found(
     drop(source);
     let dropped = dropped.into_inner().unwrap_or_default();
     let of_table = notes::missing(&header).into_iter().chain(notes::left_out(&header, &dropped));
-    let nothing = || Thresholds::of(robot, &model.options.feet).nothing_found(*heights);
-    let notes =
-        of_table.chain(notes::own_friction(own_friction, "state")).chain((answered == 0).then(nothing)).collect();
+    let nothing = (summary.states == 0).then(|| recording.nothing_found(thresholds));
+    let notes = of_table.chain(notes::own_friction(summary.own_friction, "state")).chain(nothing).collect();
     let lines: Vec<&[u8]> = lines.trim_ascii_end().split(|&byte| byte == b'\n').collect();
     Ok(([b"[", &*lines.join(&b','), b"]"].concat(), notes))
 }

@@ -1,6 +1,7 @@
 //! Python values as JSON and back, and refusals as exceptions.
 
 use heelstrike::Error;
+use heelstrike::cli::{Choices, named};
 use heelstrike::write::ErrorObject;
 use pyo3::create_exception;
 use pyo3::exceptions::PyValueError;
@@ -26,6 +27,12 @@ pub fn refused(error: Error) -> PyErr {
         let _ = value.setattr("place", short.place).and_then(|()| value.setattr("hint", short.hint));
     });
     refused
+}
+
+/// The value of a name that an argument may have.
+pub fn choice<T: Copy>(what: &str, choices: Choices<T>, name: Option<&str>) -> PyResult<Option<T>> {
+    let unknown = |name: &str, known| PyValueError::new_err(format!("{what} is {known}, not \"{name}\""));
+    name.map(|name| named(choices, name).map_err(|known| unknown(name, known))).transpose()
 }
 
 /// Warns with each of these notes.

@@ -13,7 +13,7 @@ from test_rows import command, state
 
 pytest.importorskip("pyspark")
 pa = pytest.importorskip("pyarrow")
-STATES = 3000
+STATES = 100_000
 
 
 def example(spark, name):
@@ -49,7 +49,7 @@ def test_map_in_arrow_gives_what_one_process_gives(spark, ramone, rows, tmp_path
 
     names = ["base_x", "base_z", "base_pitch", *ramone.coordinates[3:]]
     columns = {f"{part}_{name}": rows["qv".index(part)][:, at] for part in "qv" for at, name in enumerate(names)}
-    table = pa.table({"id": [f"k{at:06}" for at in range(STATES)], **columns, "friction": np.full(STATES, 0.5)})
+    table = pa.table({"id": np.arange(STATES), **columns, "friction": np.full(STATES, 0.5)})
     pa.parquet.write_table(table, tmp_path / "states.parquet")
     own = example(spark, "map_in_arrow")
     urdf = str(ROOT / "urdf/ramone.urdf")

@@ -49,7 +49,7 @@ def test_refusal_names_place_and_remedy(ramone):
         heelstrike.Robot("no.urdf")
     with pytest.raises(TypeError, match="plan"):
         heelstrike.Robot(URDF, plan="xz")
-    with pytest.raises(ValueError, match="plane is one of xz, yz, xy"):
+    with pytest.raises(ValueError, match="plane is one of auto, xz, yz, xy, not"):
         heelstrike.Robot(URDF, plane="zx")
 
 

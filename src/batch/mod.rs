@@ -11,13 +11,13 @@ mod summary;
 mod run;
 mod chunk;
 mod recording;
+mod states;
 
 use chunk::too_long;
 pub use chunk::{Chunk, Chunks, RECORD_LIMIT};
-#[cfg(feature = "columnar")]
-pub use recording::samples_of_parts;
-pub use recording::{Recording, RowOrigin, samples};
+pub use recording::{Recording, RowOrigin};
 pub use run::{Block, RefusedRecord, Sink, TaskSource, run};
+pub use states::States;
 pub use summary::{ModeCount, MoreFriction, Nearest, Needed, StateRef, Summary, Verdicts};
 
 use crate::budget::TotalBudget;
@@ -41,7 +41,7 @@ use serde_json::Value;
 pub struct Question<'r> {
     /// The robot of all states.
     pub robot: &'r Robot,
-    /// How contacts are found and what is computed.
+    /// How contacts are found and what is computed; the summary counts the friction needed if it is.
     pub options: Options,
     /// What states take that do not state it.
     pub defaults: Defaults,
@@ -110,7 +110,7 @@ impl<'q> Batch<'q> {
     pub fn new(question: &'q Question<'q>) -> Self {
         // Keyframes show all.
         let brief = question.detail.brief && !question.keyframes;
-        let options = Options { brief, friction_needed: true, ..question.options.clone() };
+        let options = Options { brief, ..question.options.clone() };
         let pipeline = Pipeline::new(question.robot, options);
         let lines = || Reader::Lines(Box::new(StateLines::new(question.robot, &question.defaults)));
         let reader = question.header.map_or_else(lines, |header| Reader::Rows(header.rows()));

@@ -29,7 +29,7 @@ pub struct RowOrigin {
 }
 
 /// The rows of a table with their times. If reading fails, the last sample is refused with [`Reason::Io`].
-pub fn samples<'h, R: Read + Send>(
+pub(super) fn samples<'h, R: Read + Send>(
     mut chunks: Chunks<R>,
     header: &'h Header,
     robot: &'h Robot,
@@ -59,7 +59,7 @@ pub fn samples<'h, R: Read + Send>(
 
 /// The same of columns with types.
 #[cfg(feature = "columnar")]
-pub fn samples_of_parts<'h>(
+pub(super) fn samples_of_parts<'h>(
     mut parts: Parts,
     header: &'h Header,
     robot: &'h Robot,

@@ -9,26 +9,24 @@ use super::options::{
 use super::origin::{Asked, Origin};
 use super::output::{NewFile, apart, spare, writable};
 use super::picture::{MirrorOptions, PlotOptions};
-use super::recording::{RecordingOptions, Samples};
+use super::recording::RecordingOptions;
 use super::resume::BatchOutput;
 use super::robot::RobotOptions;
 use super::sink::{OutputSink, note_part};
 use super::{Answered, Completion, Failure, input, progress};
-use crate::batch::{self, Batch, Chunks, Question, Recording, Summary};
+use crate::batch::{self, Batch, Question, Recording, RefusedRecord, States, Summary};
 use crate::budget::TotalBudget;
 use crate::draw::page::Gait;
-use crate::error::Location;
-use crate::error::excerpt::Excerpt;
 use crate::gait::{Dropped, Thresholds};
 use crate::pipeline::{Aspect, Options};
+use crate::read::table::Header;
 #[cfg(feature = "columnar")]
 use crate::read::table::Parts;
-use crate::read::table::{Form, Header, is_flat};
 use crate::state::NamedContact;
 use crate::write::{self, Columns, RowKind, notes};
 use crate::{Detail, Error, Reason, Robot};
 use indicatif::ProgressBar;
-use std::io::{self, Read, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
@@ -103,13 +101,6 @@ pub struct Args {
 const ON_REFUSED: Choices<Answered> =
     &[("fail", "The exit status is 1", Answered::NotAll), ("ok", "The exit status is 0", Answered::All)];
 
-/// The states of an input.
-enum States {
-    Text(Chunks<Box<dyn Read + Send>>),
-    #[cfg(feature = "columnar")]
-    Columns(Parts),
-}
-
 pub(super) fn run(args: &Args) -> Completion {
     let [input_format, format] = args.formats()?;
     args.check_files()?;
@@ -180,17 +171,6 @@ pub(super) fn run(args: &Args) -> Completion {
     Ok(if counts.refused + refused == 0 { Answered::All } else { args.refused })
 }
 
-impl States {
-    /// Whether nothing is left.
-    fn is_empty(&mut self) -> crate::Result<bool> {
-        match self {
-            Self::Text(chunks) => chunks.is_empty(),
-            #[cfg(feature = "columnar")]
-            Self::Columns(parts) => parts.is_empty(),
-        }
-    }
-}
-
 impl Args {
     /// The formats of input and output, which must have room for what is asked.
     fn formats(&self) -> Result<[RecordFormat; 2], Failure> {
@@ -218,10 +198,8 @@ impl Args {
     /// Opens the input.
     fn open(&self, format: RecordFormat, origin: &Origin, progress: &ProgressBar) -> crate::Result<States> {
         if format.is_text() {
-            let states: Box<dyn Read + Send> = Box::new(origin.watch(progress.wrap_read(input::stream(&self.states)?)));
-            let mut chunks = Chunks::of_table(states, format.form());
-            chunks.check_format()?;
-            return Ok(States::Text(chunks));
+            let states = origin.watch(progress.wrap_read(input::stream(&self.states)?));
+            return States::of_text(states, format.form());
         }
         #[cfg(feature = "columnar")]
         return Ok(States::Columns(match self.states == Path::new("-") {
@@ -261,6 +239,8 @@ impl Args {
             options: Options {
                 aspect: if self.forces { Aspect::Forces } else { Aspect::Impact },
                 next: self.next.next,
+                // For the summary, if it is shown.
+                friction_needed: self.summary.is_some() || !is_quiet(),
                 ..pipeline_options(
                     &self.scene.contacts,
                     feet,
@@ -299,8 +279,8 @@ impl Args {
 
     /// What the answers depend on, apart from the input.
     fn asked(&self, question: &Question<'_>, format: RecordFormat) -> Asked {
-        // The address of a budget's clock differs in each run.
-        let options = Options { budget: None, ..question.options.clone() };
+        // The address of a budget's clock differs in each run; the summary is none of the answers.
+        let options = Options { budget: None, friction_needed: false, ..question.options.clone() };
         let Question { robot, defaults, detail, header, .. } = question;
         Asked::new(
             robot,
@@ -319,28 +299,27 @@ impl Args {
     ) -> crate::Result<()> {
         let threads = self.threads.count();
         let (robot, defaults) = (question.robot, &question.defaults);
-        let samples: Samples = match (question.header.filter(|_| self.recording.is_in_order()), states) {
-            (Some(header), States::Text(chunks)) => Box::new(batch::samples(chunks, header, robot, defaults)),
-            #[cfg(feature = "columnar")]
-            (Some(header), States::Columns(parts)) => Box::new(batch::samples_of_parts(parts, header, robot, defaults)),
-            (None, States::Text(mut chunks)) => {
-                chunks.skip(answered)?;
-                let answerer = || {
-                    let mut batch = Batch::new(question);
-                    move |chunk| batch.records(&chunk)
-                };
-                return batch::run(chunks, threads, answerer, sink);
-            }
-            #[cfg(feature = "columnar")]
-            (None, States::Columns(parts)) => {
-                let answerer = || {
-                    let mut batch = Batch::new(question);
-                    move |part| batch.part(&part)
-                };
-                return batch::run(parts, threads, answerer, sink);
-            }
+        let Some(header) = question.header.filter(|_| self.recording.is_in_order()) else {
+            return match states {
+                States::Text(mut chunks, _) => {
+                    chunks.skip(answered)?;
+                    let answerer = || {
+                        let mut batch = Batch::new(question);
+                        move |chunk| batch.records(&chunk)
+                    };
+                    batch::run(chunks, threads, answerer, sink)
+                }
+                #[cfg(feature = "columnar")]
+                States::Columns(parts) => {
+                    let answerer = || {
+                        let mut batch = Batch::new(question);
+                        move |part| batch.part(&part)
+                    };
+                    batch::run(parts, threads, answerer, sink)
+                }
+            };
         };
-        let Some(header) = question.header else { return Ok(()) };
+        let samples = states.samples(header, robot, defaults);
         let known = (robot, &question.options.feet[..]);
         let samples = self.recording.chosen(samples, header, known, thresholds, dropped)?.skip(answered);
         let answerer = || {
@@ -371,7 +350,9 @@ impl Args {
         // A failure to write to standard error cannot be reported anywhere.
         let _ = match counts.states {
             _ if is_quiet() => Ok(()),
-            0 if self.recording.touchdowns => writeln!(io::stderr(), "{}", self.recording.nothing_found(thresholds)),
+            0 if self.recording.touchdowns => {
+                writeln!(io::stderr(), "{}", with_flags(&self.recording.nothing_found(thresholds)))
+            }
             0 | 1 if self.summary.is_none() => Ok(()),
             _ => write!(io::stderr(), "{}", with_flags(&counts.to_string())),
         };
@@ -381,52 +362,19 @@ impl Args {
         NewFile::write(path, &line)
     }
 
-    /// The columns of a table; `None` for lines of JSON that are not flat and for an empty table.
+    /// The columns of a table, if the input is one.
     fn header(&self, robot: &Robot, states: &mut States, format: RecordFormat) -> Result<Option<Header>, Failure> {
-        match states {
-            States::Text(chunks) => self.text_header(robot, chunks, format.form()),
-            #[cfg(feature = "columnar")]
-            States::Columns(parts) => {
-                let header = parts.header(robot, self.recording.rates(), &self.foreign);
-                let in_order = self.recording.is_in_order();
-                let header = header.and_then(|header| if in_order { header.with_time() } else { Ok(header) });
-                Ok(Some(header.map_err(|error| error.in_file(input::name(&self.states)))?))
-            }
-        }
-    }
-
-    /// The same of text.
-    fn text_header(
-        &self,
-        robot: &Robot,
-        chunks: &mut Chunks<impl Read + Send>,
-        form: Form,
-    ) -> Result<Option<Header>, Failure> {
         let in_order = self.recording.is_in_order();
-        let name = input::name(&self.states);
-        let first = if form == Form::Ndjson {
-            let flat = chunks.peek(|line| is_flat(line).map(|flat| flat.then(|| line.to_vec())));
-            flat.map(|first| first.and_then(|(line, record)| Some((line, record?))))
-        } else {
-            chunks.first()
-        };
-        // A table without any line has no states, like lines of JSON.
-        let Some((line, record)) = first.map_err(|error| error.in_file(&name))? else {
-            if form == Form::Ndjson && (in_order || !self.foreign.is_empty()) {
-                let what = if in_order { "touchdowns and velocities over time need" } else { "--foreign needs" };
-                let error = Error::new(Reason::Inconsistent(format!("{what} a table")));
-                return Err(Failure::Usage(error.hint("give CSV with a header, or say --input-format csv")));
-            }
-            return Ok(None);
-        };
-        let header = Header::read(&record, form, robot, self.recording.rates(), &self.foreign).map_err(|error| {
-            let place = error.location().unwrap_or(Location { line: 1, column: 1 });
-            let place = Location { line: line + place.line - 1, ..place };
-            let excerpt = Excerpt::around(&record, line, place);
-            Failure::Refused(error.on(place.line, place.column).in_file(&name), excerpt)
+        let header = states.header(robot, self.recording.rates(), &self.foreign, in_order);
+        let header = header.map_err(|RefusedRecord { error, excerpt }| {
+            Failure::Refused(error.in_file(input::name(&self.states)), excerpt)
         })?;
-        chunks.expect_columns(header.count());
-        let header = if in_order { header.with_time().map_err(|error| error.on(line, 1)) } else { Ok(header) };
-        Ok(Some(header.map_err(|error| error.in_file(name))?))
+        // A table without any line has no states, like lines of JSON.
+        if header.is_none() && format == RecordFormat::Ndjson && (in_order || !self.foreign.is_empty()) {
+            let what = if in_order { "touchdowns and velocities over time need" } else { "--foreign needs" };
+            let error = Error::new(Reason::Inconsistent(format!("{what} a table")));
+            return Err(Failure::Usage(error.hint("give CSV with a header, or say --input-format csv")));
+        }
+        Ok(header)
     }
 }

@@ -22,6 +22,8 @@ const FLAGS: &[(&str, &str)] = &[
     ("resting_speed", "--resting-speed"),
     ("friction", "--friction"),
     ("velocity", "--velocity"),
+    ("drop", "--drop"),
+    ("ground_height", "--ground-height"),
     ("foreign", "--foreign"),
     ("input_format", "--input-format"),
     ("format", "--format"),

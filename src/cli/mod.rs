@@ -30,14 +30,16 @@ mod reference;
 pub use clock::work_time;
 pub use format::RecordFormat;
 pub use meshes::Meshes;
-pub use options::{Seconds, from_zero, seconds, threads};
+pub use options::{Choices, Seconds, from_zero, named, seconds, threads};
+pub use recording::{DIFFERENCES, ROWS, RecordingOptions};
+pub use robot::{BASES, PLANES};
 
 use crate::error::excerpt::Excerpt;
 use crate::error::visible;
 use anstream::ColorChoice;
 use clap::{Parser, Subcommand};
 use diagnostic::{report, report_with};
-use options::{Choices, choice};
+use options::choice;
 use std::borrow::Cow;
 use std::ffi::OsString;
 use std::io::{self, Write};

@@ -192,7 +192,7 @@ impl ReductionOptions {
 }
 
 /// The values that an option may have: name, help and meaning of each; behind a name and `|` another one for it.
-pub(super) type Choices<T> = &'static [(&'static str, &'static str, T)];
+pub type Choices<T> = &'static [(&'static str, &'static str, T)];
 
 /// Reads one of these names.
 pub(super) fn choice<T: Copy + Send + Sync + 'static>(choices: Choices<T>) -> impl TypedValueParser<Value = T> {
@@ -200,9 +200,18 @@ pub(super) fn choice<T: Copy + Send + Sync + 'static>(choices: Choices<T>) -> im
         let mut names = names.split('|');
         PossibleValue::new(names.next().unwrap_or_default()).aliases(names).help(help)
     });
-    PossibleValuesParser::new(values).try_map(|given| {
-        let known = choices.iter().find(|(names, ..)| names.split('|').any(|name| name == given));
-        known.map(|(.., value)| *value).ok_or("expected one of its values")
+    PossibleValuesParser::new(values).try_map(move |given| named(choices, &given))
+}
+
+/// The value of this name.
+///
+/// # Errors
+/// The names that there are.
+pub fn named<T: Copy>(choices: Choices<T>, name: &str) -> Result<T, String> {
+    let found = choices.iter().find(|(names, ..)| names.split('|').any(|known| known == name));
+    found.map(|(.., value)| *value).ok_or_else(|| {
+        let known: Vec<&str> = choices.iter().filter_map(|(names, ..)| names.split('|').next()).collect();
+        format!("one of {}", known.join(", "))
     })
 }
 

@@ -12,7 +12,7 @@ use std::sync::Mutex;
 /// Options for rows that follow each other in time.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Recordings")]
-pub(super) struct RecordingOptions {
+pub struct RecordingOptions {
     /// Answer only touchdowns: the moments at which a foot reaches the ground from above
     ///
     /// A foot touches down if it descends far enough (--drop), faster than 0.05 m/s, and stops low enough
@@ -26,40 +26,42 @@ pub(super) struct RecordingOptions {
     ///
     /// The moment is where its height is zero as the up to six rows before it go on. For recordings without noise.
     #[arg(long, requires = "touchdowns", conflicts_with = "ground_height")]
-    simulated: bool,
+    pub simulated: bool,
     /// Which state of a touchdown is analyzed
     #[arg(long, value_parser = choice(ROWS), default_value = "crossing", requires = "touchdowns")]
-    at: At,
+    pub at: At,
     /// Which other feet touch the ground at a touchdown: strike (none), slow:SPEED,HEIGHT or near:HEIGHT
     ///
     /// With slow, the lowest point of every other body, if it is slower than SPEED (m/s) and its height differs from
     /// the striking point's by at most HEIGHT (m): standing feet. With near, every point at such a height, at any
     /// speed.
     #[arg(long, value_name = "WHICH", default_value_t, requires = "touchdowns")]
-    touching: Touching,
+    pub touching: Touching,
     /// How far a foot must have descended, in meters [default: 0.012, less for robots below 0.25 m]
     #[arg(long, value_name = "HEIGHT", value_parser = from_zero, requires = "touchdowns")]
-    drop: Option<f64>,
+    pub drop: Option<f64>,
     /// How far above z = 0 a foot may stop, in meters [default: 0.02, less for robots below 0.25 m]
     #[arg(long, value_name = "HEIGHT", value_parser = from_zero, requires = "touchdowns")]
-    ground_height: Option<f64>,
+    pub ground_height: Option<f64>,
     /// Compute velocities from the positions and the column "time"
     #[arg(long, value_parser = choice(DIFFERENCES), value_name = "HOW")]
-    velocity: Option<Difference>,
+    pub velocity: Option<Difference>,
 }
 
-const ROWS: Choices<At> = &[
+/// Which state of a touchdown is analyzed.
+pub const ROWS: Choices<At> = &[
     ("crossing", "The state at the moment of contact, extrapolated from the rows before the impact", At::Crossing),
     ("row", "The last row before that moment, shifted in z", At::Row),
 ];
 
-const DIFFERENCES: Choices<Difference> = &[
+/// How velocities are computed.
+pub const DIFFERENCES: Choices<Difference> = &[
     ("central", "From the rows before and after", Difference::Central),
     ("backward", "From the row before", Difference::Backward),
 ];
 
 /// The samples of a recording, in order.
-pub(super) type Samples<'a> = Box<dyn Iterator<Item = Sampled<RowOrigin>> + Send + 'a>;
+pub type Samples<'a> = Box<dyn Iterator<Item = Sampled<RowOrigin>> + Send + 'a>;
 
 impl RecordingOptions {
     /// Whether rows depend on each other.
@@ -117,8 +119,8 @@ impl RecordingOptions {
 
     /// What to say if there are no touchdowns.
     pub fn nothing_found(&self, thresholds: Thresholds) -> String {
-        let flags = if self.simulated { "--drop" } else { "--drop, --ground-height" };
-        format!("{} (see {flags})", thresholds.nothing_found(self.heights()))
+        let settings = if self.simulated { "`drop`" } else { "`drop`, `ground_height`" };
+        format!("{} (see {settings})", thresholds.nothing_found(self.heights()))
     }
 
     fn heights(&self) -> Heights {

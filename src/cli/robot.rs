@@ -43,14 +43,16 @@ pub(super) struct RobotOptions {
 /// `None` is for the robot to decide.
 type ChosenPlane = Option<Plane>;
 
-const PLANES: Choices<ChosenPlane> = &[
+/// The planes that a robot may move in.
+pub const PLANES: Choices<ChosenPlane> = &[
     ("auto", "The one in which all revolute joints turn, else the one in which most of the legs turn", None),
     ("xz", "x forward, z up", Some(Plane::XZ)),
     ("yz", "y forward, z up", Some(Plane::YZ)),
     ("xy", "x forward, y up", Some(Plane::XY)),
 ];
 
-const BASES: Choices<Base> =
+/// What a robot's root link may be.
+pub const BASES: Choices<Base> =
     &[("fixed", "It is fixed to the world", Base::Fixed), ("floating", "It moves freely", Base::Floating)];
 
 /// A joint that is fixed at a value.

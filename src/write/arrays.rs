@@ -5,7 +5,7 @@ use super::{Columns, ErrorObject};
 use crate::impact::CONTACT_LIMIT;
 use crate::{Impact, Result};
 use serde::{Deserialize, Serialize};
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// The answers to many states. Lists per state have one entry for each; lists per outcome one for each outcome of each
@@ -55,7 +55,7 @@ pub struct Texts {
     /// Each text once.
     pub known: Vec<String>,
     #[serde(skip)]
-    places: HashMap<String, usize>,
+    places: BTreeMap<String, usize>,
 }
 
 impl Texts {
@@ -94,16 +94,30 @@ impl Arrays {
 
     /// No answer yet; those to come are of contacts and coordinates that have these `columns`.
     pub fn new(columns: &Columns) -> Self {
-        Self::of(columns.contacts().into())
+        Self::of(columns.contacts().into(), 0)
     }
 
-    /// No answer yet, of the same contacts.
-    pub fn none(&self) -> Self {
-        Self::of(Arc::clone(&self.contacts))
+    /// No answer yet, of the same contacts, with room for those to so many states of one outcome each.
+    pub fn for_states(&self, states: usize) -> Self {
+        Self::of(Arc::clone(&self.contacts), states)
     }
 
-    fn of(contacts: Arc<[String]>) -> Self {
-        Self { contacts, offsets: vec![0], ..Self::default() }
+    fn of(contacts: Arc<[String]>, states: usize) -> Self {
+        let mut offsets = Vec::with_capacity(states + 1);
+        offsets.push(0);
+        Self {
+            verdict: Vec::with_capacity(states),
+            all_proven: Vec::with_capacity(states),
+            offsets,
+            modes: Vec::with_capacity(states * contacts.len()),
+            impulse: Vec::with_capacity(2 * states * contacts.len()),
+            margin: Vec::with_capacity(states),
+            index: Vec::with_capacity(states),
+            proven: Vec::with_capacity(states),
+            family: Vec::with_capacity(states),
+            contacts,
+            ..Self::default()
+        }
     }
 
     /// Adds the answer to the next state; one whose contacts have no columns is refused.

@@ -117,7 +117,7 @@ impl Parts {
         }
         let carried: Vec<usize> = header.places(TableColumn::Carried).collect();
         let carried = self.schema.project(&carried).map_err(unreadable)?;
-        let id = header.place(TableColumn::Id).map(|at| kind(self.schema.field(at).data_type()));
+        let id = header.id.map(|at| kind(self.schema.field(at).data_type()));
         header.types = Some((Arc::new(carried), id == Some(DataType::Int64)));
         self.columns = header.columns.clone().into();
         Ok(header)

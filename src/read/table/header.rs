@@ -49,6 +49,9 @@ pub struct Header {
     foreign: Vec<String>,
     missing: Vec<String>,
     pub(crate) form: Form,
+    /// The columns of ids, of stances and of the time.
+    pub(crate) id: Option<usize>,
+    pub(crate) stance: Option<usize>,
     pub(crate) time: Option<usize>,
     pub(crate) spatial: Option<SpatialColumns>,
     /// Of columns with types: the fields that are carried through, and whether ids are whole numbers.
@@ -126,13 +129,17 @@ impl Header {
             };
             columns.push(column.map_err(|error| in_column(error, record, at, name))?);
         }
-        let time = names.iter().position(|name| name == "time");
+        let known = |wanted| columns.iter().position(|&column| column == wanted);
+        let (id, stance, time) =
+            (known(TableColumn::Id), known(TableColumn::Stance), names.iter().position(|name| name == "time"));
         let mut header = Self {
             names,
             columns,
             foreign: foreign.to_owned(),
             missing: Vec::new(),
             form: record.form,
+            id,
+            stance,
             time,
             spatial: None,
             #[cfg(feature = "columnar")]
@@ -142,7 +149,7 @@ impl Header {
         header.missing = header.absent(robot, rates);
         header.check_foreign(record, foreign)?;
         header.check(record, robot, rates)?;
-        if header.place(TableColumn::Stance).is_some() {
+        if header.stance.is_some() {
             let placed = ["q_base_x", "q_base_z", "v_base_x", "v_base_z"];
             header.missing.retain(|name| !placed.contains(&name.as_str()));
         }

@@ -224,7 +224,7 @@ impl Row<'_> {
 
     /// Its id, if it can be read.
     pub fn id(&self) -> Option<Value> {
-        let at = self.header.place(TableColumn::Id)?;
+        let at = self.header.id?;
         let cells = match self.source {
             Source::Text(cells, _) => cells,
             #[cfg(feature = "columnar")]
@@ -337,7 +337,7 @@ impl Row<'_> {
     }
 
     fn stance(&self, robot: &Robot) -> Result<Option<usize>> {
-        let Some(at) = self.header.place(TableColumn::Stance) else { return Ok(None) };
+        let Some(at) = self.header.stance else { return Ok(None) };
         let name = match self.cell(at)? {
             Cell::Empty => return Ok(None),
             Cell::Text(name) => name,
