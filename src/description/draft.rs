@@ -1,10 +1,9 @@
-//! XML elements -> links and joints: checked and located, with the values that urdf-rs reads of their strict copy.
+//! XML elements -> links and joints: checked and located.
 
 use super::elements::{ByName, EXPAND, IgnoredCount, WORLD, undefined_world};
 use super::repair::Repaired;
-use super::strict::{ANY, copy, copy_axis, copy_collision, copy_inertial, copy_origin, geometry, pose, values};
 use super::xml::{self, Cursor, MOST_LINKS, Unparsed};
-use super::{Collision, Description, Inertial, JointKind, Mimic, UrdfJoint, UrdfLink, joint_place, link_place};
+use super::{Collision, Description, JointKind, UrdfJoint, UrdfLink, joint_place, link_place, values};
 use crate::error::{Location, Reason, Result};
 use roxmltree::{Document, Node};
 
@@ -144,7 +143,8 @@ fn refuse_xacro(robot: Node<'_, '_>) -> Result<()> {
         };
         for inside in element.descendants().filter(|node| node.is_element() && node.tag_name().name() != "gazebo") {
             let mut values = inside.attributes().map(|attribute| attribute.value());
-            if let Some(value) = values.find(|value| value.contains("${") || value.contains("$(")) {
+            if let Some(value) = values.find(|value| value.split('$').skip(1).any(|rest| rest.starts_with(['{', '('])))
+            {
                 let name = element.attribute("name").unwrap_or_default();
                 return Err(refused(inside, format!("\"{value}\"")).at(place(name)));
             }
@@ -159,32 +159,21 @@ fn tag<'a>(robot: Node<'_, '_>, element: Node<'a, '_>) -> Option<&'a str> {
 }
 
 fn read_link(name: &str, element: Node<'_, '_>, location: Location, ignored: &mut IgnoredCount) -> Result<UrdfLink> {
-    let mut strict = String::from("<link name=\"\">");
     // An empty one says no more than none.
     let inertial =
         xml::child(element, "inertial")?.filter(|inertial| inertial.children().any(|child| child.is_element()));
-    let has_inertia = inertial.map(|inertial| copy_inertial(inertial, &mut strict)).transpose()?;
-    let mut shapes = Vec::new();
+    let inertial = inertial.map(values::inertial).transpose()?;
+    let mut collisions = Vec::new();
     for child in element.children().filter(Node::is_element) {
         match tag(element, child) {
-            Some("collision") => shapes.push(copy_collision(child, &mut strict)?),
+            Some("collision") => {
+                collisions.push(Collision { origin: values::origin(child)?, geometry: values::geometry(child)? });
+            }
             Some("inertial" | "visual") => {}
             _ => ignored.count("link", child)?,
         }
     }
-    strict.push_str("</link>");
-
-    let urdf_rs::Link { inertial, collision, .. } = values(&strict, |mut robot| robot.links.pop())?;
-    let urdf_rs::Inertia { ixx, ixy, ixz, iyy, iyz, izz } = inertial.inertia;
-    let inertial = has_inertia.map(|has_inertia| Inertial {
-        origin: pose(&inertial.origin),
-        mass: inertial.mass.value,
-        inertia: has_inertia.then_some([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]]),
-    });
-    let collisions = shapes.into_iter().zip(&collision);
-    let collisions = collisions
-        .map(|(shape, values)| Collision { origin: pose(&values.origin), geometry: geometry(shape, &values.geometry) });
-    Ok(UrdfLink { inertial, collisions: collisions.collect(), name: name.into(), joint: None, location })
+    Ok(UrdfLink { name: name.into(), inertial, collisions, joint: None, location })
 }
 
 fn read_joint(
@@ -198,37 +187,17 @@ fn read_joint(
     let kind = joint_kind(element)?;
     let parent = links.find(xml::required_child(element, "parent")?, "link")?;
     let child = links.find(xml::required_child(element, "child")?, "link")?;
-    let mut strict = format!("<joint name=\"\" type=\"{}\">", kind.name());
-    copy_origin(element, &mut strict)?;
-    strict.push_str("<parent link=\"\"/><child link=\"\"/>");
-    let given = xml::child(element, "axis")?;
-    if let Some(axis) = given {
-        copy_axis(axis, kind, &mut strict)?;
-    }
-    let has_axis = given.is_some_and(|axis| axis.has_attribute("xyz"));
-    let mut mimicked = None;
-    if let Some(mimic) = xml::child(element, "mimic")? {
-        mimicked = Some(joints.find(mimic, "joint")?);
-        strict.push_str("<mimic joint=\"\"");
-        copy(mimic, "multiplier", 1, ANY, &mut strict)?;
-        copy(mimic, "offset", 1, ANY, &mut strict)?;
-        strict.push_str("/>");
-    }
-    strict.push_str("</joint>");
+    let origin = values::origin(element)?;
+    let axis = values::axis(element, kind)?;
+    let mimic = xml::child(element, "mimic")?.map(|mimic| values::mimic(mimic, joints.find(mimic, "joint")?));
+    let mimic = mimic.transpose()?;
     for child in element.children().filter(Node::is_element) {
         match tag(element, child) {
             Some("origin" | "parent" | "child" | "axis" | "mimic") => {}
             _ => ignored.count("joint", child)?,
         }
     }
-
-    let values = values(&strict, |mut robot| robot.joints.pop())?;
-    let mimic = mimicked.zip(values.mimic).map(|(joint, values)| Mimic {
-        joint,
-        multiplier: values.multiplier.unwrap_or(1.0),
-        offset: values.offset.unwrap_or(0.0),
-    });
-    let (origin, axis) = (pose(&values.origin), values.axis.xyz.0);
+    let (has_axis, axis) = (axis.is_some(), axis.unwrap_or_default().xyz.0);
     let limits = limits(element).filter(|_| matches!(kind, JointKind::Revolute | JointKind::Prismatic));
     Ok(UrdfJoint { name: name.into(), kind, parent, child, origin, axis, has_axis, mimic, limits, location })
 }

@@ -2,20 +2,19 @@
 //! one tree. The only user of urdf-rs and roxmltree.
 //!
 //! ```text
-//!     text --repair, xml--> elements --draft: strict copy, urdf-rs--> links, joints --tree--> Description
+//!     text --repair, xml--> elements --draft: values in urdf-rs's types--> links, joints --tree--> Description
 //! ```
 //!
-//! urdf-rs alone is too trusting and too strict: it drops non-numbers from a vector, reads a missing `<inertial>` as a
-//! mass of zero, and refuses an incomplete `<limit>`. So `draft` checks every element with its place in the text, and
-//! urdf-rs reads the values from a strict copy of it. Nothing here opens a file, starts a process or recurses, and time
-//! and memory grow linearly with the text.
+//! urdf-rs's own reader is too trusting and too strict: it drops non-numbers from a vector, reads a missing `<inertial>`
+//! as a mass of zero, and refuses an incomplete `<limit>`. So every element is checked with its place in the text.
+//! Nothing here opens a file, starts a process or recurses, and time and memory grow linearly with the text.
 
 mod pose;
 mod xml;
 mod repair;
 mod elements;
 mod mesh;
-mod strict;
+mod values;
 mod draft;
 mod mimic;
 mod tree;

@@ -105,8 +105,8 @@ fn refuse_many(text: &str) -> Result<()> {
         let commented = in_comment || part.starts_with("!--");
         in_comment = commented && !part.contains("-->");
         links += usize::from(!commented && is_link(part));
-        let attributes = part.split('=').skip(1).filter(|value| value.trim_start().starts_with(['"', '\'']));
-        let attributes = attributes.count();
+        let is_attribute = |&at: &usize| part[at + 1..].trim_start().starts_with(['"', '\'']);
+        let attributes = memchr::memchr_iter(b'=', part.as_bytes()).filter(is_attribute).count();
         all_attributes += attributes;
         for (what, count, limit) in [
             ("links", links, MOST_LINKS),
@@ -191,14 +191,12 @@ impl<'a> Cursor<'a> {
 
     /// Line and column of the byte `offset`, which must not lie before the last one.
     pub(super) fn locate(&mut self, offset: usize) -> Location {
-        for character in self.text.get(self.offset..offset).unwrap_or_default().chars() {
-            if character == '\n' {
-                self.location.line += 1;
-                self.location.column = 1;
-            } else {
-                self.location.column += 1;
-            }
+        let passed = self.text.get(self.offset..offset).unwrap_or_default();
+        let lines = memchr::memchr_iter(b'\n', passed.as_bytes()).count();
+        if lines > 0 {
+            self.location = Location { line: self.location.line + lines, column: 1 };
         }
+        self.location.column += passed.rsplit('\n').next().unwrap_or_default().chars().count();
         self.offset = self.offset.max(offset);
         self.location
     }

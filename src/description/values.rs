@@ -1,0 +1,119 @@
+//! The values of an element in urdf-rs's types, each number checked: urdf-rs gives the types and what holds where a
+//! file leaves something out, roxmltree the attributes.
+
+use super::{Geometry, Inertial, JointKind, Mesh, Mimic, Pose, xml};
+use crate::error::{Reason, Result};
+use roxmltree::Node;
+use urdf_rs::Vec3;
+
+/// The least number that an attribute may hold: any, or none that is negative.
+const ANY: f64 = f64::NEG_INFINITY;
+const NOT_NEGATIVE: f64 = 0.0;
+
+impl From<urdf_rs::Pose> for Pose {
+    fn from(urdf_rs::Pose { xyz, rpy }: urdf_rs::Pose) -> Self {
+        Self { xyz: xyz.0, rpy: rpy.0 }
+    }
+}
+
+/// The `<origin>` of `parent`.
+pub(super) fn origin(parent: Node<'_, '_>) -> Result<Pose> {
+    let Some(origin) = xml::child(parent, "origin")? else { return Ok(urdf_rs::Pose::default().into()) };
+    if origin.has_attribute("quat_xyzw") {
+        let reason = "quat_xyzw of <origin> is not handled".into();
+        return Err(xml::refuse(origin, Reason::Unsupported(reason)).hint("give the rotation as rpy"));
+    }
+    let vector = |name| optional(origin, name, ANY).map(|xyz| xyz.map(Vec3).unwrap_or_default());
+    Ok(urdf_rs::Pose { xyz: vector("xyz")?, rpy: vector("rpy")? }.into())
+}
+
+/// An `<inertial>`.
+pub(super) fn inertial(element: Node<'_, '_>) -> Result<Inertial> {
+    let origin = origin(element)?;
+    let [mass] = required(xml::required_child(element, "mass")?, "value", NOT_NEGATIVE)?;
+    let inertia = xml::child(element, "inertia")?.map(inertia).transpose()?;
+    let matrix =
+        |urdf_rs::Inertia { ixx, ixy, ixz, iyy, iyz, izz }| [[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]];
+    Ok(Inertial { origin, mass, inertia: inertia.map(matrix) })
+}
+
+/// An `<inertia>`; a file that leaves out the products of inertia means that there are none.
+fn inertia(element: Node<'_, '_>) -> Result<urdf_rs::Inertia> {
+    let moment = |name| required(element, name, ANY).map(|[moment]| moment);
+    let product = |name| optional(element, name, ANY).map(|product| product.map_or(0.0, |[product]| product));
+    let (ixx, iyy, izz) = (moment("ixx")?, moment("iyy")?, moment("izz")?);
+    Ok(urdf_rs::Inertia { ixx, iyy, izz, ixy: product("ixy")?, ixz: product("ixz")?, iyz: product("iyz")? })
+}
+
+/// The `<geometry>` of a `<collision>`.
+pub(super) fn geometry(collision: Node<'_, '_>) -> Result<Geometry> {
+    let geometry = xml::required_child(collision, "geometry")?;
+    // Beside a shape of URDF elements of other programs may stand, such as <drake:declare_convex>.
+    let (mut shapes, foreign) = (xml::children(geometry), || geometry.children().find(Node::is_element));
+    let missing = || xml::refuse(geometry, Reason::Missing("a shape in <geometry>".into()));
+    let shape = shapes.next().or_else(foreign).ok_or_else(missing)?;
+    if let Some(second) = shapes.next() {
+        let reason = format!("<{}> is a second shape in one <geometry>", second.tag_name().name());
+        return Err(xml::refuse(second, Reason::Inconsistent(reason)).hint("give each shape a <collision> of its own"));
+    }
+    let size = |name| required(shape, name, NOT_NEGATIVE).map(|[size]| size);
+    Ok(match shape.tag_name().name() {
+        "box" => Geometry::Box { size: required(shape, "size", NOT_NEGATIVE)? },
+        "cylinder" => Geometry::Cylinder { radius: size("radius")?, length: size("length")? },
+        "capsule" => Geometry::Capsule { radius: size("radius")?, length: size("length")? },
+        "sphere" => Geometry::Sphere { radius: size("radius")? },
+        "mesh" => {
+            let scale = optional(shape, "scale", ANY)?.unwrap_or([1.0; 3]);
+            let file = xml::required_attribute(shape, "filename")?.into();
+            Geometry::Mesh { file, scale, mesh: Mesh::Unread }
+        }
+        tag => Geometry::Unknown { tag: tag.into() },
+    })
+}
+
+/// The `<axis>` of a joint, if it has a direction: `<axis/>` means what no `<axis>` means. It must not be zero where the
+/// joint has an axis.
+pub(super) fn axis(joint: Node<'_, '_>, kind: JointKind) -> Result<Option<urdf_rs::Axis>> {
+    let Some(axis) = xml::child(joint, "axis")? else { return Ok(None) };
+    let Some(xyz) = optional(axis, "xyz", ANY)? else { return Ok(None) };
+    if kind.has_axis() && xyz == [0.0; 3] {
+        let reason = "xyz of <axis> is zero, so the joint has no direction".into();
+        return Err(xml::refuse(axis, Reason::Inconsistent(reason)));
+    }
+    Ok(Some(urdf_rs::Axis { xyz: Vec3(xyz) }))
+}
+
+/// A `<mimic>` of the joint with the index `joint`.
+pub(super) fn mimic(element: Node<'_, '_>, joint: usize) -> Result<Mimic> {
+    let value = |name, default| optional(element, name, ANY).map(|value| value.map_or(default, |[value]| value));
+    Ok(Mimic { joint, multiplier: value("multiplier", 1.0)?, offset: value("offset", 0.0)? })
+}
+
+/// The numbers of an attribute that must be there; see [`numbers`].
+fn required<const N: usize>(element: Node<'_, '_>, name: &str, least: f64) -> Result<[f64; N]> {
+    numbers(element, name, xml::required_attribute(element, name)?, least)
+}
+
+/// The numbers of an attribute that may be missing; see [`numbers`].
+fn optional<const N: usize>(element: Node<'_, '_>, name: &str, least: f64) -> Result<Option<[f64; N]>> {
+    element.attribute(name).map(|text| numbers(element, name, text, least)).transpose()
+}
+
+/// The numbers in the `text` of an attribute: `N` finite ones from `least` on.
+fn numbers<const N: usize>(element: Node<'_, '_>, name: &str, text: &str, least: f64) -> Result<[f64; N]> {
+    let what = || format!("{name} of <{}>", element.tag_name().name());
+    let (mut numbers, mut words) = ([0.0; N], text.split_whitespace());
+    let mut read = |number: &mut f64| words.next().and_then(|word| word.parse().ok()).map(|value| *number = value);
+    if numbers.iter_mut().any(|number| read(number).is_none()) || words.next().is_some() {
+        let expected = if N == 1 { "a number".into() } else { format!("{N} numbers") };
+        let reason = format!("{} must be {expected}, not \"{text}\"", what());
+        return Err(xml::refuse(element, Reason::Syntax(reason)));
+    }
+    match numbers.iter().find(|number| !number.is_finite() || **number < least) {
+        None => Ok(numbers),
+        Some(&value) if value.is_finite() => {
+            Err(xml::refuse(element, Reason::OutOfRange { what: what(), allowed: "at least 0", value }))
+        }
+        Some(&value) => Err(xml::refuse(element, Reason::NotFinite { what: what(), value })),
+    }
+}
