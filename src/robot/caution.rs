@@ -4,7 +4,7 @@ use super::legs::OBLIQUE;
 use super::plane::Plane;
 use super::reading::{FreezeReason, FrozenJoint};
 use super::reference_pose::ReferencePose;
-use crate::description::{Description, Geometry, JointKind, Matrix, Mesh, apply, turn};
+use crate::description::{Description, Geometry, JointKind, Matrix, Mesh, UrdfLink, apply, turn};
 
 /// An axis up to this far off the normal \[rad\] may have been meant to be parallel to it.
 const NEARLY: f64 = 0.35;
@@ -24,18 +24,19 @@ pub(super) struct Seen<'a> {
     pub(super) legs: &'a [bool],
 }
 
-/// The cautions about joints that are frozen, of which `kept` others stay.
-pub(super) fn about_frozen(seen: &Seen, frozen: &[FrozenJoint], kept: usize) -> Vec<String> {
+/// The cautions about joints that are frozen, each with its place in the file, where `kept` others stay.
+pub(super) fn about_frozen(seen: &Seen, frozen: &[(usize, FrozenJoint)], kept: usize) -> Vec<String> {
     use FreezeReason::{Asked, Base, Fixed, Kind, OffPlane};
-    let with = |wanted: fn(&FreezeReason) -> bool| frozen.iter().filter(move |joint| wanted(&joint.reason));
+    let with = |wanted: fn(&FreezeReason) -> bool| frozen.iter().filter(move |(_, joint)| wanted(&joint.reason));
     let movable: Vec<_> = with(|reason| !matches!(reason, Fixed | Asked { .. } | Base)).collect();
     let off = |joint: &FrozenJoint, most: f64| matches!(joint.reason, OffPlane { angle, .. } if angle <= most);
-    let is_leg = |joint: &FrozenJoint| seen.description.joint(&joint.name).is_some_and(|index| seen.legs[index]);
-    let many = frozen.iter().filter(|joint| off(joint, NEARLY)).count() >= kept;
-    let tilted = |joint: &&FrozenJoint| many && off(joint, NEARLY) || is_leg(joint) && off(joint, OBLIQUE);
+    let many = frozen.iter().filter(|(_, joint)| off(joint, NEARLY)).count() >= kept;
+    let tilted = |&&(index, ref joint): &&(usize, FrozenJoint)| {
+        many && off(joint, NEARLY) || seen.legs[index] && off(joint, OBLIQUE)
+    };
     let nearly: Vec<_> = frozen.iter().filter(tilted).collect();
     let hidden: Vec<_> = with(|reason| matches!(reason, Kind(_))).collect();
-    let names = |joints: &[&FrozenJoint]| names(joints.iter().map(|joint| joint.name.as_str()));
+    let names = |joints: &[&(usize, FrozenJoint)]| names(joints.iter().map(|(_, joint)| joint.name.as_str()));
     let mut cautions = Vec::new();
     if !nearly.is_empty() {
         cautions.push(about_tilted(seen, &nearly, movable.len() + kept));
@@ -57,13 +58,10 @@ pub(super) fn about_frozen(seen: &Seen, frozen: &[FrozenJoint], kept: usize) -> 
 }
 
 /// The caution about links of the base that could touch the ground; the root's shapes are the ground's or the rail's.
-pub(super) fn about_outside(description: &Description, outside: &[String]) -> Option<String> {
+pub(super) fn about_outside(description: &Description, outside: &[&UrdfLink]) -> Option<String> {
     let root = &description.links[description.root].name;
-    let touching = |name: &String| {
-        let link = description.links.iter().find(|link| link.name == *name);
-        name != root && link.is_some_and(|link| !link.collisions.is_empty())
-    };
-    let touching = names(outside.iter().filter(|name| touching(name)).map(String::as_str));
+    let touching = outside.iter().filter(|link| link.name != *root && !link.collisions.is_empty());
+    let touching = names(touching.map(|link| link.name.as_str()));
     (!touching.is_empty()).then(|| {
         format!(
             "{touching} has collision shapes but belongs to the base, so they are left out: if it is a foot, name one on \
@@ -97,17 +95,19 @@ pub(super) fn about_lengths(description: &Description) -> Option<String> {
         }
         Geometry::Mesh { .. } | Geometry::Unknown { .. } => 0.0,
     };
-    let shapes = description.links.iter().flat_map(|link| {
-        let extents = link.collisions.iter().map(|collision| extent(&collision.geometry));
-        extents.map(|extent| (format!("a shape of {}", link.name), extent))
-    });
-    let joints = description.joints.iter().map(|joint| {
-        (format!("the origin of {}", joint.name), joint.origin.xyz.iter().fold(0.0_f64, |most, x| most.max(x.abs())))
-    });
-    let (what, length) = joints.chain(shapes).max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let shapes = description
+        .links
+        .iter()
+        .flat_map(|link| link.collisions.iter().map(|collision| ("a shape", &link.name, extent(&collision.geometry))));
+    let joints = description
+        .joints
+        .iter()
+        .map(|joint| ("the origin", &joint.name, joint.origin.xyz.iter().fold(0.0_f64, |most, x| most.max(x.abs()))));
+    let (what, name, length) = joints.chain(shapes).max_by(|a, b| a.2.total_cmp(&b.2))?;
     (length > LONGEST).then(|| {
         format!(
-            "{what} spans {length} m: lengths are in meters; scale=\"0.001 0.001 0.001\" is for meshes in millimeters"
+            "{what} of {name} spans {length} m: lengths are in meters; scale=\"0.001 0.001 0.001\" is for meshes in \
+             millimeters"
         )
     })
 }
@@ -135,8 +135,8 @@ pub(super) fn about_meshes(description: &Description) -> Option<String> {
 }
 
 /// The caution about joints whose axes are nearly parallel to the normal, out of `all` that could move.
-fn about_tilted(seen: &Seen, nearly: &[&FrozenJoint], all: usize) -> String {
-    let angles = nearly.iter().filter_map(|joint| match joint.reason {
+fn about_tilted(seen: &Seen, nearly: &[&(usize, FrozenJoint)], all: usize) -> String {
+    let angles = nearly.iter().filter_map(|(_, joint)| match joint.reason {
         FreezeReason::OffPlane { angle, .. } => Some(angle),
         _ => None,
     });
@@ -146,7 +146,7 @@ fn about_tilted(seen: &Seen, nearly: &[&FrozenJoint], all: usize) -> String {
     let range = if least == most { most } else { format!("{least} to {most}") };
     let slightly = angles.filter(|&angle| angle <= SLIGHTLY).fold(0.0, f64::max);
     let mut remedies: Vec<Remedy> = Vec::new();
-    for joint in nearly.iter().filter_map(|joint| seen.description.joint(&joint.name)) {
+    for &&(joint, _) in nearly {
         let is_slight = seen.plane.off_normal(seen.pose.axes[joint]) <= SLIGHTLY;
         let remedy = if is_slight { Remedy::Tolerance(1.1 * slightly) } else { remedy(seen, joint) };
         // One for each joint: a hinge has one value.
@@ -159,7 +159,7 @@ fn about_tilted(seen: &Seen, nearly: &[&FrozenJoint], all: usize) -> String {
         "{} of {all} joints that could move are frozen only because their axes are {range} degrees off the plane ({}); to keep \
          them: {}",
         nearly.len(),
-        names(nearly.iter().map(|joint| joint.name.as_str())),
+        names(nearly.iter().map(|(_, joint)| joint.name.as_str())),
         remedies.join(", "),
     )
 }

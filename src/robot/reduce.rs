@@ -10,7 +10,7 @@ use super::reference_pose::ReferencePose;
 use super::role::{Role, roles};
 use super::tree::{Place, Tree};
 use super::{Base, LeftOutPart, Link, ParentJoint, Robot, base, caution, left_out};
-use crate::description::{self, Description, Inertial, JointKind, product};
+use crate::description::{self, Description, Inertial, JointKind, UrdfLink, product};
 use crate::error::{Error, Reason, Result};
 use crate::reductions::Reductions;
 
@@ -64,7 +64,7 @@ impl Robot {
 
         let frozen = frozen(description, &roles, &tree, &found);
         let outside = description.links.iter().zip(&tree.places).filter(|(_, place)| place.is_none());
-        let outside: Vec<String> = outside.map(|(link, _)| link.name.clone()).collect();
+        let outside: Vec<&UrdfLink> = outside.map(|(link, _)| link).collect();
         let seen = caution::Seen { description, pose: &pose, plane, legs: &legs };
         let mut cautions = caution::about_frozen(&seen, &frozen, tree.joints.len() + tree.mimic_joints.len());
         cautions.extend(found.caution);
@@ -77,8 +77,8 @@ impl Robot {
             plane_because,
             better_plane: better_plane(description, &pose, plane).filter(|_| plane_because != PlaneReason::Legs),
             base_because: found.because,
-            frozen,
-            outside,
+            frozen: frozen.into_iter().map(|(_, joint)| joint).collect(),
+            outside: outside.into_iter().map(|link| link.name.clone()).collect(),
             cautions,
         };
         let mut robot = Self {
@@ -161,25 +161,30 @@ fn better_plane(description: &Description, pose: &ReferencePose, plane: Plane) -
         let roles = roles(description, pose, plane);
         roles.iter().filter(|role| matches!(role, Role::Moves { .. })).count()
     };
+    let here = moving(plane);
+    let can_move = |kind| matches!(kind, JointKind::Revolute | JointKind::Continuous | JointKind::Prismatic);
+    if here == description.joints.iter().filter(|joint| can_move(joint.kind)).count() {
+        return None;
+    }
     let others = Plane::ALL.into_iter().filter(|&other| other != plane).map(|other| (other, moving(other)));
     // Of equally good ones the first.
-    others.rev().max_by_key(|&(_, moving)| moving).filter(|&(_, most)| most > moving(plane))
+    others.rev().max_by_key(|&(_, moving)| moving).filter(|&(_, most)| most > here)
 }
 
-/// The joints without a coordinate, in the file's order.
-fn frozen(description: &Description, roles: &[Role], tree: &Tree, found: &base::Judgment) -> Vec<FrozenJoint> {
+/// The joints without a coordinate, each with its place in the file, in this order.
+fn frozen(description: &Description, roles: &[Role], tree: &Tree, found: &base::Judgment) -> Vec<(usize, FrozenJoint)> {
     let joints = description.joints.iter().zip(roles).enumerate();
     let frozen = joints.filter_map(|(index, (joint, role))| {
         let name = joint.name.clone();
         match (role, tree.places[joint.child].as_ref().map(|place| &tree.bodies[place.body])) {
             (Role::Frozen(reason), Some(body)) => {
                 let welded = !matches!(body.joint, Some(ParentJoint::Fixed { .. }));
-                Some(FrozenJoint { name, reason: reason.clone(), body: body.name.clone(), welded })
+                Some((index, FrozenJoint { name, reason: reason.clone(), body: body.name.clone(), welded }))
             }
             // A weld among links of the base says nothing about the robot.
             (role, outside) if found.chain.contains(&index) || outside.is_none() && matches!(role, Role::Frozen(_)) => {
                 let root = description.links[found.root].name.clone();
-                Some(FrozenJoint { name, reason: FreezeReason::Base, body: root, welded: true })
+                Some((index, FrozenJoint { name, reason: FreezeReason::Base, body: root, welded: true }))
             }
             _ => None,
         }
@@ -206,7 +211,7 @@ fn joints_left_out(description: &Description, roles: &[Role], tree: &Tree, readi
 }
 
 /// `link` with its collision shapes, in its body's frame.
-fn reduce_link(link: &description::UrdfLink, place: &Place, left_out: &mut Vec<LeftOutPart>) -> Link {
+fn reduce_link(link: &UrdfLink, place: &Place, left_out: &mut Vec<LeftOutPart>) -> Link {
     let pose = [0, 2].map(|row| {
         let [a, b, c] = place.rotation[row];
         [a, b, c, place.offset[row]]
@@ -231,23 +236,27 @@ fn reduce_link(link: &description::UrdfLink, place: &Place, left_out: &mut Vec<L
 
 /// Refuses a robot whose sums have left the range of f64.
 fn refuse_overflow(robot: &Robot) -> Result<()> {
-    let refuse = |what: &str, numbers: &[f64], place: String| match numbers.iter().find(|number| !number.is_finite()) {
-        Some(&value) => Err(Error::from(Reason::NotFinite { what: what.into(), value }).at(place)),
-        None => Ok(()),
-    };
     for body in &robot.bodies {
         let inertia = [body.mass, body.com.x, body.com.z, body.moment];
-        refuse("the inertia of the welded body", &inertia, description::link_place(&body.name))?;
+        refuse_infinite("the inertia of the welded body", inertia, || description::link_place(&body.name))?;
     }
     for joint in robot.joints.iter().chain(robot.mimic_joints.iter().map(|mimic| &mimic.joint)) {
-        refuse("the place at zero", &joint.origin.components(), description::joint_place(&joint.name))?;
+        refuse_infinite("the place at zero", joint.origin.components(), || description::joint_place(&joint.name))?;
     }
     for link in &robot.links {
-        refuse("the place at zero", link.pose.as_flattened(), description::link_place(&link.name))?;
+        let place = || description::link_place(&link.name);
+        refuse_infinite("the place at zero", link.pose.into_iter().flatten(), place)?;
         for shape in &link.shapes {
-            let corners: Vec<f64> = shape.corners().iter().flat_map(|corner| corner.components()).collect();
-            refuse("the place of a collision shape", &corners, description::link_place(&link.name))?;
+            let corners = shape.corners().iter().flat_map(|corner| corner.components());
+            refuse_infinite("the place of a collision shape", corners, place)?;
         }
     }
-    refuse("the mass", &[robot.mass()], "robot".into())
+    refuse_infinite("the mass", [robot.mass()], || "robot".into())
+}
+
+fn refuse_infinite(what: &str, numbers: impl IntoIterator<Item = f64>, place: impl Fn() -> String) -> Result<()> {
+    match numbers.into_iter().find(|number| !number.is_finite()) {
+        Some(value) => Err(Error::from(Reason::NotFinite { what: what.into(), value }).at(place())),
+        None => Ok(()),
+    }
 }
