@@ -10,12 +10,15 @@ use crate::pipeline::assembly::Elimination;
 use crate::pipeline::exact::{Contacts, ExactState};
 use crate::planar::{Inertia, Vector};
 use crate::robot::Robot;
-use crate::scalar::{Interval, Ordered, Real};
+use crate::scalar::{Ball, DoubleDouble, Enclosure, Interval, Ordered, Real};
 
 /// Bits of the reference, and for each body: an articulated inertia is that much less sharp than its children's. The
 /// numbers are enclosures, so that their own uncertainty shows as an error.
 pub const PRECISION: usize = 320;
 const PRECISION_PER_BODY: usize = 4;
+
+/// Errors of M from here on are seen by pairs of f64, whose own are some 1e-31.
+const SHOWN_BY_PAIRS: f64 = 1e-24;
 
 /// Runs `work` on numbers with bits enough for `robot`.
 pub fn with_precision<R>(robot: &Robot, work: impl FnOnce() -> R) -> R {
@@ -27,18 +30,18 @@ pub(super) struct Reference<'a> {
     computation: Computation<'a, Interval>,
     pub contacts: Contacts<Interval>,
     /// The joints and the base's motions of each column.
-    columns: Vec<Vec<UnitMotion>>,
+    columns: Vec<Vec<UnitMotion<Interval>>>,
 }
 
 /// A joint's motion for a unit rate of its column, and the momentum of all that it moves; both at the root's origin.
-struct UnitMotion {
+struct UnitMotion<T> {
     body: usize,
-    angular_velocity: Interval,
+    angular_velocity: T,
     /// Of the point at the root's origin.
-    velocity: Vector<Interval>,
-    angular_momentum: Interval,
-    momentum: Vector<Interval>,
-    rotor: Interval,
+    velocity: Vector<T>,
+    angular_momentum: T,
+    momentum: Vector<T>,
+    rotor: T,
 }
 
 impl<'a> Reference<'a> {
@@ -83,25 +86,33 @@ impl<'a> Reference<'a> {
     /// The largest error of an M (nv x nv, columns of the plan, of which the lower triangle is read); NaN where it
     /// holds no number.
     pub fn mass_matrix_error<T: Number>(&self, mass: &[T]) -> f64 {
+        // Pairs of f64 are faster, and show all but the least errors.
+        let error = self.mass_matrix_error_by(mass, enclosed);
+        let is_shown = (SHOWN_BY_PAIRS..f64::INFINITY).contains(&error);
+        // The bits of a whole chain are not needed for one entry.
+        let exactly = || self.mass_matrix_error_by(mass, |exact| exact * Interval::one());
+        if is_shown { error } else { Interval::scope(PRECISION, exactly) }
+    }
+
+    /// The same by a reference that is `rounded`.
+    fn mass_matrix_error_by<T: Number, R: Ordered>(&self, mass: &[T], rounded: fn(Interval) -> R) -> f64 {
         let nv = self.columns.len();
         let plan = &self.computation.assembly.plan;
-        Interval::scope(PRECISION, || {
-            let columns: Vec<Vec<UnitMotion>> =
-                self.columns.iter().map(|motions| motions.iter().map(UnitMotion::rounded).collect()).collect();
-            let inertia = |i: usize, j: usize| self.inertia(&columns[i], &columns[j]);
-            let size: Vec<f64> = (0..nv).map(|i| Interval::freeing(|| inertia(i, i).to_f64().sqrt())).collect();
-            worst((0..nv).flat_map(|i| {
-                let (size, inertia) = (&size, &inertia);
-                std::iter::once(i).chain(plan.ancestors(i)).map(move |j| {
-                    let error = Interval::freeing(|| distance(mass[i * nv + j], inertia(i, j)));
-                    relative(error, size[i] * size[j])
-                })
-            }))
-        })
+        let round = |motions: &Vec<UnitMotion<Interval>>| motions.iter().map(|own| own.rounded(rounded)).collect();
+        let columns: Vec<Vec<UnitMotion<R>>> = self.columns.iter().map(round).collect();
+        let inertia = |i: usize, j: usize| self.inertia(&columns[i], &columns[j]);
+        let size: Vec<f64> = (0..nv).map(|i| R::freeing(|| inertia(i, i).to_f64().sqrt())).collect();
+        worst((0..nv).flat_map(|i| {
+            let (size, inertia) = (&size, &inertia);
+            std::iter::once(i).chain(plan.ancestors(i)).map(move |j| {
+                let error = R::freeing(|| distance(mass[i * nv + j], inertia(i, j)));
+                relative(error, size[i] * size[j])
+            })
+        }))
     }
 
     /// Entry of M for two columns, the second one below the first or the same.
-    fn inertia(&self, upper: &[UnitMotion], lower: &[UnitMotion]) -> Interval {
+    fn inertia<T: Real>(&self, upper: &[UnitMotion<T>], lower: &[UnitMotion<T>]) -> T {
         let plan = &self.computation.assembly.plan;
         let pairs = upper.iter().flat_map(|one| lower.iter().map(move |other| (one, other)));
         let parts = pairs.filter_map(|(one, other)| {
@@ -111,7 +122,7 @@ impl<'a> Reference<'a> {
                 carries(plan, one.body, other.body).then(|| other.inertia(one))
             }
         });
-        parts.reduce(|sum, part| sum + part).unwrap_or(Interval::zero())
+        parts.reduce(|sum, part| sum + part).unwrap_or(T::zero())
     }
 }
 
@@ -120,11 +131,9 @@ fn carries(plan: &Plan<Interval>, body: usize, outer: usize) -> bool {
     std::iter::successors(Some(outer), |&at| plan.bodies[at].parent).any(|at| at == body)
 }
 
-impl UnitMotion {
-    /// The same to the bits of the scope: those of the whole chain are not needed for one entry.
-    fn rounded(&self) -> Self {
-        let round = |number: Interval| number * Interval::one();
-        Self {
+impl UnitMotion<Interval> {
+    fn rounded<R: Real>(&self, round: fn(Interval) -> R) -> UnitMotion<R> {
+        UnitMotion {
             body: self.body,
             angular_velocity: round(self.angular_velocity),
             velocity: self.velocity.map(round),
@@ -133,17 +142,19 @@ impl UnitMotion {
             rotor: round(self.rotor),
         }
     }
+}
 
+impl<T: Real> UnitMotion<T> {
     /// What this motion and one `below` it, or itself, bring to M.
     ///
     /// Not by a walk to the root as [`mass_matrix`](crate::dynamics::mass_matrix) does it, but by the places of both.
-    fn inertia(&self, below: &Self) -> Interval {
+    fn inertia(&self, below: &Self) -> T {
         let entry = self.angular_momentum * below.angular_velocity + self.momentum.dot(below.velocity);
         if std::ptr::eq(self, below) { entry + self.rotor } else { entry }
     }
 }
 
-fn columns(computation: &Computation<Interval>) -> Vec<Vec<UnitMotion>> {
+fn columns(computation: &Computation<Interval>) -> Vec<Vec<UnitMotion<Interval>>> {
     let (plan, workspace) = (&computation.assembly.plan, &computation.assembly.workspace);
     let mut composite: Vec<Inertia<Interval>> = Vec::new();
     let mut origins: Vec<Vector<Interval>> = Vec::new();
@@ -156,7 +167,7 @@ fn columns(computation: &Computation<Interval>) -> Vec<Vec<UnitMotion>> {
             composite[parent] = composite[parent].with(composite[index].seen_from(workspace.arm[index]));
         }
     }
-    let mut columns: Vec<Vec<UnitMotion>> = (0..plan.columns()).map(|_| Vec::new()).collect();
+    let mut columns: Vec<Vec<UnitMotion<Interval>>> = (0..plan.columns()).map(|_| Vec::new()).collect();
     for (index, body) in plan.bodies.iter().enumerate() {
         let Some(column) = body.column else { continue };
         let (origin, Inertia { mass, first, second }) = (origins[index], composite[index]);
@@ -188,9 +199,17 @@ fn columns(computation: &Computation<Interval>) -> Vec<Vec<UnitMotion>> {
     columns
 }
 
+/// A ball around the pair of f64s next to a number.
+fn enclosed(exact: Interval) -> Ball<DoubleDouble> {
+    let [head, tail] = exact.parts();
+    let rest = exact - Interval::from_f64(head) - Interval::from_f64(tail);
+    let rest = Ball::from_f64(2.0 * rest.to_f64().abs() + rest.error());
+    (Ball::from_f64(head) + Ball::from_f64(tail)).widened(rest)
+}
+
 /// At most how far `found` is from `exact`.
-pub fn distance<T: Number>(found: T, exact: Interval) -> f64 {
-    let [head, tail] = found.parts().map(Interval::from_f64);
+pub fn distance<T: Number, R: Ordered>(found: T, exact: R) -> f64 {
+    let [head, tail] = found.parts().map(R::from_f64);
     let difference = head + tail - exact;
     difference.to_f64().abs() + difference.error()
 }
