@@ -88,7 +88,8 @@ fn assert_energy(name: &str, robot: &Robot, state: &State) -> Impact {
     kinematics(&plan, &configuration, &mut workspace);
     assert!(outcomes(&impact).iter().any(|outcome| outcome.energy_loss > 0.0));
     for (outcome, after) in outcomes(&impact).iter().zip(velocities_after(&impact)) {
-        let (energy, left) = (kinetic_energy(&plan, &after, &workspace), impact.kinetic_energy - outcome.energy_loss);
+        let (energy, left) =
+            (kinetic_energy(&plan, &after, &workspace, &mut Vec::new()), impact.kinetic_energy - outcome.energy_loss);
         assert!((energy - left).abs() <= DIGITS * impact.kinetic_energy, "{name}: {energy} {left}");
     }
     impact
