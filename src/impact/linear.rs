@@ -135,16 +135,18 @@ pub fn solve<T: Ordered>(unknowns: usize, mut equations: Vec<Vec<T>>) -> Result<
         let rank = pivots.len();
         let Some(row) = largest(&equations[rank..], column)? else { continue };
         equations.swap(rank, rank + row);
-        let (above, rest) = equations.split_at_mut(rank);
-        let Some((pivot, below)) = rest.split_first_mut() else { break };
-        let inverse = T::one() / pivot[column];
-        for entry in &mut pivot[column..] {
+        let inverse = T::one() / equations[rank][column];
+        for entry in &mut equations[rank][column..] {
             *entry = *entry * inverse;
         }
-        for equation in above.iter_mut().chain(below) {
-            let factor = std::mem::replace(&mut equation[column], T::zero());
-            for (entry, &own) in equation[column + 1..].iter_mut().zip(&pivot[column + 1..]) {
-                *entry = *entry - factor * own;
+        let pivot = equations[rank].clone();
+        for (other, equation) in equations.iter_mut().enumerate() {
+            let factor = equation[column];
+            if other != rank {
+                for (entry, &above) in equation[column..].iter_mut().zip(&pivot[column..]).skip(1) {
+                    *entry = *entry - factor * above;
+                }
+                equation[column] = T::zero();
             }
         }
         pivots.push(column);
@@ -188,59 +190,29 @@ fn largest<T: Ordered>(rows: &[Vec<T>], column: usize) -> Result<Option<usize>, 
 /// The y at which `objective . y` is greatest among those where no function is negative; `None` if it grows without
 /// bound. At y = 0 no function may be negative.
 pub fn maximize<T: Ordered>(functions: &[LinearFunction<T>], objective: &[T]) -> Result<Option<Vec<T>>, Unsettled> {
-    Program::of(functions, objective.len()).maximize(objective)
-}
-
-/// The y at which no function is negative, for several objectives.
-#[derive(Clone)]
-pub struct Program<T>(Dictionary<T>);
-
-impl<T: Ordered> Program<T> {
-    /// Functions of `free` entries of y.
-    pub fn of(functions: &[LinearFunction<T>], free: usize) -> Self {
-        Self(Dictionary {
-            rows: functions.iter().map(|function| extended(&function.coefficients, function.constant)).collect(),
-            gain: vec![T::zero(); free],
-            // Labels below `free` are entries of y, which may take any sign; the others are the functions' own values.
-            basic: (free..free + functions.len()).collect(),
-            nonbasic: (0..free).collect(),
-            free,
-        })
+    let free = objective.len();
+    let mut dictionary = Dictionary {
+        rows: functions.iter().map(|function| extended(&function.coefficients, function.constant)).collect(),
+        gain: objective.to_vec(),
+        // Labels below `free` are entries of y, which may take any sign; the others are the functions' own values.
+        basic: (free..free + functions.len()).collect(),
+        nonbasic: (0..free).collect(),
+        free,
+    };
+    while let Some((column, rising)) = dictionary.entering()? {
+        let Some(row) = dictionary.leaving(column, rising)? else { return Ok(None) };
+        dictionary.pivot(row, column);
     }
-
-    /// The same at a corner, from where each objective is near.
-    pub fn at_corner(self) -> Result<Self, Unsettled> {
-        let Self(mut dictionary) = self;
-        for column in 0..dictionary.free {
-            let rising = dictionary.leaving(column, true)?;
-            if let Some(row) = if rising.is_some() { rising } else { dictionary.leaving(column, false)? } {
-                dictionary.pivot(row, column);
-            }
+    let mut y = vec![T::zero(); free];
+    for (row, &label) in dictionary.rows.iter().zip(&dictionary.basic) {
+        if label < free {
+            y[label] = row[free];
         }
-        Ok(Self(dictionary))
     }
-
-    /// As [`maximize`].
-    pub fn maximize(self, objective: &[T]) -> Result<Option<Vec<T>>, Unsettled> {
-        let Self(mut dictionary) = self;
-        let free = dictionary.free;
-        dictionary.aim(objective);
-        while let Some((column, rising)) = dictionary.entering()? {
-            let Some(row) = dictionary.leaving(column, rising)? else { return Ok(None) };
-            dictionary.pivot(row, column);
-        }
-        let mut y = vec![T::zero(); free];
-        for (row, &label) in dictionary.rows.iter().zip(&dictionary.basic) {
-            if label < free {
-                y[label] = row[free];
-            }
-        }
-        Ok(Some(y))
-    }
+    Ok(Some(y))
 }
 
 /// Basic variables as affine functions of the nonbasic ones, which are zero.
-#[derive(Clone)]
 struct Dictionary<T> {
     /// Per basic variable its coefficients of the nonbasic ones, then its value.
     rows: Vec<Vec<T>>,
@@ -253,18 +225,6 @@ struct Dictionary<T> {
 }
 
 impl<T: Ordered> Dictionary<T> {
-    /// Sets the objective, a function of y.
-    fn aim(&mut self, objective: &[T]) {
-        let Self { rows, gain, basic, nonbasic, free } = self;
-        gain.clear();
-        gain.extend(nonbasic.iter().map(|&label| objective.get(label).copied().unwrap_or(T::zero())));
-        for (row, &label) in rows.iter().zip(&*basic).filter(|(_, label)| **label < *free) {
-            for (gain, &entry) in gain.iter_mut().zip(row) {
-                *gain = *gain + objective[label] * entry;
-            }
-        }
-    }
-
     /// The variable of the lowest label that improves the objective, and whether it must rise. Entries of y come first.
     fn entering(&self) -> Result<Option<(usize, bool)>, Unsettled> {
         let mut order: Vec<usize> = (0..self.nonbasic.len()).collect();

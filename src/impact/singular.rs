@@ -17,7 +17,7 @@ use super::corners::corners;
 use super::digits::{Numbers, is_known, is_known_range};
 use super::generators::Generators;
 use super::index::index;
-use super::linear::{LinearFunction, Program, Solutions, Unsettled, extended, settled, solve, vanishing, widest};
+use super::linear::{LinearFunction, Solutions, Unsettled, extended, maximize, settled, solve, vanishing, widest};
 use super::needed::friction_needed;
 use super::outcome::{Motion, Range, Rejection, RejectionReason};
 use super::problem::ContactProblem;
@@ -304,7 +304,6 @@ impl<'a, T: Ordered> Equations<'a, T> {
             coefficients: directions.iter().map(|direction| direction[row]).collect(),
         };
         let entries: Vec<LinearFunction<T>> = from.iter().enumerate().map(entry).collect();
-        let program = Program::of(&shifted, directions.len()).at_corner()?;
         let mut ranges = Vec::new();
         let mut unique = true;
         for entry in &entries {
@@ -314,7 +313,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
             }
             let mut bound = |sign: T| -> Result<Option<T>, Unsettled> {
                 let toward: Vec<T> = entry.coefficients.iter().map(|&each| sign * each).collect();
-                let Some(best) = program.clone().maximize(&toward)? else {
+                let Some(best) = maximize(&shifted, &toward)? else {
                     unique = false;
                     return Ok(None);
                 };

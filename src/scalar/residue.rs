@@ -188,7 +188,7 @@ impl Residue {
     /// Whether the number is zero: proved if it is not, and nearly so if it is; `None` after a division by zero.
     pub fn is_zero(self) -> Option<bool> {
         let [first, second] = self.0;
-        if (first | second) == 0 {
+        if first == 0 && second == 0 {
             Some(true)
         } else if (first != 0 && first != NONE) || (second != 0 && second != NONE) {
             Some(false)
@@ -227,9 +227,8 @@ impl Residue {
     #[inline]
     fn by_prime(self, other: Self, first: impl FnOnce(u64, u64) -> u64, second: impl FnOnce(u64, u64) -> u64) -> Self {
         let ([a, b], [c, d]) = (self.0, other.0);
-        let unknown = |x: u64, y: u64| (x | y) >> 63 == 1;
-        let first = if unknown(a, c) { NONE } else { first(a, c) };
-        Self([first, if unknown(b, d) { NONE } else { second(b, d) }])
+        let first = if a == NONE || c == NONE { NONE } else { first(a, c) };
+        Self([first, if b == NONE || d == NONE { NONE } else { second(b, d) }])
     }
 
     #[inline]
