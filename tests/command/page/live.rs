@@ -180,9 +180,9 @@ fn a_velocity_along_an_impulse_is_drawn_aside() {
 fn a_slide_without_an_arrow_has_its_direction() {
     let state = parsed(&read("examples/ramone.json")).to_string();
     let (_, path) = page(&["batch", RAMONE, "-"], &state, "small_slide.html");
-    let script = r##"found(all("#scene text").map((name) => name.textContent));"##;
+    let script = r##"found({ names: all("#scene text").map((name) => name.textContent) });"##;
     let Some(found) = found(&path, WINDOW, script) else { return };
-    assert_eq!(found, json!(["right_foot", "left_foot \u{2192}"]));
+    assert_eq!(found["names"], json!(["right_foot", "left_foot \u{2192}"]));
 }
 
 #[test]
