@@ -17,7 +17,7 @@ pub fn claims() -> Result<Vec<Claim>, Box<dyn Error>> {
     let robot = Robot::from_urdf(include_str!("../../urdf/ramone.urdf"))?;
     let weight = GRAVITY * robot.bodies.iter().map(|body| body.mass).sum::<f64>();
     let standing: Value = serde_json::from_str(include_str!("../ramone_stands.json"))?;
-    let forces = |state: &Value| -> Result<Impact, Box<dyn Error>> {
+    let forces = |state: &Value| -> Result<Box<Impact>, Box<dyn Error>> {
         let state = State::from_json(&state.to_string(), &robot, &Defaults::default())?;
         Ok(Pipeline::new(&robot, Options::default()).forces(&state)?)
     };

@@ -38,7 +38,7 @@ pub enum Found {
     /// The regions of a study.
     Regions(Findings),
     /// One state, its outcomes and everything that is none.
-    Outcomes(Box<(State, Impact)>),
+    Outcomes(Box<(State, Box<Impact>)>),
 }
 
 impl Exhibit {

@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             state.velocity.copy_from_slice(v);
             let answer = pipeline.impact(&state);
             if !brief {
-                arrays.push(answer.as_ref().map_err(Clone::clone));
+                arrays.push(answer.as_deref().map_err(Clone::clone));
             }
             if let Ok(impact) = answer {
                 outcomes += impact.analyzed()?.outcomes.len();

@@ -315,7 +315,7 @@ impl<'p> Worker<'p> {
                 None => budget(model.budget).within(|| pipeline.answer(state)),
             })
         });
-        out.push(answer.as_ref().map_err(Error::clone));
+        out.push(answer.as_deref().map_err(Error::clone));
         if let Ok(impact) = answer {
             kept.with_dependent_mut(|_, pipeline| pipeline.recycle(impact));
         }

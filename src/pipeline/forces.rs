@@ -83,12 +83,12 @@ impl Pipeline<'_> {
     /// # Errors
     /// As [`Pipeline::impact`], and `Inconsistent` for a contact that approaches the ground, for applied impulses and
     /// for a contact that rolls or slides over a corner of the ground.
-    pub fn forces(&mut self, state: &State) -> Result<Impact> {
+    pub fn forces(&mut self, state: &State) -> Result<Box<Impact>> {
         within(self.options.budget, || self.sustained(state, None))
     }
 
     /// As [`Pipeline::forces`]; if modes are `chosen`, of all rejected combinations those are listed.
-    pub(super) fn sustained(&mut self, state: &State, chosen: Option<&[Vec<Mode>]>) -> Result<Impact> {
+    pub(super) fn sustained(&mut self, state: &State, chosen: Option<&[Vec<Mode>]>) -> Result<Box<Impact>> {
         let scene = &state.scene;
         let (mut prepared, slips) = self.prepare_sustained(state)?;
         if state.uncertainty.is_some() {
@@ -128,33 +128,30 @@ impl Pipeline<'_> {
         let left_out = if self.options.brief { Vec::new() } else { self.left_out(scene, &prepared) };
         let Unforced { driven, rounding, .. } = unforced;
         let sustained = Sustained { slips, shock, gravity: scene.gravity(), driven, rounding };
-        Ok(Impact {
-            velocity_before: self.assembly.workspace.contact_velocity.clone(),
-            matrices: self.options.matrices.then(|| self.matrices()),
-            left_out,
-            analysis,
-            notes: std::mem::take(&mut prepared.notes),
-            sustained: Some(sustained),
-            ..self.unanswered(prepared)
-        })
+        let mut impact = self.unanswered(prepared);
+        impact.velocity_before.clone_from(&self.assembly.workspace.contact_velocity);
+        impact.matrices = self.options.matrices.then(|| self.matrices());
+        (impact.left_out, impact.analysis, impact.friction_needed) = (left_out, analysis, None);
+        impact.sustained = Some(sustained);
+        Ok(impact)
     }
 
     /// Everything up to the contact problem of forces.
-    pub(super) fn prepare_forces(&mut self, state: &State) -> Result<Prepared> {
+    pub(super) fn prepare_forces(&mut self, state: &State) -> Result<Box<Prepared>> {
         let (mut prepared, slips) = self.prepare_sustained(state)?;
         self.pose(state, &mut prepared, &slips)?;
         Ok(prepared)
     }
 
     /// Everything up to the contacts that take part, and how these slide.
-    fn prepare_sustained(&mut self, state: &State) -> Result<(Prepared, Vec<Ordering>)> {
+    fn prepare_sustained(&mut self, state: &State) -> Result<(Box<Prepared>, Vec<Ordering>)> {
         if !state.scene.impulses.is_empty() {
             let reason = Reason::Inconsistent("an applied impulse acts in an impact, not in sustained contact".into());
             return Err(Error::new(reason).at("impulse").hint("leave it out, or ask `impact`"));
         }
         let mut prepared = self.prepare(state)?;
         self.refuse_uneven(&prepared)?;
-        let Prepared { velocity, foot, contacts, levels, stance, notes, .. } = &mut prepared;
+        let Prepared { velocity, foot, contacts, levels, stance, notes, .. } = &mut *prepared;
         if self.assembly.is_constrained() {
             // Those of an impact are infinite.
             self.bound_velocities(contacts, levels, velocity, Standing { foot: foot.as_ref(), place: *stance });

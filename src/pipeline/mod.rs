@@ -102,7 +102,7 @@ const UNKNOWN_IN_TIME: &str =
     "whether the verdict holds on the box of the uncertainty is not known within the budget of work (`budget`)";
 
 /// The answer for one state, of an impact or, with [`Sustained`], of forces; [`Pipeline`] has an example.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Impact {
     /// Where the bodies are.
     pub placement: Placement,
@@ -180,7 +180,7 @@ pub enum LeftOut {
 
 /// The answer for one state, and what of its contacts was taken as given.
 struct Answer {
-    impact: Impact,
+    impact: Box<Impact>,
     foot: Option<Contact>,
     /// The rows of the loops that count.
     rows: Vec<usize>,
@@ -230,8 +230,9 @@ pub struct Pipeline<'r> {
     /// The magnitudes of what the accelerations of a state are computed from.
     stretched: Assembly<Magnitude>,
     scratch: Scratch,
-    /// Memory of the next state.
-    spare: Prepared,
+    /// Memory of the next state and of its answer.
+    spare: Option<Box<Prepared>>,
+    recycled: Option<Box<Impact>>,
 }
 
 impl<'r> Pipeline<'r> {
@@ -252,18 +253,19 @@ impl<'r> Pipeline<'r> {
             bounds: RoundingBounds::default(),
             stretched: Assembly::new(Plan::new(robot, &[], &[])),
             scratch: Scratch::default(),
-            spare: Prepared::default(),
+            spare: None,
+            recycled: None,
         }
     }
 
-    /// Every outcome of one state.
+    /// Every outcome of one state; boxed, since an answer is large.
     ///
     /// # Errors
     /// The [`Reason`](crate::Reason)s are `Singular` for a coordinate without inertia, `Penetration` for a foot deep in
     /// the ground, `Inconsistent` for a joint outside strict limits and a loop that the pose or the velocity leaves
     /// open, `Missing` for a contact without friction or a stance without a foot, `MatricesTooLarge` for hundreds of
     /// contacts, and `NotFinite` for numbers whose products leave the range of f64.
-    pub fn impact(&mut self, state: &State) -> Result<Impact> {
+    pub fn impact(&mut self, state: &State) -> Result<Box<Impact>> {
         within(self.options.budget, || {
             let mut answer = self.strike(state, None)?;
             if let Some(uncertainty) = &state.uncertainty {
@@ -280,7 +282,7 @@ impl<'r> Pipeline<'r> {
     ///
     /// # Errors
     /// As [`Pipeline::impact`] and [`Pipeline::forces`].
-    pub fn answer(&mut self, state: &State) -> Result<Impact> {
+    pub fn answer(&mut self, state: &State) -> Result<Box<Impact>> {
         match self.options.aspect {
             Aspect::Impact => self.impact(state),
             Aspect::Forces => self.forces(state),
@@ -292,7 +294,7 @@ impl<'r> Pipeline<'r> {
     ///
     /// # Errors
     /// As [`Pipeline::answer`].
-    pub fn answer_explaining(&mut self, state: &State, chosen: &[Vec<Mode>]) -> Result<Impact> {
+    pub fn answer_explaining(&mut self, state: &State, chosen: &[Vec<Mode>]) -> Result<Box<Impact>> {
         within(self.options.budget, || match self.options.aspect {
             Aspect::Impact => self.strike(state, Some(chosen)).map(|answer| answer.impact),
             Aspect::Forces => self.sustained(state, Some(chosen)),
@@ -303,7 +305,7 @@ impl<'r> Pipeline<'r> {
     fn strike(&mut self, state: &State, chosen: Option<&[Vec<Mode>]>) -> Result<Answer> {
         let scene = &state.scene;
         let mut prepared = self.prepare(state)?;
-        let Prepared { velocity, applied, free, contacts, problem, .. } = &prepared;
+        let Prepared { velocity, applied, free, contacts, problem, .. } = &*prepared;
         for &entry in free {
             finite(entry, || "a velocity after the applied impulses".into())?;
         }
@@ -340,42 +342,34 @@ impl<'r> Pipeline<'r> {
         let followed = analysis.as_mut().filter(|_| next).map(|analysis| self.follow(state, &prepared, analysis));
         prepared.notes.extend(followed.into_iter().flatten());
         let foot = prepared.foot.take();
-        let impact = Impact { left_out, matrices, analysis, friction_needed, ..self.unanswered(prepared) };
+        let mut impact = self.unanswered(prepared);
+        (impact.analysis, impact.friction_needed) = (analysis, friction_needed);
+        (impact.left_out, impact.matrices) = (left_out, matrices);
         Ok(Answer { impact, foot, rows: self.assembly.rows.clone() })
     }
 
-    /// What is known of a state before its analysis.
-    fn unanswered(&mut self, prepared: Prepared) -> Impact {
-        let Prepared { placement, contacts, nearest, problem, resting, stance, kinetic_energy, notes, .. } = prepared;
-        let Prepared { velocity, applied, change, free, mut velocity_before, .. } = prepared;
-        problem.velocity_before().clone_into(&mut velocity_before);
-        self.spare = Prepared { velocity, applied, change, free, ..Prepared::default() };
-        Impact {
-            placement,
-            contacts,
-            nearest,
-            velocity_before,
-            kinetic_energy,
-            problem,
-            resting,
-            stance,
-            analysis: None,
-            friction_needed: None,
-            sustained: None,
-            holds: None,
-            matrices: None,
-            left_out: Vec::new(),
-            notes,
-        }
+    /// What is known of a state before its analysis, in memory that it exchanges with that of the next state.
+    fn unanswered(&mut self, mut prepared: Box<Prepared>) -> Box<Impact> {
+        let mut impact = self.recycled.take().unwrap_or_default();
+        let Impact { placement, contacts, problem, resting, velocity_before, .. } = &mut *impact;
+        std::mem::swap(placement, &mut prepared.placement);
+        std::mem::swap(contacts, &mut prepared.contacts);
+        std::mem::swap(problem, &mut prepared.problem);
+        std::mem::swap(resting, &mut prepared.resting);
+        problem.velocity_before().clone_into(velocity_before);
+        (impact.nearest, impact.stance) = (prepared.nearest, prepared.stance);
+        impact.kinetic_energy = prepared.kinetic_energy;
+        impact.notes = std::mem::take(&mut prepared.notes);
+        (impact.sustained, impact.holds) = (None, None);
+        self.spare = Some(prepared);
+        impact
     }
 
     /// Takes the memory of an answer that is no longer needed. With it the answer to a state of up to three contacts, of
     /// which f64 decides all, takes no new memory in brief.
-    pub fn recycle(&mut self, impact: Impact) {
-        let Impact { placement, contacts, problem, resting, velocity_before, analysis, .. } = impact;
-        let spare = std::mem::take(&mut self.spare);
-        self.spare = Prepared { placement, contacts, problem, resting, velocity_before, ..spare };
-        self.scratch.recycle(analysis.map_or(Vec::new(), |analysis| analysis.outcomes));
+    pub fn recycle(&mut self, mut impact: Box<Impact>) {
+        self.scratch.recycle(impact.analysis.take().map_or(Vec::new(), |analysis| analysis.outcomes));
+        self.recycled = Some(impact);
     }
 
     /// The contact problem of contacts given by hand, in a configuration whose cosines and sines the caller knows

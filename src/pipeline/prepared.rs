@@ -67,8 +67,6 @@ pub struct Prepared {
     /// v with that change.
     pub free: Vec<f64>,
     pub problem: ContactProblem,
-    /// Memory of the answer.
-    pub velocity_before: Vec<Pair<f64>>,
     pub notes: Vec<String>,
 }
 
@@ -121,7 +119,7 @@ impl Pipeline<'_> {
     /// # Errors
     /// As [`Pipeline::answer`].
     pub fn unsolved(&mut self, state: &State) -> Result<Unsolved> {
-        let Prepared { placement, contacts, problem, .. } = match self.options.aspect {
+        let Prepared { placement, contacts, problem, .. } = *match self.options.aspect {
             Aspect::Impact => self.prepare(state)?,
             Aspect::Forces => self.prepare_forces(state)?,
         };
@@ -136,7 +134,7 @@ impl Pipeline<'_> {
     }
 
     /// Everything up to the contact problem.
-    pub(crate) fn prepare(&mut self, state: &State) -> Result<Prepared> {
+    pub(crate) fn prepare(&mut self, state: &State) -> Result<Box<Prepared>> {
         let scene = &state.scene;
         self.check_lengths(state)?;
         self.compile(scene);
@@ -149,32 +147,34 @@ impl Pipeline<'_> {
         let mut notes = odd.clone();
         self.note_unused_laws(scene, &mut notes);
         let surface = Surface::new(&scene.ground);
-        let spare = std::mem::take(&mut self.spare);
-        let Prepared { mut velocity, mut resting, mut applied, mut change, mut free, .. } = spare;
-        state.velocity.clone_into(&mut velocity);
-        let (base, foot) = self.stand(state, &surface, &mut velocity)?;
-        self.close_loops(&scene.loops, &state.position, foot.as_ref(), &mut velocity, &mut notes)?;
-        let placement = spare.placement.moved(&self.assembly.plan, &self.assembly.workspace, base);
-        let footing = self.footing(scene, &placement, &surface);
-        let Detected { contacts, merged, out_of_reach } = self
-            .contacts(&footing, foot.as_ref(), spare.contacts, &mut notes)
-            .map_err(|error| self.sunk(error, scene, self.open_foot(&footing, &[], &velocity), odd.first()))?;
-        let nearest = if self.options.brief { None } else { self.open_foot(&footing, &contacts, &velocity) };
+        let mut prepared = self.spare.take().unwrap_or_default();
+        let Prepared { placement, velocity, contacts, resting, applied, change, free, problem, .. } = &mut *prepared;
+        state.velocity.clone_into(velocity);
+        let (base, foot) = self.stand(state, &surface, velocity)?;
+        self.close_loops(&scene.loops, &state.position, foot.as_ref(), velocity, &mut notes)?;
+        *placement = std::mem::take(placement).moved(&self.assembly.plan, &self.assembly.workspace, base);
+        let footing = self.footing(scene, placement, &surface);
+        let detected = self
+            .contacts(&footing, foot.as_ref(), std::mem::take(contacts), &mut notes)
+            .map_err(|error| self.sunk(error, scene, self.open_foot(&footing, &[], velocity), odd.first()))?;
+        let Detected { merged, out_of_reach, .. } = detected;
+        *contacts = detected.contacts;
+        let nearest = if self.options.brief { None } else { self.open_foot(&footing, contacts, velocity) };
         if scene.contacts.is_none() && !self.options.brief {
-            self.note_near_miss(&contacts, nearest, &mut notes);
+            self.note_near_miss(contacts, nearest, &mut notes);
         }
         check_matrix_size(contacts.len())?;
-        let stance = foot.as_ref().and_then(|foot| place_of(foot, &contacts));
+        let stance = foot.as_ref().and_then(|foot| place_of(foot, contacts));
         self.assembly.points.clear();
         self.assembly.points.extend(contacts.iter().map(Contact::point_of));
-        self.assembly.contact_jacobian(&velocity, stance);
+        self.assembly.contact_jacobian(velocity, stance);
         let standing = Standing { foot: foot.as_ref(), place: stance };
         // Who names a point means it where it is.
-        let levels = if scene.contacts.is_none() { level(&contacts, &placement, stance) } else { Vec::new() };
-        self.bound_velocities(&contacts, &levels, &velocity, standing);
-        self.take_as_resting(state, &velocity, &contacts, standing, (&mut resting, &mut notes));
+        let levels = if scene.contacts.is_none() { level(contacts, placement, stance) } else { Vec::new() };
+        self.bound_velocities(contacts, &levels, velocity, standing);
+        self.take_as_resting(state, velocity, contacts, standing, (resting, &mut notes));
         self.assembly.delassus();
-        let kinetic_energy = self.energy_in_range(&state.velocity, &velocity)?;
+        let kinetic_energy = self.energy_in_range(&state.velocity, velocity)?;
         self.bound_delassus();
         if !scene.impulses.is_empty() || (self.assembly.is_constrained() && !self.options.no_proof) {
             // They go through M^-1, whose rounding these bounds do not follow.
@@ -184,31 +184,17 @@ impl Pipeline<'_> {
 
         applied.clear();
         applied.resize(self.robot.dofs(), 0.0);
-        self.assembly.apply(self.robot, scene, &mut applied);
-        change.clone_from(&applied);
-        self.assembly.answer(&mut change);
+        self.assembly.apply(self.robot, scene, applied);
+        change.clone_from(applied);
+        self.assembly.answer(change);
         free.clear();
-        free.extend(velocity.iter().zip(&change).map(|(before, change)| before + change));
-        let problem = self.problem(scene, &contacts, &change, spare.problem)?;
-        Ok(Prepared {
-            placement,
-            velocity,
-            foot,
-            contacts,
-            nearest,
-            merged,
-            out_of_reach,
-            stance,
-            levels,
-            resting,
-            kinetic_energy,
-            applied,
-            change,
-            free,
-            problem,
-            velocity_before: spare.velocity_before,
-            notes,
-        })
+        free.extend(velocity.iter().zip(&*change).map(|(before, change)| before + change));
+        *problem = self.problem(scene, contacts, change, std::mem::take(problem))?;
+        (prepared.foot, prepared.stance) = (foot, stance);
+        (prepared.levels, prepared.nearest) = (levels, nearest);
+        (prepared.merged, prepared.out_of_reach) = (merged, out_of_reach);
+        (prepared.kinetic_energy, prepared.notes) = (kinetic_energy, notes);
+        Ok(prepared)
     }
 
     /// Refuses a state whose lists are not as long as its robot has coordinates.

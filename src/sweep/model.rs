@@ -116,7 +116,7 @@ impl<'a> Solver<'a> {
     }
 
     /// The answer at a point, without regard to the state's uncertainty.
-    pub fn answer(&mut self, point: &[f64]) -> Result<Impact> {
+    pub fn answer(&mut self, point: &[f64]) -> Result<Box<Impact>> {
         self.at(point, |_, state, pipeline| pipeline.answer(&State { uncertainty: None, ..state }))
     }
 

@@ -25,7 +25,7 @@ pub enum Regime {
 
 impl Regime {
     /// That of an answer.
-    pub fn of(answer: &Result<Impact>) -> Self {
+    pub fn of(answer: &Result<Box<Impact>>) -> Self {
         let analyzed = answer.as_ref().map_err(Error::clone).and_then(|impact| Ok((impact, impact.analyzed()?)));
         let (impact, analysis) = match analyzed {
             Ok(analyzed) => analyzed,

@@ -5,7 +5,7 @@ use heelstrike::pipeline::{Impact, Options, Pipeline};
 use heelstrike::state::{Defaults, State};
 use heelstrike::{Result, Robot};
 
-fn impact(urdf: &str, state: &str) -> Result<Impact> {
+fn impact(urdf: &str, state: &str) -> Result<Box<Impact>> {
     let robot = Robot::from_urdf(urdf)?;
     let state = State::from_json(state, &robot, &Defaults::default())?;
     Pipeline::new(&robot, Options::default()).impact(&state)

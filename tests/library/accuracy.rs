@@ -80,7 +80,7 @@ fn every_other_case_keeps_its_digits() {
 }
 
 /// The energy of all bodies after the impact, link by link, is what the contacts left of it.
-fn assert_energy(name: &str, robot: &Robot, state: &State) -> Impact {
+fn assert_energy(name: &str, robot: &Robot, state: &State) -> Box<Impact> {
     let impact = Pipeline::new(robot, Options::default()).impact(state).expect("an answer");
     let (plan, mut configuration, mut workspace) =
         (Plan::new(robot, &[], &[]), Configuration::default(), Workspace::default());

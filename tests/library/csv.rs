@@ -215,7 +215,7 @@ fn broken_row_stays_out_of_the_next() {
 }
 
 /// The rows that are written for a state, by column.
-fn rows(robot: &Robot, state: &State, options: Options) -> (Vec<BTreeMap<String, String>>, Impact) {
+fn rows(robot: &Robot, state: &State, options: Options) -> (Vec<BTreeMap<String, String>>, Box<Impact>) {
     let impact = Pipeline::new(robot, options).impact(state).unwrap();
     let (mut out, columns) = (Vec::new(), Columns::new(robot, &[], None, RowKind::State));
     columns.append_header(&mut out);
@@ -341,7 +341,7 @@ fn foreign_columns_are_carried_beside_a_refusal() {
 }
 
 /// A state of the block, whose G is [[2, 1], [1, 2]], and its rows.
-fn block(row: &str) -> (Vec<BTreeMap<String, String>>, Impact) {
+fn block(row: &str) -> (Vec<BTreeMap<String, String>>, Box<Impact>) {
     let robot = robot(include_str!("../../urdf/block.urdf"));
     let state = states(format!("id,v_base_x,v_base_z,friction\nk,{row}\n").as_bytes(), &robot).pop().unwrap().unwrap();
     rows(&robot, &state, Options::default())

@@ -6,7 +6,7 @@ use heelstrike::Robot;
 use heelstrike::impact::{
     Analysis, ContactProblem, Friction, Inequality, ListedRejections, Mode, RejectionReason, Verdict, analyze,
 };
-use heelstrike::pipeline::{Impact, Options};
+use heelstrike::pipeline::Options;
 use heelstrike::robot::Base;
 
 use Mode::{Separate, SlideMinus, Stick};
@@ -256,7 +256,8 @@ fn a_robot_that_cannot_move_answers() {
 
 #[test]
 fn numbers_that_overflow_are_refused_by_name() {
-    let answer = |state: &str| try_impact(&flat_box(), Options::default(), state).and_then(Impact::into_analysis);
+    let answer =
+        |state: &str| try_impact(&flat_box(), Options::default(), state).and_then(|impact| impact.into_analysis());
     let refused = |state: &str| answer(state).expect_err(state).to_string();
     let far = r#"{"contacts": [{"link": "body", "offset": [1e200, 0, 1e200]}], "velocity": {"base": {"z": -1}}}"#;
     assert!(refused(far).contains("the Delassus matrix must be a finite number"), "{}", refused(far));

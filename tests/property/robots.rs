@@ -64,7 +64,7 @@ impl Model {
         state
     }
 
-    fn impact(&self) -> Impact {
+    fn impact(&self) -> Box<Impact> {
         impact(&robot(&self.mechanism.urdf(0)), self.state())
     }
 

@@ -16,12 +16,12 @@ pub fn reduced(urdf: &str, reduction: &Reduction) -> Robot {
 }
 
 /// The answer to a state in JSON; friction is 0.5 unless it is given.
-pub fn try_impact(robot: &Robot, options: Options, state: impl Display) -> Result<Impact> {
+pub fn try_impact(robot: &Robot, options: Options, state: impl Display) -> Result<Box<Impact>> {
     let defaults = Defaults { friction: Some(Friction::Finite(0.5)), ..Defaults::default() };
     Pipeline::new(robot, options).impact(&State::from_json(&state.to_string(), robot, &defaults)?)
 }
 
-pub fn impact(robot: &Robot, state: impl Display) -> Impact {
+pub fn impact(robot: &Robot, state: impl Display) -> Box<Impact> {
     try_impact(robot, Options::default(), &state).unwrap_or_else(|error| panic!("{error}\n{state}"))
 }
 

@@ -142,7 +142,7 @@ pub(super) fn proven_modes(analysis: &Analysis) -> Option<Vec<Vec<Mode>>> {
 
 /// The state with every contact named, so that it stays one whatever its height.
 pub(super) fn with_named_contacts(robot: &Robot, state: &State, answer: &Answer) -> State {
-    let Impact { contacts, .. } = &answer.impact;
+    let Impact { contacts, .. } = &*answer.impact;
     let mut named = State { id: None, uncertainty: None, ..state.clone() };
     let name = |contact: &Contact| NamedContact {
         link: contact.link,

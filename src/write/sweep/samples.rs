@@ -71,7 +71,7 @@ impl<'a> SampleRecord<'a> {
         out: &mut dyn RowSink,
     ) -> bool {
         let values = || self.point.iter().map(|value| format!("{value:?}"));
-        let carried = |impact: &Result<Impact>| Carried::new(values().chain([letter(&Regime::of(impact))]));
+        let carried = |impact: &Result<Box<Impact>>| Carried::new(values().chain([letter(&Regime::of(impact))]));
         let answered = solver.at(&self.point, |_, state, pipeline| {
             let impact = pipeline.answer(&state);
             let carried = carried(&impact);

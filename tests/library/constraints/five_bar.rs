@@ -104,7 +104,7 @@ fn state(mechanism: &Mechanism, q: &[f64], v: &[f64], loops: &[Ends]) -> Value {
     state
 }
 
-fn strike(mechanism: &Mechanism, q: &[f64], v: &[f64], loops: &[Ends]) -> Impact {
+fn strike(mechanism: &Mechanism, q: &[f64], v: &[f64], loops: &[Ends]) -> Box<Impact> {
     proven(impact(&robot(&mechanism.urdf(0)), &state(mechanism, q, v, loops)))
 }
 
@@ -120,7 +120,7 @@ fn kept(q: Vec<f64>, rates: [f64; 5]) -> (Vec<f64>, DVector<f64>) {
     (q, v)
 }
 
-fn proven(found: Impact) -> Impact {
+fn proven(found: Box<Impact>) -> Box<Impact> {
     assert!(found.analysis.as_ref().expect("an answer").proven);
     found
 }

@@ -38,7 +38,7 @@ fn state(mechanism: &Mechanism, q: &[f64], v: &[f64]) -> Value {
     state
 }
 
-fn strike(mechanism: &Mechanism, state: &Value) -> Impact {
+fn strike(mechanism: &Mechanism, state: &Value) -> Box<Impact> {
     impact(&robot(&mechanism.urdf(0)), state)
 }
 

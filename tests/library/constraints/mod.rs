@@ -15,11 +15,11 @@ use heelstrike::{Result, Robot};
 use nalgebra::{DMatrix, DVector};
 use serde_json::Value;
 
-fn try_impact(robot: &Robot, state: &Value) -> Result<Impact> {
+fn try_impact(robot: &Robot, state: &Value) -> Result<Box<Impact>> {
     impact::try_impact(robot, Options { matrices: true, ..Options::default() }, state)
 }
 
-fn impact(robot: &Robot, state: &Value) -> Impact {
+fn impact(robot: &Robot, state: &Value) -> Box<Impact> {
     try_impact(robot, state).unwrap_or_else(|error| panic!("{error} {:?}\n{state}", error.remedy()))
 }
 

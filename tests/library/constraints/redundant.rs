@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 const Q: f64 = 0.6;
 const RATE: f64 = -2.0;
 
-fn strike(mechanism: &Mechanism, loops: Value) -> Impact {
+fn strike(mechanism: &Mechanism, loops: Value) -> Box<Impact> {
     impact(&bolted(mechanism), &state(mechanism, Q, RATE, loops))
 }
 

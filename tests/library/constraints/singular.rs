@@ -24,7 +24,7 @@ fn held(mechanism: &Mechanism, q: &[f64], contact: (&str, Point), rows: &DMatrix
     feet * &inverse * feet.transpose() - coupling.transpose() * of_rows * coupling
 }
 
-fn strike(mechanism: &Mechanism, q: &[f64], v: &[f64], (loops, contact): (Value, (&str, Point))) -> Impact {
+fn strike(mechanism: &Mechanism, q: &[f64], v: &[f64], (loops, contact): (Value, (&str, Point))) -> Box<Impact> {
     let mut state = mechanism.state(0, q, v, &[]);
     state["loops"] = json!([loops]);
     state["contacts"] = json!([point(contact.0, contact.1)]);
@@ -100,7 +100,7 @@ fn four_bar() -> Mechanism {
 }
 
 /// Bent by an angle at the first hinge, with the pin where it then is.
-fn bent(angle: f64, rates: [f64; 3]) -> Impact {
+fn bent(angle: f64, rates: [f64; 3]) -> Box<Impact> {
     let [one, two, _] = LENGTHS;
     let mechanism = four_bar();
     let q = [0.0, 0.0, 0.0, angle, -1.5 * angle, 0.0];

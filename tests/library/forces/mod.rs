@@ -15,13 +15,13 @@ use heelstrike::{Defaults, Friction, Impact, Result, Robot, State};
 use std::fmt::Display;
 
 /// The answer to a state in JSON; friction is 0.5 unless it is given.
-fn try_forces(robot: &Robot, state: impl Display) -> Result<Impact> {
+fn try_forces(robot: &Robot, state: impl Display) -> Result<Box<Impact>> {
     let defaults = Defaults { friction: Some(Friction::Finite(0.5)), ..Defaults::default() };
     let state = State::from_json(&state.to_string(), robot, &defaults)?;
     Pipeline::new(robot, Options { matrices: true, ..Options::default() }).forces(&state)
 }
 
-fn forces(robot: &Robot, state: impl Display) -> Impact {
+fn forces(robot: &Robot, state: impl Display) -> Box<Impact> {
     try_forces(robot, &state).unwrap_or_else(|error| panic!("{error}\n{state}"))
 }
 

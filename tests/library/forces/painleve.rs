@@ -39,7 +39,7 @@ impl Rod {
         [-self.half * cos, -self.half * sin]
     }
 
-    fn forces(&self) -> Impact {
+    fn forces(&self) -> Box<Impact> {
         let [x, z] = self.end();
         let rod = rod(2.0, self.square);
         forces(

@@ -59,7 +59,7 @@ impl Walker {
     }
 
     /// What happens over this profile, the whole moved by `shift`.
-    fn try_strike(&self, side: f64, profile: &[[f64; 2]], shift: [f64; 2]) -> heelstrike::Result<Impact> {
+    fn try_strike(&self, side: f64, profile: &[[f64; 2]], shift: [f64; 2]) -> heelstrike::Result<Box<Impact>> {
         let ([x, z, pitch], [u, w, rate, one, two]) = (self.place, self.rates);
         let place = [side * x + shift[0], z + shift[1], side * pitch];
         let mut state = state(place, [side * u, w, side * rate], 0.7, profile);
@@ -69,7 +69,7 @@ impl Walker {
         try_impact(&Self::robot(side), options, state)
     }
 
-    fn strike(&self, side: f64, profile: &[[f64; 2]], shift: [f64; 2]) -> Impact {
+    fn strike(&self, side: f64, profile: &[[f64; 2]], shift: [f64; 2]) -> Box<Impact> {
         let found = self.try_strike(side, profile, shift).expect("it touches");
         assert!(!found.contacts.is_empty());
         found

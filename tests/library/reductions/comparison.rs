@@ -29,7 +29,7 @@ pub fn floating(urdf: &str, reductions: Reductions) -> Robot {
 }
 
 /// The answer to a state of a robot, with its matrices.
-pub fn answer(robot: &Robot, state: &serde_json::Value, reductions: Reductions) -> heelstrike::Result<Impact> {
+pub fn answer(robot: &Robot, state: &serde_json::Value, reductions: Reductions) -> heelstrike::Result<Box<Impact>> {
     try_impact(robot, Options { reductions, matrices: true, ..Options::default() }, state)
 }
 

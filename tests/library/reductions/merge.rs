@@ -75,7 +75,7 @@ fn case(seed: u64) -> Case {
 /// What differs between the answers with and without merging: the verdict, the modes of the contacts that remain, or
 /// velocities after the impact and the sum of all impulses by more than 1e-12 of scale. And how many points are merged.
 fn compare(Case { robot, feet, state, rate }: Case) -> Result<usize, String> {
-    let answer = |merge: bool| -> Impact {
+    let answer = |merge: bool| -> Box<Impact> {
         let reductions = Reductions { merge, ..Reductions::ALL };
         let options =
             Options { feet: feet.clone(), contact_tolerance: Some(TOLERANCE), reductions, ..Options::default() };

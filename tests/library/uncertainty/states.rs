@@ -12,7 +12,7 @@ pub fn ramone() -> Robot {
     impact::robot(include_str!("../../../urdf/ramone.urdf"))
 }
 
-pub fn answer(robot: &Robot, state: &State) -> Impact {
+pub fn answer(robot: &Robot, state: &State) -> Box<Impact> {
     Pipeline::new(robot, Options::default()).impact(state).expect("an answer")
 }
 

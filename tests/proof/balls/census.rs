@@ -4,7 +4,7 @@ use crate::balls::oracle::{self, Answer, Index, Outcome};
 use crate::balls::states::{Model, beside_a_border};
 use crate::support::random::Random;
 use heelstrike::impact::{self, Analysis, Verdict};
-use heelstrike::pipeline::{Impact, Options, Pipeline};
+use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::state::State;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -216,7 +216,7 @@ fn answer_state(
         "the oracle's own indices do not add up to one: {answer:?}\n{}",
         state.to_json(&model.robot)
     );
-    let Ok(analysis) = found.and_then(Impact::into_analysis) else {
+    let Ok(analysis) = found.and_then(|impact| impact.into_analysis()) else {
         add("refused", 1);
         return Finding::Unknown;
     };

@@ -9,7 +9,7 @@ use crate::support::digits::{PROMISED, Truth};
 use crate::support::parallel::total;
 use crate::support::random::Random;
 use heelstrike::impact::{Friction, Outcome};
-use heelstrike::pipeline::{Impact, Options, Pipeline};
+use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::state::{Named, Scene, State};
 
 /// Compares the outcomes of a random state: how many were compared, and how many are not proven.
@@ -17,7 +17,7 @@ fn compare(model: &Model, random: &mut Random) -> [u64; 2] {
     let mut state = model.random(random);
     state.scene.impulses.clear();
     let impact = Pipeline::new(&model.robot, Options::default()).impact(&state);
-    let Ok(analysis) = impact.and_then(Impact::into_analysis) else { return [0; 2] };
+    let Ok(analysis) = impact.and_then(|impact| impact.into_analysis()) else { return [0; 2] };
     let mut counts = [0; 2];
     for outcome in analysis.outcomes.iter().filter(|outcome| outcome.impulse_unique) {
         let Some(truth) = oracle::truth(&model.robot, &state, None, &outcome.modes) else { continue };
@@ -75,7 +75,7 @@ fn impulses_of_loops_balance_the_momentum() {
         state.velocity.iter_mut().take(2).for_each(|rate| *rate += random.between(-2.0, 0.5));
         let mut pipeline = Pipeline::new(&model.robot, Options::default());
         let mut outcomes = |state: &State| {
-            let impact = pipeline.impact(state).and_then(Impact::into_analysis);
+            let impact = pipeline.impact(state).and_then(|impact| impact.into_analysis());
             impact.map_or_else(|_| Vec::new(), |analysis| analysis.outcomes)
         };
         let untouched = Scene { contacts: Some(Vec::new()), ..state.scene.clone() };
@@ -115,7 +115,7 @@ fn a_digit_that_is_off_is_found() {
         let mut state = model.random(&mut Random::new(seed));
         state.scene.impulses.clear();
         let impact = Pipeline::new(&model.robot, Options::default()).impact(&state);
-        let Ok(analysis) = impact.and_then(Impact::into_analysis) else { continue };
+        let Ok(analysis) = impact.and_then(|impact| impact.into_analysis()) else { continue };
         for outcome in analysis.outcomes.iter().filter(|outcome| outcome.impulse_unique && outcome.energy_loss != 0.0) {
             let Some(truth) = oracle::truth(&model.robot, &state, None, &outcome.modes) else { continue };
             let mut off = truth.impulse.clone();

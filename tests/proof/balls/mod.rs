@@ -28,7 +28,7 @@ mod sustained;
 use crate::support::random::Random;
 use census::{Finding, census, compare};
 use heelstrike::impact::{Mode, Verdict};
-use heelstrike::pipeline::{Impact, Options, Pipeline};
+use heelstrike::pipeline::{Options, Pipeline};
 use oracle::Index;
 use std::time::Instant;
 
@@ -75,7 +75,7 @@ fn a_mistake_is_found() {
             let state = model.random(&mut random);
             let Some(answer) = oracle::answer(&model.robot, &state, &[]) else { continue };
             let impact = Pipeline::new(&model.robot, Options::default()).impact(&state);
-            let Ok(right) = impact.and_then(Impact::into_analysis) else { continue };
+            let Ok(right) = impact.and_then(|impact| impact.into_analysis()) else { continue };
             if !matches!(compare(&answer, &right), Finding::Proven | Finding::Same) {
                 continue;
             }
