@@ -148,12 +148,18 @@ def test_touchdowns_are_those_of_the_command(ramone, tmp_path):
         getattr(frame, f"to_{ending}")(file, compression="lz4")
         lines = command("batch", URDF, file, "--touchdowns", "--friction", 0.8, "--quiet")
         assert ramone.touchdowns(str(file), friction=0.8) == [json.loads(line) for line in lines.splitlines()]
-    for field, flag, value in [("drop", "--drop", 0.2), ("ground_height", "--ground-height", 0.0)]:
+    raised = tmp_path / "raised.csv"
+    frame.assign(q_base_z=frame["q_base_z"] + 0.05).to_csv(raised, index=False)
+    for source, field, flag, value, any_found in [
+        (table, "drop", "--drop", 0.2, False),
+        (raised, "ground_height", "--ground-height", 0.02, False),
+        (raised, "ground_height", "--ground-height", 0.1, True),
+    ]:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            own = ramone.touchdowns(table, friction=0.8, **{field: value})
-        lines = command("batch", URDF, table, "--touchdowns", "--friction", 0.8, flag, value)
-        assert own == [json.loads(line) for line in lines.splitlines()] != found, field
+            own = ramone.touchdowns(source, friction=0.8, **{field: value})
+        lines = command("batch", URDF, source, "--touchdowns", "--friction", 0.8, flag, value).splitlines()
+        assert bool(own) == any_found and own == [json.loads(line) for line in lines], (field, value)
     with pytest.warns(UserWarning, match="no touchdown found: a foot must descend"):
         assert ramone.touchdowns(frame[:3], friction=0.8) == []
     with pytest.raises(TypeError, match="a table is a path.*not a list"):
