@@ -131,7 +131,7 @@ impl Pipeline<'_> {
         let mut impact = self.unanswered(prepared);
         impact.velocity_before.clone_from(&self.assembly.workspace.contact_velocity);
         impact.matrices = self.options.matrices.then(|| self.matrices());
-        (impact.left_out, impact.analysis, impact.friction_needed) = (left_out, analysis, None);
+        (impact.left_out, impact.analysis) = (left_out, analysis);
         impact.sustained = Some(sustained);
         Ok(impact)
     }

@@ -37,6 +37,7 @@ use crate::robot::Robot;
 use crate::scalar::Magnitude;
 use crate::state::{NamedContact, Scene, State, check_length};
 use serde::{Deserialize, Serialize};
+use std::mem::{replace, take};
 use std::sync::Arc;
 
 /// What is asked about a state.
@@ -351,16 +352,24 @@ impl<'r> Pipeline<'r> {
     /// What is known of a state before its analysis, in memory that it exchanges with that of the next state.
     fn unanswered(&mut self, mut prepared: Box<Prepared>) -> Box<Impact> {
         let mut impact = self.recycled.take().unwrap_or_default();
-        let Impact { placement, contacts, problem, resting, velocity_before, .. } = &mut *impact;
-        std::mem::swap(placement, &mut prepared.placement);
-        std::mem::swap(contacts, &mut prepared.contacts);
-        std::mem::swap(problem, &mut prepared.problem);
-        std::mem::swap(resting, &mut prepared.resting);
-        problem.velocity_before().clone_into(velocity_before);
-        (impact.nearest, impact.stance) = (prepared.nearest, prepared.stance);
-        impact.kinetic_energy = prepared.kinetic_energy;
-        impact.notes = std::mem::take(&mut prepared.notes);
-        (impact.sustained, impact.holds) = (None, None);
+        *impact = Impact {
+            placement: replace(&mut prepared.placement, take(&mut impact.placement)),
+            contacts: replace(&mut prepared.contacts, take(&mut impact.contacts)),
+            nearest: prepared.nearest,
+            velocity_before: take(&mut impact.velocity_before),
+            kinetic_energy: prepared.kinetic_energy,
+            problem: replace(&mut prepared.problem, take(&mut impact.problem)),
+            resting: replace(&mut prepared.resting, take(&mut impact.resting)),
+            stance: prepared.stance,
+            analysis: None,
+            friction_needed: None,
+            sustained: None,
+            holds: None,
+            matrices: None,
+            left_out: Vec::new(),
+            notes: take(&mut prepared.notes),
+        };
+        impact.problem.velocity_before().clone_into(&mut impact.velocity_before);
         self.spare = Some(prepared);
         impact
     }

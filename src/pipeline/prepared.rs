@@ -19,6 +19,7 @@ use crate::impact::{ContactProblem, Errors};
 use crate::planar::{Pair, Vector};
 use crate::robot::Robot;
 use crate::state::{NamedLoop, Scene, State, check_length};
+use std::mem::take;
 
 /// A state's contact problem, not yet analyzed.
 #[derive(Debug, Clone)]
@@ -152,10 +153,10 @@ impl Pipeline<'_> {
         state.velocity.clone_into(velocity);
         let (base, foot) = self.stand(state, &surface, velocity)?;
         self.close_loops(&scene.loops, &state.position, foot.as_ref(), velocity, &mut notes)?;
-        *placement = std::mem::take(placement).moved(&self.assembly.plan, &self.assembly.workspace, base);
+        *placement = take(placement).moved(&self.assembly.plan, &self.assembly.workspace, base);
         let footing = self.footing(scene, placement, &surface);
         let detected = self
-            .contacts(&footing, foot.as_ref(), std::mem::take(contacts), &mut notes)
+            .contacts(&footing, foot.as_ref(), take(contacts), &mut notes)
             .map_err(|error| self.sunk(error, scene, self.open_foot(&footing, &[], velocity), odd.first()))?;
         let Detected { merged, out_of_reach, .. } = detected;
         *contacts = detected.contacts;
@@ -189,11 +190,25 @@ impl Pipeline<'_> {
         self.assembly.answer(change);
         free.clear();
         free.extend(velocity.iter().zip(&*change).map(|(before, change)| before + change));
-        *problem = self.problem(scene, contacts, change, std::mem::take(problem))?;
-        (prepared.foot, prepared.stance) = (foot, stance);
-        (prepared.levels, prepared.nearest) = (levels, nearest);
-        (prepared.merged, prepared.out_of_reach) = (merged, out_of_reach);
-        (prepared.kinetic_energy, prepared.notes) = (kinetic_energy, notes);
+        *problem = self.problem(scene, contacts, change, take(problem))?;
+        *prepared = Prepared {
+            placement: take(placement),
+            velocity: take(velocity),
+            foot,
+            contacts: take(contacts),
+            nearest,
+            merged,
+            out_of_reach,
+            stance,
+            levels,
+            resting: take(resting),
+            kinetic_energy,
+            applied: take(applied),
+            change: take(change),
+            free: take(free),
+            problem: take(problem),
+            notes,
+        };
         Ok(prepared)
     }
 

@@ -16,6 +16,7 @@ mod lecture;
 mod limits;
 mod loader;
 mod maps;
+mod recycled;
 mod reductions;
 mod regression;
 #[path = "../support/mod.rs"]

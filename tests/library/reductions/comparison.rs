@@ -11,6 +11,12 @@ use heelstrike::robot::{Base, Plane, Reduction};
 /// Of scale.
 const TOLERANCE: f64 = 1e-12;
 
+/// By how much two reductions round the robot's numbers differently.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// Of scale, the most that two numbers may be apart that are each right to 1e-10.
+const PROMISED: f64 = 2e-10;
+
 /// Without any reduction, and without each alone.
 pub const FEWER: [Reductions; 7] = [
     Reductions::NONE,
@@ -33,7 +39,8 @@ pub fn answer(robot: &Robot, state: &serde_json::Value, reductions: Reductions) 
     try_impact(robot, Options { reductions, matrices: true, ..Options::default() }, state)
 }
 
-/// What differs between two answers: contacts, verdict, modes, or numbers beyond 1e-12 of scale. Velocities by
+/// What differs between two answers: contacts, verdict, modes, or numbers beyond 1e-12 of scale, or beyond
+/// what impulses far above it make of the robot's rounding. Velocities by
 /// coordinate are compared where both have the same coordinates: `rate` is the largest of them before the impact.
 pub fn difference(one: &Impact, other: &Impact, rate: Option<f64>) -> Result<(), String> {
     let names = |impact: &Impact| impact.contacts.iter().map(|contact| contact.name.clone()).collect::<Vec<_>>();
@@ -50,7 +57,7 @@ pub fn difference(one: &Impact, other: &Impact, rate: Option<f64>) -> Result<(),
     }
     if let (Some(one), Some(other)) = (a.condition, b.condition) {
         // It reports how many of its own digits are lost.
-        compare("conditions", &[one.recip()], &[other.recip()], 1.0)?;
+        compare(TOLERANCE, "conditions", &[one.recip()], &[other.recip()], 1.0)?;
     }
     let [a, b] = [one, other].map(sorted);
     let modes = |outcomes: &[&Outcome]| outcomes.iter().map(|own| own.modes.clone()).collect::<Vec<_>>();
@@ -69,7 +76,11 @@ pub fn difference(one: &Impact, other: &Impact, rate: Option<f64>) -> Result<(),
         let scaled = |rows: &[[f64; 2]], power: i32| -> Vec<f64> {
             rows.iter().flatten().zip(&mobility).map(|(entry, mobility)| entry * mobility.powi(power) / speed).collect()
         };
-        compare("impulses", &scaled(&a.impulse, 1), &scaled(&b.impulse, 1), 1.0)?;
+        let impulses = scaled(&a.impulse, 1);
+        // Contacts that pull against each other: in the scale impulses are no greater than the condition of G.
+        let tolerance = (ROUNDING * largest(&impulses)).clamp(TOLERANCE, PROMISED);
+        let compare = |what, a: &[f64], b: &[f64], least| compare(tolerance, what, a, b, least);
+        compare("impulses", &impulses, &scaled(&b.impulse, 1), 1.0)?;
         compare("contact velocities", &scaled(&a.velocity_after, -1), &scaled(&b.velocity_after, -1), 1.0)?;
         if let Some(rate) = rate {
             let [loops, others] = [a, b]
@@ -89,9 +100,9 @@ pub fn largest_rate(state: &serde_json::Value) -> f64 {
     largest(&parts.flat_map(|part| part.values()).filter_map(serde_json::Value::as_f64).collect::<Vec<_>>())
 }
 
-fn compare(what: &str, a: &[f64], b: &[f64], least: f64) -> Result<(), String> {
+fn compare(tolerance: f64, what: &str, a: &[f64], b: &[f64], least: f64) -> Result<(), String> {
     let size = least.max(largest(a)).max(largest(b));
-    if near(a, b, TOLERANCE * size) {
+    if near(a, b, tolerance * size) {
         return Ok(());
     }
     let far = a.iter().zip(b).map(|(a, b)| (a - b).abs() / size).fold(0.0, f64::max);
