@@ -128,7 +128,7 @@ impl<const N: usize> Trigonometry for Affine<N> {
 }
 
 impl<const N: usize> Affine<N> {
-    #[inline]
+    #[inline(never)]
     fn plus(self, other: Self) -> Self {
         if self.is_exact_zero() {
             return other;
@@ -146,7 +146,7 @@ impl<const N: usize> Affine<N> {
         self + -other
     }
 
-    #[inline]
+    #[inline(never)]
     fn times(self, other: Self) -> Self {
         if self.is_exact_zero() || other.is_exact_zero() {
             return Self::zero();
@@ -169,7 +169,7 @@ impl<const N: usize> Affine<N> {
         Self::around(center, slopes, (reach * other_reach - squares) + spread + rounding)
     }
 
-    #[inline]
+    #[inline(never)]
     fn over(self, other: Self) -> Self {
         let divisor = other.center;
         let spread = (other.reach() + other.error) * Self::BLOW_UP;

@@ -72,18 +72,22 @@ impl<B: Ordered + Trigonometry> Trigonometry for Certified<B> {
 }
 
 impl<B: Ordered> Certified<B> {
+    #[inline(never)]
     fn plus(self, other: Self) -> Self {
         Self::paired(self.residue + other.residue, || self.enclosure + other.enclosure)
     }
 
+    #[inline(never)]
     fn minus(self, other: Self) -> Self {
         Self::paired(self.residue - other.residue, || self.enclosure - other.enclosure)
     }
 
+    #[inline(never)]
     fn times(self, other: Self) -> Self {
         Self::paired(self.residue * other.residue, || self.enclosure * other.enclosure)
     }
 
+    #[inline(never)]
     fn over(self, other: Self) -> Self {
         Self::paired(self.residue / other.residue, || self.enclosure / other.enclosure)
     }

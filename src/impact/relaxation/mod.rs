@@ -14,165 +14,33 @@
 //! ```
 //!
 //! Nothing that f64 has done is trusted: a [`Claim`] is shown to hold by an error bound ([`Relaxation::shows`]), or in
-//! numbers that know their signs ([`Claim::holds`]).
+//! numbers that know their signs ([`Claim::shown`]).
+
+mod claim;
+mod dictionary;
+mod ranges;
+
+pub use claim::Claim;
+pub use dictionary::Lack;
 
 use super::kernel::{Kernel, Relation};
-use super::linear::{Unsettled, extended, settled, solve};
+use super::linear::Unsettled;
 use super::problem::{ContactProblem, Errors};
 use super::slack::Scale;
-use crate::law::{Impulse, Law, Mode};
+use crate::law::{Law, Mode};
 use crate::planar::Pair;
 use crate::scalar::Ordered;
+use dictionary::{Dictionary, LANES};
 use nalgebra::{DMatrix, DVector};
+use ranges::{Range, Ranges, Ray};
 use std::cmp::Ordering;
 
-/// Scaled numbers nearer to zero count as zero where f64 chooses its way.
-const TOLERANCE: f64 = 1e-9;
-/// What strict inequalities keep from zero where f64 chooses its way.
-const STRICT: f64 = 1e-7;
-/// More pivots per row than this show nothing.
-const PIVOTS: usize = 6;
-/// Rows are padded to multiples of this.
-const LANES: usize = 4;
 /// So many nogoods are kept.
 const NOGOODS: usize = 256;
 /// What is added to the diagonal of a G that may be singular.
 const DAMPING: f64 = 1e-9;
 /// The least eigenvalue of a scaled G that counts as regular.
 const REGULAR: f64 = 1e-6;
-
-/// The values that a variable may take.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Range {
-    above_zero: bool,
-    below_zero: bool,
-}
-
-impl Range {
-    const FREE: Self = Self { above_zero: true, below_zero: true };
-    const ABOVE: Self = Self { above_zero: true, below_zero: false };
-    const BELOW: Self = Self { above_zero: false, below_zero: true };
-    const ZERO: Self = Self { above_zero: false, below_zero: false };
-
-    fn of(sign: Ordering) -> Self {
-        match sign {
-            Ordering::Greater => Self::ABOVE,
-            Ordering::Equal => Self::ZERO,
-            Ordering::Less => Self::BELOW,
-        }
-    }
-
-    /// Whether a multiple of the variable, by a factor of this sign, is nowhere negative.
-    fn admits(self, factor: Ordering) -> bool {
-        match factor {
-            Ordering::Greater => !self.below_zero,
-            Ordering::Equal => true,
-            Ordering::Less => !self.above_zero,
-        }
-    }
-}
-
-/// The ranges of all variables, a bit each: two velocities and at most two rays of each of up to 16 contacts.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-struct Ranges {
-    above_zero: u64,
-    below_zero: u64,
-    /// Velocities that are not zero.
-    moves: u64,
-}
-
-impl Ranges {
-    fn get(self, variable: usize) -> Range {
-        let is_in = |bits: u64| bits >> variable & 1 == 1;
-        Range { above_zero: is_in(self.above_zero), below_zero: is_in(self.below_zero) }
-    }
-
-    fn set(&mut self, variable: usize, range: Range) {
-        let put = |bits: u64, is_in: bool| bits & !(1 << variable) | u64::from(is_in) << variable;
-        self.above_zero = put(self.above_zero, range.above_zero);
-        self.below_zero = put(self.below_zero, range.below_zero);
-    }
-
-    /// These, but for some variables.
-    fn replaced(self, variables: u64, by: Self) -> Self {
-        Self {
-            above_zero: self.above_zero & !variables | by.above_zero,
-            below_zero: self.below_zero & !variables | by.below_zero,
-            moves: self.moves & !variables | by.moves,
-        }
-    }
-
-    /// Whether what these name speaks for other ranges: a variable that may take its sign, or that none of `moves` does.
-    fn allows(self, other: Self) -> bool {
-        let admitted = self.above_zero & other.above_zero | self.below_zero & other.below_zero;
-        admitted != 0 || self.moves != 0 && self.moves & other.moves == 0
-    }
-}
-
-/// One ray of a contact's cone; its multiplier is a variable.
-#[derive(Debug, Clone, Copy)]
-struct Ray {
-    contact: usize,
-    entries: Pair<f64>,
-    /// Whether its opposite is in the cone, too.
-    both: bool,
-}
-
-impl Ray {
-    fn all(laws: &[Law]) -> impl Iterator<Item = Self> {
-        laws.iter().enumerate().flat_map(|(contact, law)| {
-            law.rays().into_iter().map(move |(entries, both)| Self { contact, entries, both })
-        })
-    }
-
-    /// The range of its multiplier if its contact has this mode, or any.
-    fn range(&self, law: &Law, mode: Option<Mode>) -> Range {
-        let own = if self.both { Range::FREE } else { Range::ABOVE };
-        match mode.map(|mode| law.impulse(mode)) {
-            None | Some(Impulse::Free) => own,
-            Some(Impulse::Zero) => Range::ZERO,
-            Some(Impulse::Along([t, n])) if t * self.entries[1] == n * self.entries[0] => {
-                let forward = t * self.entries[0] + n * self.entries[1] > 0.0;
-                if forward {
-                    Range::ABOVE
-                } else if self.both {
-                    Range::BELOW
-                } else {
-                    Range::ZERO
-                }
-            }
-            Some(Impulse::Along(_)) => Range::ZERO,
-        }
-    }
-}
-
-/// Basic variables as affine functions of the others. Variables below 2n are velocities, the others multipliers of
-/// rays.
-#[derive(Debug, Clone, Default)]
-struct Dictionary {
-    /// By rows: per basic variable its coefficients of the nonbasic ones, padding, and last its value.
-    entries: Vec<f64>,
-    width: usize,
-    basic: Vec<usize>,
-    nonbasic: Vec<usize>,
-    ranges: Ranges,
-}
-
-/// A variable that cannot get into its range, and the sign of what it lacks.
-#[derive(Debug, Clone, Copy)]
-pub struct Lack {
-    variable: usize,
-    sign: f64,
-}
-
-/// That nothing leads to these modes of the first contacts, and the dictionary whose row says so.
-#[derive(Debug, Clone)]
-pub struct Claim {
-    pub modes: Vec<Mode>,
-    lack: Lack,
-    basic: Vec<usize>,
-    ranges: Ranges,
-}
 
 /// The relaxation of one problem in f64, free of units; memory that is reused.
 #[derive(Debug, Clone, Default)]
@@ -428,139 +296,6 @@ impl Relaxation {
             self.learn(nogood);
         }
         is_shown
-    }
-}
-
-impl Dictionary {
-    fn copy(&mut self, other: &Self) {
-        self.entries.clone_from(&other.entries);
-        self.basic.clone_from(&other.basic);
-        self.nonbasic.clone_from(&other.nonbasic);
-        self.width = other.width;
-    }
-
-    /// Counts a velocity from where it is strictly positive or negative.
-    fn keep_from_zero(&mut self, variable: usize, sign: Ordering) {
-        let from = f64::from(sign as i8) * STRICT;
-        let width = self.width;
-        if let Some(row) = self.basic.iter().position(|&basic| basic == variable) {
-            self.entries[(row + 1) * width - 1] -= from;
-        } else if let Some(column) = self.nonbasic.iter().position(|&nonbasic| nonbasic == variable) {
-            for row in self.entries.chunks_exact_mut(width) {
-                row[width - 1] += row[column] * from;
-            }
-        }
-    }
-
-    /// Brings all variables into their ranges, or finds one that cannot get there.
-    fn impossible(&mut self) -> Option<Lack> {
-        let width = self.width;
-        for _ in 0..PIVOTS * self.basic.len() {
-            let (mut most, mut worst) = (TOLERANCE, None);
-            for (row, (&variable, entries)) in self.basic.iter().zip(self.entries.chunks_exact(width)).enumerate() {
-                let (value, range) = (entries[width - 1], self.ranges.get(variable));
-                let sign = if value < 0.0 && !range.below_zero {
-                    1.0
-                } else if value > 0.0 && !range.above_zero {
-                    -1.0
-                } else {
-                    continue;
-                };
-                if value.abs() > most {
-                    (most, worst) = (value.abs(), Some((row, sign)));
-                }
-            }
-            let (row, sign) = worst?;
-            let (mut most, mut entering) = (TOLERANCE, None);
-            let coefficients = &self.entries[row * width..][..width - 1];
-            for (column, (&variable, &coefficient)) in self.nonbasic.iter().zip(coefficients).enumerate() {
-                let (slope, range) = (sign * coefficient, self.ranges.get(variable));
-                let moves = if slope > 0.0 { range.above_zero } else { range.below_zero };
-                if moves && slope.abs() > most {
-                    (most, entering) = (slope.abs(), Some(column));
-                }
-            }
-            match entering {
-                Some(column) => self.pivot(row, column),
-                None => return Some(Lack { variable: self.basic[row], sign }),
-            }
-        }
-        None
-    }
-
-    fn pivot(&mut self, row: usize, column: usize) {
-        let width = self.width;
-        let (before, rest) = self.entries.split_at_mut(row * width);
-        let (own, after) = rest.split_at_mut(width);
-        let inverse = 1.0 / own[column];
-        own.iter_mut().for_each(|entry| *entry *= -inverse);
-        own[column] = inverse;
-        for other in before.chunks_exact_mut(width).chain(after.chunks_exact_mut(width)) {
-            let factor = std::mem::take(&mut other[column]);
-            for (entries, own) in other.as_chunks_mut::<LANES>().0.iter_mut().zip(own.as_chunks::<LANES>().0) {
-                entries.iter_mut().zip(own).for_each(|(entry, own)| *entry += factor * own);
-            }
-        }
-        std::mem::swap(&mut self.basic[row], &mut self.nonbasic[column]);
-    }
-}
-
-impl Claim {
-    /// What the claim rests on if it holds in exact numbers, the strictness of inequalities included.
-    fn shown<T: Ordered>(&self, problem: &ContactProblem<T>) -> Result<Option<Ranges>, Unsettled> {
-        let rows = 2 * problem.contacts();
-        let rays: Vec<Ray> = Ray::all(problem.laws()).collect();
-        let response = |row: usize, ray: &Ray| {
-            let [t, n] = ray.entries.map(T::from_f64);
-            t * problem.delassus(row, 2 * ray.contact) + n * problem.delassus(row, 2 * ray.contact + 1)
-        };
-        let (own, sign) = (self.lack.variable, T::from_f64(self.lack.sign));
-        // The multipliers y of velocities outside the basis make those of the rays inside it zero.
-        let unknown: Vec<usize> = (0..rows).filter(|row| !self.basic.contains(row)).collect();
-        let equations = self.basic.iter().filter(|&&variable| variable >= rows).map(|&variable| {
-            let ray = &rays[variable - rows];
-            let coefficients: Vec<T> = unknown.iter().map(|&row| response(row, ray)).collect();
-            let right = match own {
-                row if row < rows => sign * response(row, ray),
-                _ if own == variable => sign,
-                _ => T::zero(),
-            };
-            extended(&coefficients, -right)
-        });
-        let Some(found) = solve(unknown.len(), equations.collect())? else { return Ok(None) };
-        let mut factors: Vec<(usize, T)> = unknown.into_iter().zip(found.origin).collect();
-        factors.extend((own < rows).then_some((own, sign)));
-        let mut nogood = Ranges::default();
-        for &(row, factor) in &factors {
-            let factor = settled(factor)?;
-            if !self.ranges.get(row).admits(factor) {
-                return Ok(None);
-            }
-            nogood.set(row, Range { above_zero: factor.is_lt(), below_zero: factor.is_gt() });
-            nogood.moves |= u64::from(factor.is_ne()) << row;
-        }
-        for (index, ray) in rays.iter().enumerate() {
-            if rows + index != own && self.basic.contains(&(rows + index)) {
-                continue;
-            }
-            let range = self.ranges.get(rows + index);
-            if range == Range::ZERO {
-                nogood.set(rows + index, Range::FREE);
-                continue;
-            }
-            let sum = factors.iter().fold(T::zero(), |sum, &(row, factor)| sum - factor * response(row, ray));
-            let sum = settled(sum)?;
-            if !range.admits(sum) {
-                return Ok(None);
-            }
-            nogood.set(rows + index, Range { above_zero: sum.is_lt(), below_zero: sum.is_gt() });
-        }
-        let total = factors.iter().fold(T::zero(), |sum, &(row, factor)| sum + factor * problem.free_row(row));
-        Ok(match settled(total)? {
-            Ordering::Less => Some(Ranges { moves: 0, ..nogood }),
-            Ordering::Equal if nogood.moves & self.ranges.moves != 0 => Some(nogood),
-            Ordering::Equal | Ordering::Greater => None,
-        })
     }
 }
 

@@ -1,0 +1,110 @@
+//! The values that the variables of a relaxation may take.
+
+use crate::law::{Impulse, Law, Mode};
+use crate::planar::Pair;
+use std::cmp::Ordering;
+
+/// The values that a variable may take.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Range {
+    pub above_zero: bool,
+    pub below_zero: bool,
+}
+
+impl Range {
+    pub const FREE: Self = Self { above_zero: true, below_zero: true };
+    pub const ABOVE: Self = Self { above_zero: true, below_zero: false };
+    pub const BELOW: Self = Self { above_zero: false, below_zero: true };
+    pub const ZERO: Self = Self { above_zero: false, below_zero: false };
+
+    pub fn of(sign: Ordering) -> Self {
+        match sign {
+            Ordering::Greater => Self::ABOVE,
+            Ordering::Equal => Self::ZERO,
+            Ordering::Less => Self::BELOW,
+        }
+    }
+
+    /// Whether a multiple of the variable, by a factor of this sign, is nowhere negative.
+    pub fn admits(self, factor: Ordering) -> bool {
+        match factor {
+            Ordering::Greater => !self.below_zero,
+            Ordering::Equal => true,
+            Ordering::Less => !self.above_zero,
+        }
+    }
+}
+
+/// The ranges of all variables, a bit each: two velocities and at most two rays of each of up to 16 contacts.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Ranges {
+    pub above_zero: u64,
+    pub below_zero: u64,
+    /// Velocities that are not zero.
+    pub moves: u64,
+}
+
+impl Ranges {
+    pub fn get(self, variable: usize) -> Range {
+        let is_in = |bits: u64| bits >> variable & 1 == 1;
+        Range { above_zero: is_in(self.above_zero), below_zero: is_in(self.below_zero) }
+    }
+
+    pub fn set(&mut self, variable: usize, range: Range) {
+        let put = |bits: u64, is_in: bool| bits & !(1 << variable) | u64::from(is_in) << variable;
+        self.above_zero = put(self.above_zero, range.above_zero);
+        self.below_zero = put(self.below_zero, range.below_zero);
+    }
+
+    /// These, but for some variables.
+    pub fn replaced(self, variables: u64, by: Self) -> Self {
+        Self {
+            above_zero: self.above_zero & !variables | by.above_zero,
+            below_zero: self.below_zero & !variables | by.below_zero,
+            moves: self.moves & !variables | by.moves,
+        }
+    }
+
+    /// Whether what these name speaks for other ranges: a variable that may take its sign, or that none of `moves` does.
+    pub fn allows(self, other: Self) -> bool {
+        let admitted = self.above_zero & other.above_zero | self.below_zero & other.below_zero;
+        admitted != 0 || self.moves != 0 && self.moves & other.moves == 0
+    }
+}
+
+/// One ray of a contact's cone; its multiplier is a variable.
+#[derive(Debug, Clone, Copy)]
+pub struct Ray {
+    pub contact: usize,
+    pub entries: Pair<f64>,
+    /// Whether its opposite is in the cone, too.
+    pub both: bool,
+}
+
+impl Ray {
+    pub fn all(laws: &[Law]) -> impl Iterator<Item = Self> {
+        laws.iter().enumerate().flat_map(|(contact, law)| {
+            law.rays().into_iter().map(move |(entries, both)| Self { contact, entries, both })
+        })
+    }
+
+    /// The range of its multiplier if its contact has this mode, or any.
+    pub fn range(&self, law: &Law, mode: Option<Mode>) -> Range {
+        let own = if self.both { Range::FREE } else { Range::ABOVE };
+        match mode.map(|mode| law.impulse(mode)) {
+            None | Some(Impulse::Free) => own,
+            Some(Impulse::Zero) => Range::ZERO,
+            Some(Impulse::Along([t, n])) if t * self.entries[1] == n * self.entries[0] => {
+                let forward = t * self.entries[0] + n * self.entries[1] > 0.0;
+                if forward {
+                    Range::ABOVE
+                } else if self.both {
+                    Range::BELOW
+                } else {
+                    Range::ZERO
+                }
+            }
+            Some(Impulse::Along(_)) => Range::ZERO,
+        }
+    }
+}
