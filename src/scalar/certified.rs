@@ -74,16 +74,29 @@ impl<B: Ordered + Trigonometry> Trigonometry for Certified<B> {
 impl<B: Ordered> Certified<B> {
     #[inline(never)]
     fn plus(self, other: Self) -> Self {
+        if other.residue == Residue::ZERO {
+            return self;
+        }
+        if self.residue == Residue::ZERO {
+            return other;
+        }
         Self::paired(self.residue + other.residue, || self.enclosure + other.enclosure)
     }
 
     #[inline(never)]
     fn minus(self, other: Self) -> Self {
+        if other.residue == Residue::ZERO {
+            return self;
+        }
         Self::paired(self.residue - other.residue, || self.enclosure - other.enclosure)
     }
 
     #[inline(never)]
     fn times(self, other: Self) -> Self {
+        let is_known = |number: Self| number.residue.is_zero().is_some();
+        if self.residue == Residue::ZERO && is_known(other) || other.residue == Residue::ZERO && is_known(self) {
+            return Self::zero();
+        }
         Self::paired(self.residue * other.residue, || self.enclosure * other.enclosure)
     }
 

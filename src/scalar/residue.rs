@@ -1,6 +1,7 @@
 //! Numbers modulo two primes: whether a number is exactly zero.
 
 use super::{Real, Trigonometry};
+use std::cell::Cell;
 
 /// A number modulo two primes just below 2^61, with the angles' cosines and sines replaced by a point of the circle.
 ///
@@ -43,6 +44,15 @@ const STEPS: usize = 65;
 const LEAST: i32 = -1088;
 /// Multiples of angles are taken by digits of four bits.
 const DIGITS: usize = 15;
+
+/// Numbers whose inverses were found last, by their remainder: all rows of an elimination are divided by the same pivots.
+type Inverses = [Cell<(u64, u64)>; KEPT];
+
+const KEPT: usize = 32;
+
+thread_local! {
+    static INVERSES: [Inverses; 2] = const { [const { [const { Cell::new((0, 0)) }; KEPT] }; 2] };
+}
 
 /// Constants of a prime.
 struct Tables {
@@ -169,8 +179,20 @@ impl<const BITS: u32, const C: u64> Modulus<BITS, C> {
         point
     }
 
-    fn over(a: u64, b: u64) -> u64 {
-        if b == 0 { NONE } else { Self::times(a, Self::inverse(b)) }
+    fn over(a: u64, b: u64, inverses: &Inverses) -> u64 {
+        if b == 0 {
+            return NONE;
+        }
+        if a == 0 {
+            return 0;
+        }
+        let kept = &inverses[b as usize % KEPT];
+        let (number, mut inverse) = kept.get();
+        if number != b {
+            inverse = Self::inverse(b);
+            kept.set((b, inverse));
+        }
+        Self::times(a, inverse)
     }
 }
 
@@ -184,6 +206,9 @@ fn decomposed(value: f64) -> (u64, i32) {
 impl Residue {
     /// Nothing known modulo either prime.
     pub const UNDEFINED: Self = Self([NONE; 2]);
+
+    /// The number zero itself.
+    pub const ZERO: Self = Self([0; 2]);
 
     /// Whether the number is zero: proved if it is not, and nearly so if it is; `None` after a division by zero.
     pub fn is_zero(self) -> Option<bool> {
@@ -246,7 +271,9 @@ impl Residue {
     }
 
     fn over(self, other: Self) -> Self {
-        self.by_prime(other, FirstField::over, SecondField::over)
+        INVERSES.with(|[first, second]| {
+            self.by_prime(other, |a, b| FirstField::over(a, b, first), |a, b| SecondField::over(a, b, second))
+        })
     }
 
     fn negated(self) -> Self {
