@@ -130,7 +130,7 @@ impl<M: Midpoint> Ball<M> {
         Self::around(mid, spread + mid.rounding())
     }
 
-    #[inline]
+    #[inline(never)]
     fn over(self, other: Self) -> Self {
         // The least magnitude in the divisor; not positive when it may be zero.
         let least = other.mid.least_magnitude() - other.radius * BLOW_UP;

@@ -115,7 +115,7 @@ impl DoubleDouble {
         Self::renormalized(high, error + (self.hi * other.lo + self.lo * other.hi))
     }
 
-    #[inline]
+    #[inline(never)]
     fn over(self, other: Self) -> Self {
         let high = self.hi / other.hi;
         // The divisor times the first digits (their algorithm 7), and what that leaves of the dividend.

@@ -61,9 +61,8 @@ pub fn run(problem: &ContactProblem, ground: SoftGround, tolerance: f64) -> Resu
         free: problem.velocity_free().iter().map(|c| c.map(|entry| entry / speed)).collect(),
         suspension: Suspension::new(ground, spring, damper, problem.friction()),
     };
-    let length = if contacts > 4 { 4 * MOST_CONTACTS } else { (4 * contacts).next_power_of_two() };
     let limits = Limits { relative: tolerance, absolute: 0.01 * tolerance, horizon: HORIZON };
-    let end = integrate(&model, &[0.0; 4 * MOST_CONTACTS][..length], limits)?;
+    let end = integrate(&model, &vec![0.0; 4 * contacts], limits)?;
     let impulse = |i: usize| [0, 1].map(|k| end.state[2 * i + k] * speed / mean_mobility);
     Ok(CompliantRun {
         impulse: (0..contacts).map(impulse).collect(),

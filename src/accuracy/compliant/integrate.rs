@@ -70,20 +70,17 @@ pub(super) struct Limits {
     pub horizon: f64,
 }
 
-/// Integrates from `start`, whose length is 4, 8, 16, 32, 40, 64 or 128: the integrator takes arrays, and is compiled for
-/// each length. Entries beyond the model's rates stay as they are.
+/// Integrates from `start`; the integrator takes arrays, and is compiled for a few lengths.
 ///
 /// # Errors
-/// [`Reason::Unsupported`] if the integrator gives up, and for other lengths.
+/// [`Reason::Unsupported`] if the integrator gives up, and for a start that is longer than the longest array.
 pub(super) fn integrate(model: &dyn StiffEquations, start: &[f64], limits: Limits) -> Result<RunEnd> {
     match start.len() {
-        4 => integrate_array::<4>(model, start, limits),
-        8 => integrate_array::<8>(model, start, limits),
-        16 => integrate_array::<16>(model, start, limits),
-        32 => integrate_array::<32>(model, start, limits),
-        40 => integrate_array::<40>(model, start, limits),
-        64 => integrate_array::<64>(model, start, limits),
-        128 => integrate_array::<128>(model, start, limits),
+        ..=4 => integrate_array::<4>(model, start, limits),
+        ..=8 => integrate_array::<8>(model, start, limits),
+        ..=16 => integrate_array::<16>(model, start, limits),
+        ..=40 => integrate_array::<40>(model, start, limits),
+        ..=128 => integrate_array::<128>(model, start, limits),
         _ => Err(Error::new(Reason::Unsupported("compliant contact of so large a robot".into()))
             .hint("hold joints that matter little")),
     }
@@ -95,8 +92,8 @@ fn integrate_array<const N: usize>(model: &dyn StiffEquations, start: &[f64], li
     let mut method =
         ImplicitRungeKutta::radau5().rtol([relative; N]).atol([absolute; N]).h0(FIRST_STEP).max_steps(MOST_STEPS);
     let mut first = [0.0; N];
-    first.copy_from_slice(start);
-    let mut run = Run { model, end: RunEnd { state: start.to_vec(), steps: 0, ended: false } };
+    first[..start.len()].copy_from_slice(start);
+    let mut run = Run { model, end: RunEnd { state: first.to_vec(), steps: 0, ended: false } };
     solve_ode(&mut method, &System(model), 0.0, horizon, &first, &mut run).map_err(|error| gave_up(&error))?;
     Ok(run.end)
 }

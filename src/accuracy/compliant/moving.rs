@@ -47,7 +47,7 @@ impl Moving<'_> {
     pub fn run(&self, ground: SoftGround, stiffness: f64, tolerance: f64) -> Result<Vec<f64>> {
         let dofs = self.position.len();
         let model = Equation::new(self, ground, stiffness);
-        let mut start = vec![0.0; (2 * dofs + self.contacts.len()).next_power_of_two().max(16)];
+        let mut start = vec![0.0; 2 * dofs + self.contacts.len()];
         for (entry, rate) in start[dofs..].iter_mut().zip(self.velocity) {
             *entry = rate / model.speed;
         }

@@ -51,8 +51,7 @@ impl Pipeline<'_> {
         // Sizes of the affine numbers; what goes beyond the last counts as unrelated errors.
         match quantities {
             0 => Robustness::Everywhere,
-            1..=8 => search::<8>(&mut kept, whole, &expected),
-            9..=16 => search::<16>(&mut kept, whole, &expected),
+            1..=16 => search::<16>(&mut kept, whole, &expected),
             17..=32 => search::<32>(&mut kept, whole, &expected),
             _ => search::<64>(&mut kept, whole, &expected),
         }
