@@ -13,59 +13,28 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyBytes, PyList};
 use serde::{Deserialize, Serialize};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// A list that becomes an array.
-struct Column<T> {
-    list: Mutex<Vec<T>>,
-    array: PyOnceLock<Py<PyAny>>,
-}
-
-/// Texts that become a list.
-struct TextColumn {
-    texts: Texts,
-    list: PyOnceLock<Py<PyAny>>,
-}
-
-impl<T: Element + Clone> Column<T> {
-    fn new(list: Vec<T>) -> Self {
-        Self { list: list.into(), array: PyOnceLock::new() }
-    }
-
-    fn array(&self, py: Python<'_>, shape: &[usize]) -> PyResult<Py<PyAny>> {
-        let made = || {
-            let list = std::mem::take(&mut *self.list.lock().unwrap_or_else(PoisonError::into_inner));
-            let array = PyArray1::from_vec(py, list);
-            Ok::<_, PyErr>(
-                if shape.len() == 1 { array.into_any() } else { array.reshape(shape.to_vec())?.into_any() }.unbind(),
-            )
-        };
-        self.array.get_or_try_init(py, made).map(|array| array.clone_ref(py))
-    }
-
-    /// Another list of the same.
-    fn copy(&self, py: Python<'_>) -> PyResult<Vec<T>> {
-        match self.array.get(py) {
-            Some(array) => Ok(array.bind(py).cast::<PyArrayDyn<T>>()?.to_vec()?),
-            None => Ok(self.list.lock().unwrap_or_else(PoisonError::into_inner).clone()),
-        }
-    }
-}
+/// Made once, when it is first asked for.
+type Made = PyOnceLock<Py<PyAny>>;
 
 /// The lists of [`Arrays`] that become arrays.
 macro_rules! lists {
     ($($name:ident: $entry:ty),*) => {
         struct Lists {
-            $($name: Column<$entry>),*
+            $($name: Made),*
         }
 
         impl Lists {
-            fn new(arrays: &mut Arrays) -> Self {
-                Self { $($name: Column::new(std::mem::take(&mut arrays.$name))),* }
+            fn new() -> Self {
+                Self { $($name: Made::new()),* }
             }
 
-            fn copy(&self, py: Python<'_>, into: &mut Arrays) -> PyResult<()> {
-                $(into.$name = self.$name.copy(py)?;)*
+            /// Copies into `arrays` what they have given away.
+            fn copy(&self, py: Python<'_>, arrays: &mut Arrays) -> PyResult<()> {
+                $(if let Some(array) = self.$name.get(py) {
+                    arrays.$name = array.bind(py).cast::<PyArrayDyn<$entry>>()?.to_vec()?;
+                })*
                 Ok(())
             }
         }
@@ -83,8 +52,10 @@ pub struct Answers {
     table: Arc<Table>,
     states: usize,
     outcomes: usize,
+    /// Taken away only where the answers end.
+    arrays: Mutex<Option<Box<Arrays>>>,
     lists: Lists,
-    texts: [TextColumn; 4],
+    texts: [Made; 4],
 }
 
 /// What the answers to all states have in common.
@@ -95,7 +66,15 @@ pub struct Table {
     columns: Columns,
     /// No answer yet.
     pub empty: Arrays,
+    /// Memory of answers to few states that have ended.
+    #[serde(skip)]
+    spare: Mutex<Vec<Box<Arrays>>>,
 }
+
+/// So many states are few.
+const FEW: usize = 256;
+/// So much memory is kept.
+const SPARE: usize = 4;
 
 impl Table {
     /// That of a robot's feet and contacts that states name.
@@ -106,29 +85,65 @@ impl Table {
             coordinates: robot.coordinates().map(str::to_owned).collect(),
             empty: Arrays::new(&columns),
             columns,
+            spare: Mutex::default(),
+        }
+    }
+
+    /// No answer yet, with room for those to so many states.
+    pub fn arrays(&self, states: usize) -> Box<Arrays> {
+        let spare = if states <= FEW { locked(&self.spare).pop() } else { None };
+        spare.unwrap_or_else(|| Box::new(self.empty.for_states(states)))
+    }
+}
+
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Drop for Answers {
+    fn drop(&mut self) {
+        let Some(mut arrays) = locked(&self.arrays).take().filter(|_| self.states <= FEW) else { return };
+        let mut spare = locked(&self.table.spare);
+        if spare.len() < SPARE {
+            arrays.clear();
+            spare.push(arrays);
         }
     }
 }
 
 impl Answers {
-    pub fn new(table: Arc<Table>, mut arrays: Arrays) -> Self {
-        Self {
-            table,
-            states: arrays.verdict.len(),
-            outcomes: arrays.margin.len(),
-            lists: Lists::new(&mut arrays),
-            texts: [arrays.error, arrays.notes, arrays.border, arrays.families]
-                .map(|texts| TextColumn { texts, list: PyOnceLock::new() }),
-        }
+    pub fn new(table: Arc<Table>, arrays: Box<Arrays>) -> Self {
+        let (states, outcomes) = (arrays.verdict.len(), arrays.margin.len());
+        let (lists, texts) = (Lists::new(), [const { Made::new() }; 4]);
+        Self { table, states, outcomes, arrays: Some(arrays).into(), lists, texts }
+    }
+
+    /// Work on the lists that are not arrays yet, and on the texts; Python must not run in it.
+    fn with<R>(&self, work: impl FnOnce(&mut Arrays) -> R) -> R {
+        work(locked(&self.arrays).get_or_insert_default())
     }
 
     /// A copy of all.
     fn copy(&self, py: Python<'_>) -> PyResult<Arrays> {
-        let mut arrays = self.table.empty.for_states(0);
+        let mut arrays = self.with(|arrays| arrays.clone());
         self.lists.copy(py, &mut arrays)?;
-        let texts = self.texts.each_ref().map(|column| column.texts.clone());
-        [arrays.error, arrays.notes, arrays.border, arrays.families] = texts;
         Ok(arrays)
+    }
+
+    /// A list as an array, without a copy.
+    fn array<T: Element>(
+        &self,
+        py: Python<'_>,
+        made: &Made,
+        list: fn(&mut Arrays) -> &mut Vec<T>,
+        shape: &[usize],
+    ) -> PyResult<Py<PyAny>> {
+        let make = || {
+            let array = PyArray1::from_vec(py, self.with(|arrays| std::mem::take(list(arrays))));
+            let array = if shape.len() == 1 { array.into_any() } else { array.reshape(shape.to_vec())?.into_any() };
+            Ok::<_, PyErr>(array.unbind())
+        };
+        made.get_or_try_init(py, make).map(|array| array.clone_ref(py))
     }
 
     /// Refuses a name that belongs to the other question.
@@ -139,17 +154,23 @@ impl Answers {
     }
 
     /// A list with a text or `None` for each of `count` entries.
-    fn texts<'py>(&self, py: Python<'py>, which: usize, count: usize) -> PyResult<Bound<'py, PyAny>> {
-        let TextColumn { texts: Texts { at, known, .. }, list } = &self.texts[which];
-        let made = || {
+    fn texts<'py>(
+        &self,
+        py: Python<'py>,
+        made: &Made,
+        texts: fn(&Arrays) -> &Texts,
+        count: usize,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let make = || {
+            let Texts { at, known, .. } = self.with(|arrays| texts(arrays).clone());
             let known: Vec<_> = known.iter().map(|text| text.into_pyobject(py)).collect::<Result<_, _>>()?;
             let list = PyList::new(py, std::iter::repeat_n(None::<&str>, count))?;
-            for &(entry, text) in at {
+            for (entry, text) in at {
                 list.set_item(entry, &known[text])?;
             }
-            Ok(list.into_any().unbind())
+            Ok::<_, PyErr>(list.into_any().unbind())
         };
-        list.get_or_try_init(py, made).map(|list| list.bind(py).clone())
+        made.get_or_try_init(py, make).map(|list| list.bind(py).clone())
     }
 }
 
@@ -176,101 +197,126 @@ impl Answers {
     /// Of each state the `Verdict`, (n,) of uint8.
     #[getter]
     fn verdict(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.lists.verdict.array(py, &[self.states])
+        self.array(py, &self.lists.verdict, |arrays| &mut arrays.verdict, &[self.states])
     }
 
     /// Of each state whether every combination is decided by an error bound, (n,).
     #[getter]
     fn all_proven(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.lists.all_proven.array(py, &[self.states])
+        self.array(py, &self.lists.all_proven, |arrays| &mut arrays.all_proven, &[self.states])
     }
 
     /// State k has the outcomes from offsets[k] to offsets[k + 1], (n + 1,).
     #[getter]
     fn offsets(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.lists.offsets.array(py, &[self.states + 1])
+        self.array(py, &self.lists.offsets, |arrays| &mut arrays.offsets, &[self.states + 1])
     }
 
     /// Of each outcome and contact the `Mode`, (m, contacts) of int8; OPEN if the contact is not closed.
     #[getter]
     fn modes(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.lists.modes.array(py, &[self.outcomes, self.table.columns.contacts().len()])
+        self.array(
+            py,
+            &self.lists.modes,
+            |arrays| &mut arrays.modes,
+            &[self.outcomes, self.table.columns.contacts().len()],
+        )
     }
 
     /// Of each outcome and contact [tangential, normal] [N s], (m, contacts, 2); NaN if the contact is not closed.
     #[getter]
     fn impulse(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.of(Aspect::Impact, "impulse")?;
-        self.lists.impulse.array(py, &[self.outcomes, self.table.columns.contacts().len(), 2])
+        self.array(
+            py,
+            &self.lists.impulse,
+            |arrays| &mut arrays.impulse,
+            &[self.outcomes, self.table.columns.contacts().len(), 2],
+        )
     }
 
     /// Of each outcome and contact [tangential, normal] [N], (m, contacts, 2); NaN if the contact is not closed.
     #[getter]
     fn force(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.of(Aspect::Forces, "force")?;
-        self.lists.impulse.array(py, &[self.outcomes, self.table.columns.contacts().len(), 2])
+        self.array(
+            py,
+            &self.lists.impulse,
+            |arrays| &mut arrays.impulse,
+            &[self.outcomes, self.table.columns.contacts().len(), 2],
+        )
     }
 
     /// Of each outcome v after the impact, (m, nq) in the order of `coordinates` [m/s, rad/s].
     #[getter]
     fn velocity_after(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.of(Aspect::Impact, "velocity_after")?;
-        self.lists.velocity_after.array(py, &[self.outcomes, self.table.coordinates.len()])
+        self.array(
+            py,
+            &self.lists.velocity_after,
+            |arrays| &mut arrays.velocity_after,
+            &[self.outcomes, self.table.coordinates.len()],
+        )
     }
 
     /// Of each outcome the rate of v, (m, nq) in the order of `coordinates` [m/s^2, rad/s^2].
     #[getter]
     fn acceleration(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.of(Aspect::Forces, "acceleration")?;
-        self.lists.velocity_after.array(py, &[self.outcomes, self.table.coordinates.len()])
+        self.array(
+            py,
+            &self.lists.velocity_after,
+            |arrays| &mut arrays.velocity_after,
+            &[self.outcomes, self.table.coordinates.len()],
+        )
     }
 
     /// Of each outcome the smallest slack, free of units, (m,); NaN if it has no inequality.
     #[getter]
     fn margin(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.lists.margin.array(py, &[self.outcomes])
+        self.array(py, &self.lists.margin, |arrays| &mut arrays.margin, &[self.outcomes])
     }
 
     /// Of each outcome the sign of det A, (m,) of int8; 0 if it is not defined, as on a border.
     #[getter]
     fn index(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.lists.index.array(py, &[self.outcomes])
+        self.array(py, &self.lists.index, |arrays| &mut arrays.index, &[self.outcomes])
     }
 
     /// Of each outcome whether an error bound shows every sign, (m,).
     #[getter]
     fn proven(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.lists.proven.array(py, &[self.outcomes])
+        self.array(py, &self.lists.proven, |arrays| &mut arrays.proven, &[self.outcomes])
     }
 
     /// Of each outcome whether it is a corner of a family of outcomes, (m,).
     #[getter]
     fn family(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.lists.family.array(py, &[self.outcomes])
+        self.array(py, &self.lists.family, |arrays| &mut arrays.family, &[self.outcomes])
     }
 
     /// Of each state why it was refused, or None.
     #[getter]
     fn error<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.texts(py, 0, self.states)
+        self.texts(py, &self.texts[0], |arrays| &arrays.error, self.states)
     }
 
     /// Of each state what a reader should know, or None.
     #[getter]
     fn notes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.texts(py, 1, self.states)
+        self.texts(py, &self.texts[1], |arrays| &arrays.notes, self.states)
     }
 
     /// Of each outcome what is exactly zero, if it is on a border, or None.
     #[getter]
     fn border<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.texts(py, 2, self.outcomes)
+        self.texts(py, &self.texts[2], |arrays| &arrays.border, self.outcomes)
     }
 
     /// Of each outcome the modes of the families that it is a corner of, or None.
     #[getter]
     fn families<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.texts(py, 3, self.outcomes)
+        self.texts(py, &self.texts[3], |arrays| &arrays.families, self.outcomes)
     }
 
     /// How many states there are.
@@ -280,7 +326,8 @@ impl Answers {
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let mut counts = [0; Arrays::REFUSED as usize + 1];
-        self.lists.verdict.copy(py)?.into_iter().for_each(|verdict| counts[usize::from(verdict)] += 1);
+        let verdicts = self.verdict(py)?.bind(py).cast::<PyArrayDyn<u8>>()?.to_vec()?;
+        verdicts.into_iter().for_each(|verdict| counts[usize::from(verdict)] += 1);
         let names = Verdict::ALL.map(Verdict::name).into_iter().chain(["refused"]);
         let verdicts = counts.into_iter().zip(names).filter(|(count, _)| *count > 0);
         let verdicts: Vec<String> = verdicts.map(|(count, name)| format!("{count} {name}")).collect();
@@ -300,7 +347,7 @@ impl Answers {
     fn _again(bytes: &[u8]) -> PyResult<Self> {
         let read: Result<(Table, Arrays), _> = postcard::from_bytes(bytes);
         let (table, arrays) = read.map_err(|error| PyValueError::new_err(error.to_string()))?;
-        Ok(Self::new(Arc::new(table), arrays))
+        Ok(Self::new(Arc::new(table), Box::new(arrays)))
     }
 
     /// All as Arrow's stream.

@@ -20,7 +20,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 use std::time::Duration;
 
 /// A robot as its URDF file has it, and reduced to its plane.
@@ -383,10 +383,7 @@ impl Robot {
 impl Robot {
     fn of(text: &str, path: &Path, options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
         let model = Model::read(text, path, options)?;
-        let asker = |aspect| {
-            let table = Arc::new(Table::new(aspect, &model.robot, &model.options.feet, &[]));
-            Asker { table, kept: Mutex::default(), last: Mutex::default() }
-        };
+        let asker = |aspect| Asker::new(&model.robot, Table::new(aspect, &model.robot, &model.options.feet, &[]));
         let options = options.map(|options| options.copy().map(Bound::unbind)).transpose()?;
         // Another process may run in another folder.
         let folder = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());

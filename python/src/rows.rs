@@ -24,18 +24,27 @@ const TOGETHER: usize = 256;
 
 self_cell!(
     /// A pipeline and the robot that it is of.
-    pub struct Kept {
+    struct OwnPipeline {
         owner: Arc<Model>,
         #[covariant]
         dependent: Pipeline,
     }
 );
 
+/// A pipeline and the state that it answers, from call to call.
+pub struct Kept {
+    pipeline: OwnPipeline,
+    state: State,
+    /// Where the state comes from, but for its numbers.
+    common: Arc<Common>,
+}
+
 /// Who answers one kind of question about a robot.
 pub struct Asker {
-    pub table: Arc<Table>,
+    /// Of calls whose rows have no fields in common.
+    pub plain: Arc<Common>,
     /// Pipelines that no call is using.
-    pub kept: Mutex<Vec<Kept>>,
+    pub kept: Mutex<Vec<Box<Kept>>>,
     /// Of the last call whose rows had fields in common.
     pub last: Mutex<Option<Arc<Common>>>,
 }
@@ -43,9 +52,9 @@ pub struct Asker {
 /// What all rows of a call have in common.
 pub struct Common {
     /// As Python gave it.
-    fields: Py<PyAny>,
+    fields: Option<Py<PyAny>>,
     state: State,
-    table: Arc<Table>,
+    pub table: Arc<Table>,
 }
 
 /// States as rows of arrays.
@@ -54,11 +63,16 @@ pub struct Rows<'py> {
     rows: usize,
     q: Given<'py>,
     v: Given<'py>,
-    /// What all rows have in common.
-    common: State,
-    table: Arc<Table>,
+    scene: Scene,
     friction: Option<Given<'py>>,
     restitution: Option<Given<'py>>,
+}
+
+/// What all rows have in common, and the numbers that are given besides.
+struct Scene {
+    common: Arc<Common>,
+    friction: Option<Friction>,
+    restitution: Option<f64>,
 }
 
 /// The same without the interpreter.
@@ -123,12 +137,18 @@ fn array<'py>(what: &str, value: &Bound<'py, PyAny>, columns: Option<usize>) -> 
 }
 
 impl Asker {
+    pub fn new(robot: &heelstrike::Robot, table: Table) -> Self {
+        let plain = Common { fields: None, state: State::zero(robot), table: Arc::new(table) };
+        Self { plain: Arc::new(plain), kept: Mutex::default(), last: Mutex::default() }
+    }
+
     /// What `fields` of a state mean, which is computed again only if they are others than those of the last call.
     fn common(&self, model: &Model, fields: &Bound<'_, PyDict>) -> PyResult<Arc<Common>> {
         let py = fields.py();
         // Python runs below, and may let another thread ask meanwhile.
         let last = self.last.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        if let Some(last) = last.filter(|last| same(last.fields.bind(py), fields)) {
+        let is_last = |last: &Arc<Common>| last.fields.as_ref().is_some_and(|known| same(known.bind(py), fields));
+        if let Some(last) = last.filter(is_last) {
             return Ok(last);
         }
         for name in ["position", "velocity", "id", "uncertainty"] {
@@ -140,10 +160,10 @@ impl Asker {
         let of_contacts = |contacts: &[NamedContact]| {
             let named = names(&model.robot, contacts);
             let named: Vec<&str> = named.iter().map(String::as_str).collect();
-            Arc::new(Table::new(self.table.aspect, &model.robot, &model.options.feet, &named))
+            Arc::new(Table::new(self.plain.table.aspect, &model.robot, &model.options.feet, &named))
         };
-        let table = state.scene.contacts.as_deref().map_or_else(|| Arc::clone(&self.table), of_contacts);
-        let fields = py.import("copy")?.call_method1("deepcopy", (fields,))?.unbind();
+        let table = state.scene.contacts.as_deref().map_or_else(|| Arc::clone(&self.plain.table), of_contacts);
+        let fields = Some(py.import("copy")?.call_method1("deepcopy", (fields,))?.unbind());
         let common = Arc::new(Common { fields, state, table });
         *self.last.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::clone(&common));
         Ok(common)
@@ -221,34 +241,23 @@ impl<'py> Rows<'py> {
         }
         let (friction_rows, mu) = argument("friction", mu, rows, &mut fields)?;
         let (restitution_rows, own) = argument("restitution", restitution, rows, &mut fields)?;
-        let (mut common, table) = match &fields {
-            None => (State::zero(&model.robot), Arc::clone(&asker.table)),
-            Some(fields) => {
-                let known = asker.common(model, fields)?;
-                (known.state.clone(), Arc::clone(&known.table))
-            }
+        let common = match &fields {
+            None => Arc::clone(&asker.plain),
+            Some(fields) => asker.common(model, fields)?,
         };
-        if let Some(mu) = mu {
-            common.scene.friction.default = Some(friction(&mu)?);
-        }
-        if let Some(own) = own {
-            common.scene.restitution.default = Some(restituted(own.extract()?).map_err(refused)?);
-        }
-        Ok(Self {
-            model: Arc::clone(model),
-            rows,
-            q,
-            v,
+        let scene = Scene {
             common,
-            table,
-            friction: friction_rows,
-            restitution: restitution_rows,
-        })
+            friction: mu.as_ref().map(friction).transpose()?,
+            restitution: own.map(|own| restituted(own.extract()?).map_err(refused)).transpose()?,
+        };
+        let model = Arc::clone(model);
+        Ok(Self { model, rows, q, v, scene, friction: friction_rows, restitution: restitution_rows })
     }
 
     /// Answers all rows.
     pub fn answer(self, py: Python<'py>, asker: &Asker, count: Option<usize>) -> PyResult<Answers> {
-        let Self { model, rows, q, v, common, table, friction, restitution } = self;
+        let Self { model, rows, q, v, scene, friction, restitution } = self;
+        let table = &scene.common.table;
         let threads = if rows <= TOGETHER { 1 } else { threads(count.unwrap_or(0)).min(rows.div_ceil(TOGETHER)) };
         let numbers = Numbers {
             coordinates: &table.coordinates,
@@ -260,11 +269,10 @@ impl<'py> Rows<'py> {
         // One row has no others to share with.
         let total = model.budget.filter(|_| rows > 1).map(|each| TotalBudget::new(budget(Some(each)), None));
         let arrays = without_python(py, || {
-            let (numbers, total, table, mut all) =
-                (&numbers, total.as_ref(), &table, All(table.empty.for_states(rows)));
+            let (numbers, total, mut all) = (&numbers, total.as_ref(), All(table.arrays(rows)));
             if threads <= 1 {
                 // What it computes is written once.
-                let mut worker = Worker::new(&model, asker, common);
+                let mut worker = Worker::new(&model, asker, &scene);
                 for row in 0..rows {
                     worker.row(numbers, row, total, &mut all.0);
                     if row % TOGETHER == TOGETHER - 1 && look() {
@@ -274,7 +282,7 @@ impl<'py> Rows<'py> {
                 return all.0;
             }
             let answerer = || {
-                let mut worker = Worker::new(&model, asker, common.clone());
+                let mut worker = Worker::new(&model, asker, &scene);
                 move |rows: Range<usize>| {
                     let mut block = table.empty.for_states(rows.len());
                     rows.for_each(|row| worker.row(numbers, row, total, &mut block));
@@ -285,39 +293,47 @@ impl<'py> Rows<'py> {
             let _ = run(Ranges(0..rows), threads, answerer, &mut all);
             all.0
         })?;
-        Ok(Answers::new(table, arrays))
+        Ok(Answers::new(Arc::clone(table), arrays))
     }
 }
 
 /// A pipeline at work; it is given back at the end.
 struct Worker<'p> {
-    kept: Option<Kept>,
-    pool: &'p Mutex<Vec<Kept>>,
-    state: State,
+    kept: Option<Box<Kept>>,
+    pool: &'p Mutex<Vec<Box<Kept>>>,
 }
 
 impl<'p> Worker<'p> {
-    fn new(model: &Arc<Model>, Asker { table, kept, .. }: &'p Asker, state: State) -> Self {
-        let known = kept.lock().unwrap_or_else(PoisonError::into_inner).pop();
+    fn new(model: &Arc<Model>, asker: &'p Asker, Scene { common, friction, restitution }: &Scene) -> Self {
+        let known = asker.kept.lock().unwrap_or_else(PoisonError::into_inner).pop();
         let new = || {
-            let asked = |model: &Arc<Model>| Options { aspect: table.aspect, ..model.options.clone() };
-            Kept::new(Arc::clone(model), |model| Pipeline::new(&model.robot, asked(model)))
+            let asked = |model: &Arc<Model>| Options { aspect: common.table.aspect, ..model.options.clone() };
+            let pipeline = OwnPipeline::new(Arc::clone(model), |model| Pipeline::new(&model.robot, asked(model)));
+            Box::new(Kept { pipeline, state: common.state.clone(), common: Arc::clone(common) })
         };
-        Self { kept: Some(known.unwrap_or_else(new)), pool: kept, state }
+        let mut kept = known.unwrap_or_else(new);
+        if !Arc::ptr_eq(&kept.common, common) {
+            kept.state.clone_from(&common.state);
+            kept.common = Arc::clone(common);
+        }
+        let (own, given) = (&mut kept.state.scene, &common.state.scene);
+        own.friction.default = friction.or(given.friction.default);
+        own.restitution.default = restitution.or(given.restitution.default);
+        Self { kept: Some(kept), pool: &asker.kept }
     }
 
     /// Answers a row.
     fn row(&mut self, numbers: &Numbers, row: usize, total: Option<&TotalBudget>, out: &mut Arrays) {
-        let Self { kept: Some(kept), state, .. } = self else { return };
+        let Some(Kept { pipeline, state, .. }) = self.kept.as_deref_mut() else { return };
         let answer = set(state, numbers, row).and_then(|()| {
-            kept.with_dependent_mut(|model, pipeline| match total {
+            pipeline.with_dependent_mut(|model, pipeline| match total {
                 Some(total) => total.within(|| pipeline.answer(state)),
                 None => budget(model.budget).within(|| pipeline.answer(state)),
             })
         });
         out.push(answer.as_deref().map_err(Error::clone));
         if let Ok(impact) = answer {
-            kept.with_dependent_mut(|_, pipeline| pipeline.recycle(impact));
+            pipeline.with_dependent_mut(|_, pipeline| pipeline.recycle(impact));
         }
     }
 }
@@ -386,7 +402,7 @@ impl TaskSource for Ranges {
 }
 
 /// All answers so far.
-struct All(Arrays);
+struct All(Box<Arrays>);
 
 impl Sink<Arrays> for All {
     fn block(&mut self, block: Arrays) -> heelstrike::Result<()> {

@@ -5,7 +5,6 @@ use super::{Columns, ErrorObject};
 use crate::impact::CONTACT_LIMIT;
 use crate::{Impact, Result};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// The answers to many states. Lists per state have one entry for each; lists per outcome one for each outcome of each
@@ -52,23 +51,30 @@ pub struct Arrays {
 pub struct Texts {
     /// Entries of the list with a text, and which text.
     pub at: Vec<(usize, usize)>,
-    /// Each text once.
+    /// The texts, each once among those that are near it.
     pub known: Vec<String>,
-    #[serde(skip)]
-    places: BTreeMap<String, usize>,
 }
+
+/// A text is looked for among so many others.
+const NEAR: usize = 16;
 
 impl Texts {
     fn push(&mut self, at: usize, text: String) {
         if text.is_empty() {
             return;
         }
-        let place = self.places.get(&text).copied().unwrap_or_else(|| {
-            self.known.push(text.clone());
-            self.places.insert(text, self.known.len() - 1);
-            self.known.len() - 1
-        });
+        let far = self.known.len().saturating_sub(NEAR);
+        let near = self.known[far..].iter().rposition(|known| *known == text);
+        let place = near.map_or(self.known.len(), |near| far + near);
+        if near.is_none() {
+            self.known.push(text);
+        }
         self.at.push((at, place));
+    }
+
+    fn clear(&mut self) {
+        self.at.clear();
+        self.known.clear();
     }
 
     /// That of an entry; empty if it has none.
@@ -117,6 +123,23 @@ impl Arrays {
             family: Vec::with_capacity(states),
             contacts,
             ..Self::default()
+        }
+    }
+
+    /// Forgets all answers and keeps the memory for others.
+    pub fn clear(&mut self) {
+        self.offsets.truncate(1);
+        for list in [&mut self.all_proven, &mut self.proven, &mut self.family] {
+            list.clear();
+        }
+        for list in [&mut self.impulse, &mut self.velocity_after, &mut self.margin] {
+            list.clear();
+        }
+        self.verdict.clear();
+        self.modes.clear();
+        self.index.clear();
+        for texts in [&mut self.error, &mut self.notes, &mut self.border, &mut self.families] {
+            texts.clear();
         }
     }
 
