@@ -68,13 +68,11 @@ pub struct Table {
     pub empty: Arrays,
     /// Memory of answers to few states that have ended.
     #[serde(skip)]
-    spare: Mutex<Vec<Box<Arrays>>>,
+    spare: Mutex<Option<Box<Arrays>>>,
 }
 
 /// So many states are few.
 const FEW: usize = 256;
-/// So much memory is kept.
-const SPARE: usize = 4;
 
 impl Table {
     /// That of a robot's feet and contacts that states name.
@@ -91,7 +89,7 @@ impl Table {
 
     /// No answer yet, with room for those to so many states.
     pub fn arrays(&self, states: usize) -> Box<Arrays> {
-        let spare = if states <= FEW { locked(&self.spare).pop() } else { None };
+        let spare = if states <= FEW { locked(&self.spare).take() } else { None };
         spare.unwrap_or_else(|| Box::new(self.empty.for_states(states)))
     }
 }
@@ -103,11 +101,8 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 impl Drop for Answers {
     fn drop(&mut self) {
         let Some(mut arrays) = locked(&self.arrays).take().filter(|_| self.states <= FEW) else { return };
-        let mut spare = locked(&self.table.spare);
-        if spare.len() < SPARE {
-            arrays.clear();
-            spare.push(arrays);
-        }
+        arrays.clear();
+        *locked(&self.table.spare) = Some(arrays);
     }
 }
 

@@ -44,7 +44,7 @@ pub struct Asker {
     /// Of calls whose rows have no fields in common.
     pub plain: Arc<Common>,
     /// Pipelines that no call is using.
-    pub kept: Mutex<Vec<Box<Kept>>>,
+    pub kept: Mutex<Vec<Kept>>,
     /// Of the last call whose rows had fields in common.
     pub last: Mutex<Option<Arc<Common>>>,
 }
@@ -299,8 +299,8 @@ impl<'py> Rows<'py> {
 
 /// A pipeline at work; it is given back at the end.
 struct Worker<'p> {
-    kept: Option<Box<Kept>>,
-    pool: &'p Mutex<Vec<Box<Kept>>>,
+    kept: Option<Kept>,
+    pool: &'p Mutex<Vec<Kept>>,
 }
 
 impl<'p> Worker<'p> {
@@ -309,7 +309,7 @@ impl<'p> Worker<'p> {
         let new = || {
             let asked = |model: &Arc<Model>| Options { aspect: common.table.aspect, ..model.options.clone() };
             let pipeline = OwnPipeline::new(Arc::clone(model), |model| Pipeline::new(&model.robot, asked(model)));
-            Box::new(Kept { pipeline, state: common.state.clone(), common: Arc::clone(common) })
+            Kept { pipeline, state: common.state.clone(), common: Arc::clone(common) }
         };
         let mut kept = known.unwrap_or_else(new);
         if !Arc::ptr_eq(&kept.common, common) {
@@ -324,7 +324,7 @@ impl<'p> Worker<'p> {
 
     /// Answers a row.
     fn row(&mut self, numbers: &Numbers, row: usize, total: Option<&TotalBudget>, out: &mut Arrays) {
-        let Some(Kept { pipeline, state, .. }) = self.kept.as_deref_mut() else { return };
+        let Some(Kept { pipeline, state, .. }) = &mut self.kept else { return };
         let answer = set(state, numbers, row).and_then(|()| {
             pipeline.with_dependent_mut(|model, pipeline| match total {
                 Some(total) => total.within(|| pipeline.answer(state)),

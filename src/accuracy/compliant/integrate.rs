@@ -76,11 +76,11 @@ pub(super) struct Limits {
 /// [`Reason::Unsupported`] if the integrator gives up, and for a start that is longer than the longest array.
 pub(super) fn integrate(model: &dyn StiffEquations, start: &[f64], limits: Limits) -> Result<RunEnd> {
     match start.len() {
-        ..=4 => integrate_array::<4>(model, start, limits),
-        ..=8 => integrate_array::<8>(model, start, limits),
-        ..=16 => integrate_array::<16>(model, start, limits),
-        ..=40 => integrate_array::<40>(model, start, limits),
-        ..=128 => integrate_array::<128>(model, start, limits),
+        0..=4 => integrate_array::<4>(model, start, limits),
+        5..=8 => integrate_array::<8>(model, start, limits),
+        9..=16 => integrate_array::<16>(model, start, limits),
+        17..=40 => integrate_array::<40>(model, start, limits),
+        41..=128 => integrate_array::<128>(model, start, limits),
         _ => Err(Error::new(Reason::Unsupported("compliant contact of so large a robot".into()))
             .hint("hold joints that matter little")),
     }
