@@ -16,9 +16,9 @@
 //! Nothing that f64 has done is trusted: a [`Claim`] is shown to hold by an error bound ([`Relaxation::shows`]), or in
 //! numbers that know their signs ([`Claim::shown`]).
 
-mod claim;
-mod dictionary;
 mod ranges;
+mod dictionary;
+mod claim;
 
 pub use claim::Claim;
 pub use dictionary::Lack;
