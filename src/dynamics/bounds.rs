@@ -29,7 +29,6 @@
 
 use super::balance::Balance;
 use super::jacobian::ContactPoint;
-use super::ltl::LtlFactor;
 use super::stretch::{Arm, LIKELY, SMALL, Stretched, UNIT_ROUNDOFF, stretch};
 use super::workspace::Workspace;
 use crate::dynamics::plan::{Configuration, JointMotion, Plan};
@@ -66,7 +65,6 @@ pub struct RoundingBounds {
     ease: Vec<f64>,
     /// sqrt(K_i) per column.
     roots: Vec<f64>,
-    path: Vec<usize>,
     scratch: Vec<f64>,
     balance: Balance,
 }
@@ -198,9 +196,8 @@ impl RoundingBounds {
     pub fn delassus(&mut self, plan: &Plan, workspace: &Workspace) {
         let nv = plan.columns();
         let (eta, gamma) = (self.entry_roundings(plan) * UNIT_ROUNDOFF, 2.0 * (nv + 2) as f64 * UNIT_ROUNDOFF);
-        let (path, y) = (&mut self.path, &mut self.scratch);
         self.ease.clear();
-        self.ease.extend((0..nv).map(|column| squared_ease(plan, &workspace.factor, column, path, y).sqrt()));
+        self.ease.extend((0..nv).map(|column| squared_ease(plan, workspace, column, &mut self.scratch).sqrt()));
         self.roots.clear();
         self.roots.resize(nv, 0.0);
         for (body, stretched) in plan.bodies.iter().zip(&self.bodies) {
@@ -276,19 +273,19 @@ impl RoundingBounds {
     }
 }
 
-/// (M^-1)_ii of one column: |D^-1/2 L^-T e_i|^2. The `path` and y on it are scratch.
-fn squared_ease(plan: &Plan, factor: &LtlFactor, column: usize, path: &mut Vec<usize>, y: &mut Vec<f64>) -> f64 {
-    path.clear();
-    path.extend(std::iter::once(column).chain(plan.ancestors(column)));
-    // Entries off the branch of the column are zero.
+/// (M^-1)_ii of one column: |D^-1/2 L^-T e_i|^2.
+fn squared_ease(plan: &Plan, workspace: &Workspace, column: usize, y: &mut Vec<f64>) -> f64 {
+    let nv = plan.columns();
+    let factor = &workspace.factor;
     y.clear();
-    y.resize(path.len(), 0.0);
-    y[0] = 1.0;
+    y.resize(nv, 0.0);
+    y[column] = 1.0;
     let mut sum = 0.0;
-    for (place, &i) in path.iter().enumerate() {
-        let (own, row) = (y[place], factor.row(i));
-        for (entry, &j) in y.iter_mut().zip(&*path).skip(place + 1) {
-            *entry -= row[j] * own;
+    for i in std::iter::once(column).chain(plan.ancestors(column)) {
+        // Entries off the branch of the column stay zero.
+        let (own, row) = (y[i], factor.row(i));
+        for j in plan.ancestors(i) {
+            y[j] -= row[j] * own;
         }
         sum += own * own / factor.pivot(i);
     }
