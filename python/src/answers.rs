@@ -71,8 +71,8 @@ pub struct Table {
     spare: Mutex<Option<Box<Arrays>>>,
 }
 
-/// So many states are few.
-const FEW: usize = 256;
+/// The memory of answers to so many states is kept.
+const FEW: usize = 16;
 
 impl Table {
     /// That of a robot's feet and contacts that states name.
@@ -100,7 +100,8 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 
 impl Drop for Answers {
     fn drop(&mut self) {
-        let Some(mut arrays) = locked(&self.arrays).take().filter(|_| self.states <= FEW) else { return };
+        let own = self.arrays.get_mut().unwrap_or_else(PoisonError::into_inner);
+        let Some(mut arrays) = own.take().filter(|_| self.states <= FEW) else { return };
         arrays.clear();
         *locked(&self.table.spare) = Some(arrays);
     }

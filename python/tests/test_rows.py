@@ -217,6 +217,18 @@ def test_fields_of_a_state_are_read_again_if_they_change(ramone, walk):
     assert other.impulse.tobytes() == answers[0.2]
 
 
+def test_answers_do_not_depend_on_earlier_ones(ramone, walk):
+    q, v = walk(5)
+    scene = {"friction": 0.5, "place": "lowest"}
+    fresh = heelstrike.Robot(ROOT / "urdf/ramone.urdf").impacts(q, v, **scene)
+    for rows in (5, 2, 5):
+        earlier = ramone.impacts(q[:rows], v[:rows], **scene)
+        assert earlier.offsets[0] == 0 and len(earlier.offsets) == rows + 1
+        assert len(earlier.modes) == len(earlier.impulse) == len(earlier.margin) == earlier.offsets[-1]
+        del earlier
+        assert ramone.impacts(q, v, **scene).to_arrow().equals(fresh.to_arrow())
+
+
 def test_texts_are_made_once(ramone, walk):
     answers = ramone.impacts(*walk(5), friction=0.5)
     for name in ("error", "notes", "border", "families"):

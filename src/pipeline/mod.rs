@@ -37,7 +37,7 @@ use crate::robot::Robot;
 use crate::scalar::Magnitude;
 use crate::state::{NamedContact, Scene, State, check_length};
 use serde::{Deserialize, Serialize};
-use std::mem::{replace, take};
+use std::mem::{swap, take};
 use std::sync::Arc;
 
 /// What is asked about a state.
@@ -352,24 +352,33 @@ impl<'r> Pipeline<'r> {
     /// What is known of a state before its analysis, in memory that it exchanges with that of the next state.
     fn unanswered(&mut self, mut prepared: Box<Prepared>) -> Box<Impact> {
         let mut impact = self.recycled.take().unwrap_or_default();
-        *impact = Impact {
-            placement: replace(&mut prepared.placement, take(&mut impact.placement)),
-            contacts: replace(&mut prepared.contacts, take(&mut impact.contacts)),
-            nearest: prepared.nearest,
-            velocity_before: take(&mut impact.velocity_before),
-            kinetic_energy: prepared.kinetic_energy,
-            problem: replace(&mut prepared.problem, take(&mut impact.problem)),
-            resting: replace(&mut prepared.resting, take(&mut impact.resting)),
-            stance: prepared.stance,
-            analysis: None,
-            friction_needed: None,
-            sustained: None,
-            holds: None,
-            matrices: None,
-            left_out: Vec::new(),
-            notes: take(&mut prepared.notes),
-        };
-        impact.problem.velocity_before().clone_into(&mut impact.velocity_before);
+        // A field more is an error here.
+        let Impact {
+            placement,
+            contacts,
+            nearest,
+            velocity_before,
+            kinetic_energy,
+            problem,
+            resting,
+            stance,
+            analysis,
+            friction_needed,
+            sustained,
+            holds,
+            matrices,
+            left_out,
+            notes,
+        } = &mut *impact;
+        swap(placement, &mut prepared.placement);
+        swap(contacts, &mut prepared.contacts);
+        swap(problem, &mut prepared.problem);
+        swap(resting, &mut prepared.resting);
+        *notes = take(&mut prepared.notes);
+        (*nearest, *kinetic_energy, *stance) = (prepared.nearest, prepared.kinetic_energy, prepared.stance);
+        (*analysis, *friction_needed, *sustained, *holds, *matrices) = (None, None, None, None, None);
+        left_out.clear();
+        problem.velocity_before().clone_into(velocity_before);
         self.spare = Some(prepared);
         impact
     }

@@ -11,7 +11,7 @@
 //! | [`Rounded`] | the exact result of its operations far from overflow, checked at the end | about 3 |
 //! | [`Ball`] | the exact result of its operations, over f64 or [`DoubleDouble`] | about 5, or 30 |
 //! | [`Interval`] | the same, with any number of bits | an allocation, some 100 |
-//! | [`Residue`] | nothing; knows whether the exact result is zero | about 20, a quotient some 500 |
+//! | [`Residue`] | nothing; knows whether the exact result is zero | about 20, a quotient by a new divisor some 500 |
 //! | [`Certified`] | an enclosure and a residue of the same number | both |
 //! | [`Magnitude`] | nothing; the size of all terms that an `f64` was added up from | 1 |
 //! | [`Affine`] | results for data that are known to an interval only, linear in N common causes | N |

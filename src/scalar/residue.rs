@@ -45,7 +45,7 @@ const LEAST: i32 = -1088;
 /// Multiples of angles are taken by digits of four bits.
 const DIGITS: usize = 15;
 
-/// Numbers whose inverses were found last, by their remainder: all rows of an elimination are divided by the same pivots.
+/// Numbers and their inverses, those found last, at their remainders: eliminations divide all rows by the same pivots.
 type Inverses = [Cell<(u64, u64)>; KEPT];
 
 const KEPT: usize = 32;
@@ -226,7 +226,7 @@ impl Residue {
 impl Real for Residue {
     fn from_f64(value: f64) -> Self {
         if value == 0.0 {
-            return Self([0; 2]);
+            return Self::ZERO;
         }
         if !value.is_finite() {
             return Self::UNDEFINED;
@@ -277,7 +277,7 @@ impl Residue {
     }
 
     fn negated(self) -> Self {
-        Self([0; 2]) - self
+        Self::ZERO - self
     }
 }
 

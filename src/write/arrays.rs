@@ -51,11 +51,11 @@ pub struct Arrays {
 pub struct Texts {
     /// Entries of the list with a text, and which text.
     pub at: Vec<(usize, usize)>,
-    /// The texts, each once among those that are near it.
+    /// The texts; one that was among the last is not repeated.
     pub known: Vec<String>,
 }
 
-/// A text is looked for among so many others.
+/// So many of the last texts are compared with a new one.
 const NEAR: usize = 16;
 
 impl Texts {
@@ -128,7 +128,8 @@ impl Arrays {
 
     /// Forgets all answers and keeps the memory for others.
     pub fn clear(&mut self) {
-        self.offsets.truncate(1);
+        self.offsets.clear();
+        self.offsets.push(0);
         for list in [&mut self.all_proven, &mut self.proven, &mut self.family] {
             list.clear();
         }

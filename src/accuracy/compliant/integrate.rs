@@ -31,9 +31,10 @@ pub(super) trait StiffEquations {
 
     /// Their derivatives at a state and its rates; forward differences unless the model knows better.
     fn jacobian(&self, state: &[f64], rates: &[f64]) -> DMatrix<f64> {
-        let mut jacobian = DMatrix::zeros(state.len(), state.len());
+        let own = rates.len();
+        let mut jacobian = DMatrix::zeros(own, own);
         let mut moved = state.to_vec();
-        for (column, &entry) in state.iter().enumerate() {
+        for (column, &entry) in state[..own].iter().enumerate() {
             let by = f64::EPSILON.sqrt() * entry.abs().max(1.0);
             moved[column] += by;
             for (row, rate) in self.rates(&moved).into_iter().enumerate() {
@@ -70,7 +71,8 @@ pub(super) struct Limits {
     pub horizon: f64,
 }
 
-/// Integrates from `start`; the integrator takes arrays, and is compiled for a few lengths.
+/// Integrates from `start`. The integrator takes arrays and is compiled for a few lengths: models see states with zeros
+/// behind them, and so does [`RunEnd::state`].
 ///
 /// # Errors
 /// [`Reason::Unsupported`] if the integrator gives up, and for a start that is longer than the longest array.
