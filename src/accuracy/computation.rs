@@ -83,7 +83,7 @@ impl Computation<'_, f64> {
         let workspace = &mut self.assembly.workspace;
         // Only the lower triangle is read.
         let Some(factor) = DMatrix::from_row_slice(nv, nv, &workspace.mass_matrix).cholesky() else { return false };
-        let mut half = DMatrix::from_row_slice(rows, nv, &workspace.contact_jacobian).transpose();
+        let mut half = DMatrix::from_iterator(nv, rows, (0..rows).flat_map(|row| workspace.jacobian_row(row)));
         if !factor.l_dirty().solve_lower_triangular_mut(&mut half) {
             return false;
         }

@@ -18,12 +18,11 @@ pub fn mass_matrix_condition(plan: &Plan, workspace: &Workspace) -> f64 {
     let nv = plan.columns();
     let (mass, factor) = (&workspace.mass_matrix, &workspace.factor);
     let size: Vec<f64> = (0..nv).map(|i| mass[i * nv + i].sqrt()).collect();
-    let ancestors = |i: usize| std::iter::successors(plan.parents[i], |&column| plan.parents[column]);
     let multiplied = |x: &[f64]| -> Vec<f64> {
         let x: Vec<f64> = x.iter().zip(&size).map(|(x, size)| x / size).collect();
         let mut y: Vec<f64> = x.iter().zip(&size).map(|(x, size)| x * size * size).collect();
         for i in 0..nv {
-            for j in ancestors(i) {
+            for j in plan.branch(plan.parents[i]) {
                 let entry = mass[i * nv + j];
                 y[i] += entry * x[j];
                 y[j] += entry * x[i];

@@ -104,7 +104,7 @@ impl<'a> Reference<'a> {
         let size: Vec<f64> = (0..nv).map(|i| R::freeing(|| inertia(i, i).to_f64().sqrt())).collect();
         worst((0..nv).flat_map(|i| {
             let (size, inertia) = (&size, &inertia);
-            std::iter::once(i).chain(plan.ancestors(i)).map(move |j| {
+            plan.branch(Some(i)).map(move |j| {
                 let error = R::freeing(|| distance(mass[i * nv + j], inertia(i, j)));
                 relative(error, size[i] * size[j])
             })

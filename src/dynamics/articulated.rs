@@ -12,7 +12,7 @@
 //! 2008, sections 7.2 and 7.3. Cost: O(nb + n depth), and O(n^2) per shared joint for G.
 
 use super::articulated_inertia::{ArticulatedInertia, Wrench};
-use super::delassus::PointImpulse;
+use super::delassus::{PointImpulse, from_half};
 use super::jacobian::{ContactPoint, Motion};
 use super::workspace::Workspace;
 use crate::dynamics::plan::{JointMotion, Plan, PlanBody};
@@ -59,47 +59,24 @@ pub fn articulated_inertias<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T
 /// Computes G (2n x 2n), Y and D^-1 Y for `contacts` from the articulated inertias.
 pub fn articulated_delassus<T: Real>(plan: &Plan<T>, contacts: &[ContactPoint<T>], workspace: &mut Workspace<T>) {
     let nv = plan.columns();
-    let rows = 2 * contacts.len();
     let mut half = std::mem::take(&mut workspace.half);
     let mut half_by_d = std::mem::take(&mut workspace.half_by_d);
     for list in [&mut half, &mut half_by_d] {
         list.clear();
-        list.resize(rows * nv, T::zero());
+        list.resize(contacts.len() * nv, [T::zero(); 2]);
     }
     for (index, contact) in contacts.iter().enumerate() {
         let arm = contact.arm(workspace);
         for (row, axis) in contact.axes().into_iter().enumerate() {
-            let start = (2 * index + row) * nv;
             to_root(plan, workspace, contact.body, Wrench::at(arm, axis), |column, y, by_d| {
-                half[start + column] = y;
-                half_by_d[start + column] = by_d;
+                half[index * nv + column][row] = y;
+                half_by_d[index * nv + column][row] = by_d;
             });
-        }
-    }
-    let delassus = &mut workspace.delassus;
-    delassus.clear();
-    delassus.resize(rows * rows, T::zero());
-    for (i, first) in contacts.iter().enumerate() {
-        for (j, second) in contacts[..=i].iter().enumerate() {
-            let [mut tt, mut tn, mut nt, mut nn] = [T::zero(); 4];
-            let (t, n) = (2 * i * nv, (2 * i + 1) * nv);
-            let (other_t, other_n) = (2 * j * nv, (2 * j + 1) * nv);
-            for column in shared_columns(plan, first.body, second.body) {
-                let (by_t, by_n) = (half_by_d[other_t + column], half_by_d[other_n + column]);
-                tt = tt + half[t + column] * by_t;
-                tn = tn + half[t + column] * by_n;
-                nt = nt + half[n + column] * by_t;
-                nn = nn + half[n + column] * by_n;
-            }
-            for (row, column, entry) in [(0, 0, tt), (0, 1, tn), (1, 0, nt), (1, 1, nn)] {
-                let (row, column) = (2 * i + row, 2 * j + column);
-                delassus[row * rows + column] = entry;
-                delassus[column * rows + row] = entry;
-            }
         }
     }
     workspace.half = half;
     workspace.half_by_d = half_by_d;
+    from_half(contacts.len(), workspace, |a, b| shared_columns(plan, contacts[a].body, contacts[b].body));
 }
 
 /// Adds to `velocity` (dq/dt by coordinate) what an impulse p does to it: M^-1 J^T p; `rates` and `motions` are
@@ -266,5 +243,5 @@ fn shared_columns<T: Real>(plan: &Plan<T>, a: usize, b: usize) -> impl Iterator<
         *outer = plan.bodies[*outer].parent.unwrap_or(0);
     }
     let outermost = plan.way_to_root(a).find_map(|(_, body)| body.column);
-    std::iter::successors(outermost, |&column| plan.parents[column])
+    plan.branch(outermost)
 }

@@ -128,9 +128,10 @@ impl Balance {
             if !can_move(point) {
                 continue;
             }
-            for (row, axis) in (2 * index..).zip(point.axes()) {
+            for (which, axis) in point.axes().into_iter().enumerate() {
+                let row = 2 * index + which;
                 self.rates.clear();
-                self.rates.extend(&workspace.half_by_d[row * nv..(row + 1) * nv]);
+                self.rates.extend(workspace.half_by_d[index * nv..][..nv].iter().map(|own| own[which]));
                 set_in_motion(plan, workspace, &mut self.rates, &mut self.motions);
                 let own = entry(row, row).sqrt();
                 let jumps = self.jumps(plan, stretched, workspace) / own;

@@ -29,6 +29,7 @@
 
 use super::balance::Balance;
 use super::jacobian::ContactPoint;
+use super::ltl::LtlFactor;
 use super::stretch::{Arm, LIKELY, SMALL, Stretched, UNIT_ROUNDOFF, stretch};
 use super::workspace::Workspace;
 use crate::dynamics::plan::{Configuration, JointMotion, Plan};
@@ -196,8 +197,10 @@ impl RoundingBounds {
     pub fn delassus(&mut self, plan: &Plan, workspace: &Workspace) {
         let nv = plan.columns();
         let (eta, gamma) = (self.entry_roundings(plan) * UNIT_ROUNDOFF, 2.0 * (nv + 2) as f64 * UNIT_ROUNDOFF);
+        self.scratch.resize(nv, 0.0);
         self.ease.clear();
-        self.ease.extend((0..nv).map(|column| squared_ease(plan, workspace, column, &mut self.scratch).sqrt()));
+        let scratch = &mut self.scratch;
+        self.ease.extend((0..nv).map(|column| squared_ease(plan, &workspace.factor, column, scratch).sqrt()));
         self.roots.clear();
         self.roots.resize(nv, 0.0);
         for (body, stretched) in plan.bodies.iter().zip(&self.bodies) {
@@ -273,20 +276,15 @@ impl RoundingBounds {
     }
 }
 
-/// (M^-1)_ii of one column: |D^-1/2 L^-T e_i|^2.
-fn squared_ease(plan: &Plan, workspace: &Workspace, column: usize, y: &mut Vec<f64>) -> f64 {
-    let nv = plan.columns();
-    let factor = &workspace.factor;
-    y.clear();
-    y.resize(nv, 0.0);
-    y[column] = 1.0;
-    let mut sum = 0.0;
-    for i in std::iter::once(column).chain(plan.ancestors(column)) {
-        // Entries off the branch of the column stay zero.
+/// (M^-1)_ii of one column: |D^-1/2 L^-T e_i|^2; `y` has an entry for each column and is scratch.
+fn squared_ease(plan: &Plan, factor: &LtlFactor, column: usize, y: &mut [f64]) -> f64 {
+    // Entries off the branch of the column stay zero, and are not read.
+    let (ancestors, row) = (|column: usize| plan.branch(plan.parents[column]), factor.row(column));
+    ancestors(column).for_each(|j| y[j] = -row[j]);
+    let mut sum = 1.0 / factor.pivot(column);
+    for i in ancestors(column) {
         let (own, row) = (y[i], factor.row(i));
-        for j in plan.ancestors(i) {
-            y[j] -= row[j] * own;
-        }
+        ancestors(i).for_each(|j| y[j] -= row[j] * own);
         sum += own * own / factor.pivot(i);
     }
     sum

@@ -11,35 +11,54 @@ use super::jacobian::walk;
 use super::workspace::Workspace;
 use crate::dynamics::plan::Plan;
 use crate::planar::Vector;
-use crate::scalar::{Real, dot};
+use crate::scalar::Real;
 
 /// Computes G (2n x 2n) from the factorized mass matrix and the contact Jacobian.
 pub fn delassus<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
-    let nv = plan.columns();
-    let Workspace { factor, contact_jacobian, half, .. } = workspace;
+    let Workspace { factor, contact_jacobian, branch, half, half_by_d, .. } = workspace;
     half.clone_from(contact_jacobian);
-    for y in half.chunks_exact_mut(nv.max(1)) {
-        factor.half_solve(plan, y);
+    half_by_d.clear();
+    half_by_d.resize(half.len(), [T::zero(); 2]);
+    let nv = plan.columns().max(1);
+    for ((y, by_d), &branch) in half.chunks_exact_mut(nv).zip(half_by_d.chunks_exact_mut(nv)).zip(&*branch) {
+        factor.half_solve(plan, plan.branch(branch), y);
+        for column in plan.branch(branch) {
+            let pivot = factor.pivot(column);
+            by_d[column] = y[column].map(|entry| entry / pivot);
+        }
     }
-    from_half(plan, workspace);
+    let branch = std::mem::take(branch);
+    from_half(branch.len(), workspace, |a, b| plan.branch(plan.shared(branch[a], branch[b])));
+    workspace.branch = branch;
 }
 
-/// G = Y^T D^-1 Y, and D^-1 Y on the way.
-pub(super) fn from_half<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
-    let Workspace { factor, contact_velocity, half, half_by_d, delassus, .. } = workspace;
-    // Not from the Jacobian's length: if every joint is braked it has no columns.
-    let (nv, rows) = (plan.columns(), 2 * contact_velocity.len());
-    half_by_d.clear();
-    for y in half.chunks_exact(nv.max(1)) {
-        half_by_d.extend(factor.divided(y));
-    }
+/// G = Y^T D^-1 Y of n contacts, from Y and D^-1 Y; `shared` gives the columns in which two contacts have entries.
+pub(super) fn from_half<T: Real, I: Iterator<Item = usize>>(
+    contacts: usize,
+    workspace: &mut Workspace<T>,
+    shared: impl Fn(usize, usize) -> I,
+) {
+    let Workspace { half, half_by_d, delassus, .. } = workspace;
+    let rows = 2 * contacts;
     delassus.clear();
     delassus.resize(rows * rows, T::zero());
-    for row in 0..rows {
-        for column in 0..=row {
-            let entry = dot(&half[row * nv..(row + 1) * nv], &half_by_d[column * nv..(column + 1) * nv]);
-            delassus[row * rows + column] = entry;
-            delassus[column * rows + row] = entry;
+    // If every joint is braked there are no columns.
+    let nv = half.len() / contacts.max(1);
+    for a in 0..contacts {
+        let y = &half[a * nv..][..nv];
+        for b in 0..=a {
+            let by_d = &half_by_d[b * nv..][..nv];
+            let [mut tt, mut tn, mut nt, mut nn] = [T::zero(); 4];
+            for column in shared(a, b) {
+                let ([t, n], [by_t, by_n]) = (y[column], by_d[column]);
+                (tt, tn) = (tt + t * by_t, tn + t * by_n);
+                (nt, nn) = (nt + n * by_t, nn + n * by_n);
+            }
+            for (row, column, entry) in [(0, 0, tt), (0, 1, tn), (1, 0, nt), (1, 1, nn)] {
+                let (row, column) = (2 * a + row, 2 * b + column);
+                delassus[row * rows + column] = entry;
+                delassus[column * rows + row] = entry;
+            }
         }
     }
 }

@@ -38,7 +38,7 @@ impl<T: Real> ContactPoint<T> {
     }
 }
 
-/// Computes J (2n x nv, rows tangential and normal per contact) and c (n, \[m/s\]) for `velocity`, dq/dt.
+/// Computes J (n x nv, [tangential, normal] per contact and column) and c (n, \[m/s\]) for `velocity`, dq/dt.
 ///
 /// With a `stance` (an index into `contacts`) that contact is exactly at rest, and so are further contacts of a body
 /// that does not turn: base velocities are taken as the ones that make it so.
@@ -51,18 +51,23 @@ pub fn contact_jacobian<T: Real>(
 ) {
     let nv = plan.columns();
     let mut jacobian = std::mem::take(&mut workspace.contact_jacobian);
+    let mut branches = std::mem::take(&mut workspace.branch);
     let mut speeds = std::mem::take(&mut workspace.contact_velocity);
     jacobian.clear();
-    jacobian.resize(2 * contacts.len() * nv, T::zero());
+    jacobian.resize(contacts.len() * nv, [T::zero(); 2]);
+    branches.clear();
     speeds.clear();
     for (index, contact) in contacts.iter().enumerate() {
         let axes = contact.axes();
         let arm = contact.arm(workspace);
-        let (rows_t, rows_n) = jacobian[2 * index * nv..2 * (index + 1) * nv].split_at_mut(nv);
+        let own = &mut jacobian[index * nv..][..nv];
+        let mut branch = None;
         let speed = walk(plan, contact.body, arm, velocity, workspace, |column, unit| {
-            plan.bring(&mut rows_t[column], axes[0].dot(unit));
-            plan.bring(&mut rows_n[column], axes[1].dot(unit));
+            branch = branch.max(Some(column));
+            plan.bring(&mut own[column][0], axes[0].dot(unit));
+            plan.bring(&mut own[column][1], axes[1].dot(unit));
         });
+        branches.push(branch);
         speeds.push(axes.map(|axis| axis.dot(speed)));
     }
     if let Some(stance) = stance {
@@ -76,6 +81,7 @@ pub fn contact_jacobian<T: Real>(
         speeds[stance] = [T::zero(); 2];
     }
     workspace.contact_jacobian = jacobian;
+    workspace.branch = branches;
     workspace.contact_velocity = speeds;
 }
 

@@ -18,6 +18,7 @@ use super::bias::point_drift;
 use super::bounds::Reach;
 use super::delassus::from_half;
 use super::jacobian::{ContactPoint, point_velocity, walk};
+use super::ltl::subtract;
 use super::workspace::{LoopRows, Workspace};
 use crate::dynamics::plan::Plan;
 use crate::planar::Vector;
@@ -215,7 +216,7 @@ pub fn orthogonalize<T: Real>(
     coupling.clear();
     coupling.resize(count * count, T::zero());
     for (i, mut y) in all.into_iter().enumerate() {
-        workspace.factor.half_solve(plan, &mut y);
+        workspace.factor.half_solve(plan, (0..nv).rev(), y.as_chunks_mut::<1>().0);
         for k in 0..i {
             let along = dot(&y, &basis_by_d[k * nv..(k + 1) * nv]) / squares[k];
             subtract(&mut y, &basis[k * nv..(k + 1) * nv], along);
@@ -232,14 +233,21 @@ pub fn orthogonalize<T: Real>(
 /// Takes from Y, D^-1 Y and G what the constraints do not let move: G becomes G'.
 pub fn eliminate_loops<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
     let nv = plan.columns();
-    let Workspace { half, loops, .. } = &mut *workspace;
+    let Workspace { factor, half, half_by_d, loops, .. } = &mut *workspace;
     for y in half.chunks_exact_mut(nv.max(1)) {
         for k in 0..loops.kept.len() + loops.rows.len() {
-            let along = dot(y, &loops.basis_by_d[k * nv..(k + 1) * nv]) / loops.squares[k];
-            subtract(y, &loops.basis[k * nv..(k + 1) * nv], along);
+            let (z, by_d) = (&loops.basis[k * nv..][..nv], &loops.basis_by_d[k * nv..][..nv]);
+            for row in 0..2 {
+                let along = y.iter().zip(by_d).fold(T::zero(), |sum, (y, &by_d)| sum + y[row] * by_d);
+                let along = along / loops.squares[k];
+                y.iter_mut().zip(z).for_each(|(y, &z)| y[row] = y[row] - along * z);
+            }
         }
     }
-    from_half(plan, workspace);
+    for (at, (by_d, y)) in half_by_d.iter_mut().zip(half).enumerate() {
+        *by_d = y.map(|entry| entry / factor.pivot(at % nv));
+    }
+    from_half(workspace.contact_velocity.len(), workspace, |_, _| 0..nv);
 }
 
 /// Gives `velocity` (dq/dt by coordinate) the impulses of the loops that close them: v := v - M^-1 K^T W^-1 K v, or as
@@ -322,11 +330,4 @@ fn still<T: Real>(plan: &Plan<T>) -> Vec<T> {
 /// Takes its part along another row from `left`.
 fn subtract_along<T: Real>(left: &mut [T], own: &[T]) {
     subtract(left, own, dot(left, own) / dot(own, own));
-}
-
-/// y := y - factor z.
-fn subtract<T: Real>(y: &mut [T], z: &[T], factor: T) {
-    for (y, &z) in y.iter_mut().zip(z) {
-        *y = *y - factor * z;
-    }
 }

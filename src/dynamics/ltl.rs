@@ -11,8 +11,6 @@ use crate::scalar::Real;
 pub struct LtlFactor<T = f64> {
     entries: Vec<T>,
     columns: usize,
-    /// The ancestors of one column.
-    branch: Vec<usize>,
 }
 
 impl<T: Real> LtlFactor<T> {
@@ -24,13 +22,11 @@ impl<T: Real> LtlFactor<T> {
         for k in (0..nv).rev() {
             let (above, own) = self.entries.split_at_mut(k * nv);
             let own = &mut own[..nv];
-            self.branch.clear();
-            self.branch.extend(plan.ancestors(k));
-            for (at, &i) in self.branch.iter().enumerate() {
+            for i in plan.branch(plan.parents[k]) {
                 let row = &mut above[i * nv..][..nv];
                 // u (u / D), never u u (1 / D): the latter underflows for small masses.
                 let a = own[i] / own[k];
-                for &j in &self.branch[at..] {
+                for j in plan.branch(Some(i)) {
                     row[j] = row[j] - a * own[j];
                 }
                 own[i] = a;
@@ -52,12 +48,13 @@ impl<T: Real> LtlFactor<T> {
         y.iter().enumerate().map(|(i, &entry)| entry / self.pivot(i))
     }
 
-    /// y := L^-T y.
-    pub fn half_solve(&self, plan: &Plan<T>, y: &mut [T]) {
-        for i in (0..self.columns).rev() {
+    /// y := L^-T y of N vectors, which are zero off these `columns`; each column comes before its ancestors.
+    pub fn half_solve<const N: usize>(&self, plan: &Plan<T>, columns: impl Iterator<Item = usize>, y: &mut [[T; N]]) {
+        for i in columns {
             let (above, rest) = y.split_at_mut(i);
-            for j in plan.ancestors(i) {
-                above[j] = above[j] - self.row(i)[j] * rest[0];
+            let (own, row) = (rest[0], self.row(i));
+            for j in plan.branch(plan.parents[i]) {
+                subtract(&mut above[j], &own, row[j]);
             }
         }
     }
@@ -65,7 +62,7 @@ impl<T: Real> LtlFactor<T> {
     /// x := L^-1 x.
     pub fn other_half_solve(&self, plan: &Plan<T>, x: &mut [T]) {
         for i in 0..self.columns {
-            for j in plan.ancestors(i) {
+            for j in plan.branch(plan.parents[i]) {
                 x[i] = x[i] - self.row(i)[j] * x[j];
             }
         }
@@ -73,10 +70,18 @@ impl<T: Real> LtlFactor<T> {
 
     /// x := M^-1 x.
     pub fn solve(&self, plan: &Plan<T>, x: &mut [T]) {
-        self.half_solve(plan, x);
+        self.half_solve(plan, (0..self.columns).rev(), x.as_chunks_mut::<1>().0);
         for (i, entry) in x.iter_mut().enumerate() {
             *entry = *entry / self.pivot(i);
         }
         self.other_half_solve(plan, x);
+    }
+}
+
+/// y := y - factor z.
+#[inline]
+pub(super) fn subtract<T: Real>(y: &mut [T], z: &[T], factor: T) {
+    for (y, &z) in y.iter_mut().zip(z) {
+        *y = *y - factor * z;
     }
 }

@@ -226,7 +226,7 @@ impl<T: Real> Plan<T> {
                 rotor: if mimic.is_some() { number(multiplier) * number(multiplier) * rotor } else { rotor },
             });
         }
-        plan.is_long = (0..plan.columns()).any(|column| plan.ancestors(column).take(LONG).count() + 1 >= LONG);
+        plan.is_long = (0..plan.columns()).any(|column| plan.branch(Some(column)).take(LONG).count() >= LONG);
         plan
     }
 
@@ -281,9 +281,20 @@ impl<T: Real> Plan<T> {
         *entry = if self.has_mimics { *entry + part } else { part };
     }
 
-    /// The ancestors of a column in the elimination tree, the nearest first.
-    pub(crate) fn ancestors(&self, column: usize) -> impl Iterator<Item = usize> {
-        std::iter::successors(self.parents[column], |&column| self.parents[column])
+    /// A column, if there is one, and its ancestors in the elimination tree, the nearest first.
+    #[inline]
+    pub(crate) fn branch(&self, column: Option<usize>) -> impl Iterator<Item = usize> {
+        std::iter::successors(column, |&column| self.parents[column])
+    }
+
+    /// The greatest column that two branches share, which have these at their ends.
+    pub(crate) fn shared(&self, a: Option<usize>, b: Option<usize>) -> Option<usize> {
+        let (mut a, mut b) = (a?, b?);
+        while a != b {
+            let greater = if a > b { &mut a } else { &mut b };
+            *greater = self.parents[*greater]?;
+        }
+        Some(a)
     }
 
     /// A body and those between it and the root, with their indices.

@@ -38,8 +38,10 @@ pub struct Workspace<T = f64> {
     pub pivots: Vec<T>,
 
     // Computed by `contact_jacobian`.
-    /// J by rows, tangential and normal of each contact. 2n x nv
-    pub contact_jacobian: Vec<T>,
+    /// J by contacts and columns, [tangential, normal]. n x nv
+    pub contact_jacobian: Vec<Pair<T>>,
+    /// The greatest column that moves each contact; all others that do are its ancestors. n
+    pub(crate) branch: Vec<Option<usize>>,
     /// Contact velocities c = J v, braked joints' rates included \[m/s\]. n
     pub contact_velocity: Vec<Pair<T>>,
 
@@ -59,12 +61,20 @@ pub struct Workspace<T = f64> {
     pub loops: LoopRows<T>,
 
     // Computed by `delassus` or `articulated_delassus`.
-    /// Y = L^-T J^T by columns, so that G = Y^T D^-1 Y. 2n x nv
-    pub half: Vec<T>,
-    /// D^-1 Y by columns. 2n x nv
-    pub half_by_d: Vec<T>,
+    /// Y = L^-T J^T by contacts and columns, [tangential, normal], so that G = Y^T D^-1 Y. n x nv
+    pub half: Vec<Pair<T>>,
+    /// D^-1 Y in the same order. n x nv
+    pub half_by_d: Vec<Pair<T>>,
     /// G by rows \[1/kg\], after `eliminate_loops` without what the loops do not let move. 2n x 2n
     pub delassus: Vec<T>,
+}
+
+impl<T: Copy> Workspace<T> {
+    /// A row of J by columns: tangential (2i) or normal (2i + 1) of contact i.
+    pub fn jacobian_row(&self, row: usize) -> impl Iterator<Item = T> + '_ {
+        let nv = self.contact_jacobian.len() / self.contact_velocity.len();
+        self.contact_jacobian[row / 2 * nv..][..nv].iter().map(move |own| own[row % 2])
+    }
 }
 
 /// The constraints of joints that keep their rates, one row each, and of all loops, two rows (x and z in the world's

@@ -27,10 +27,10 @@ pub struct Tableau<T> {
     pub separately: bool,
     /// Whether modes that slide are left out.
     pub without_slip: bool,
-    /// Tableaus by depth, each 2n rows of 2n + 1 entries: the coefficients of all impulses, then the constant. Columns
-    /// of decided contacts are stale. Rows of contact i: c_t and xi_n while it is undecided or separates; c_t and
-    /// lambda where it slides; L_t and L_n where it sticks.
-    depths: Vec<Vec<T>>,
+    /// Tableaus by depth, each 2n + 1 columns of 2n entries: the coefficients of all impulses, then the constants.
+    /// Columns of decided contacts are stale. Rows of contact i: c_t and xi_n while it is undecided or separates; c_t
+    /// and lambda where it slides; L_t and L_n where it sticks.
+    entries: Vec<T>,
     modes: Vec<Mode>,
     pivots: Vec<T>,
 }
@@ -45,13 +45,18 @@ pub struct Leaf<'a, T> {
     pub modes: &'a [Mode],
     /// One pivot per contact; their product is det A, its sign the index. A separating contact's is one.
     pub pivots: &'a [T],
-    tableau: &'a [T],
+    constants: &'a [Pair<T>],
     laws: &'a [Law],
 }
 
 /// A visitor of all combinations.
 pub trait Visitor<T> {
     fn leaf(&mut self, leaf: &Leaf<'_, T>);
+
+    /// Whether a combination is not to be visited, of which only the numbers of the last contact are known yet.
+    fn drops(&mut self, _modes: &[Mode], _last: Pair<T>) -> bool {
+        false
+    }
 
     /// Whether the combinations that are left are not visited; asked before each few thousand.
     fn ends(&mut self) -> bool {
@@ -72,24 +77,22 @@ impl<T: Real> Tableau<T> {
 
     /// As [`Tableau::load`], with G by rows and columns and the velocities without impulses by rows.
     pub fn load_entries(&mut self, laws: &[Law], delassus: impl Fn(usize, usize) -> T, free: impl Fn(usize) -> T) {
-        let n = laws.len();
-        let width = 2 * n + 1;
-        self.contacts = n;
+        let contacts = laws.len();
+        let rows = 2 * contacts;
+        self.contacts = contacts;
         laws.clone_into(&mut self.laws);
-        // Those of more contacts are kept.
-        self.depths.resize_with(self.depths.len().max(n + 1), Vec::new);
-        for depth in &mut self.depths[..=n] {
-            depth.resize(2 * n * width, T::zero());
-        }
+        self.entries.resize((contacts + 1) * size(contacts), T::zero());
         self.modes.clear();
-        self.modes.resize(n, Mode::Separate);
+        self.modes.resize(contacts, Mode::Separate);
         self.pivots.clear();
-        self.pivots.resize(n, T::one());
-        for (row, entries) in self.depths[0].chunks_exact_mut(width).enumerate() {
-            for (column, entry) in entries[..2 * n].iter_mut().enumerate() {
-                *entry = delassus(row, column);
+        self.pivots.resize(contacts, T::one());
+        for column in 0..rows {
+            for row in 0..rows {
+                self.entries[column * rows + row] = delassus(row, column);
             }
-            entries[2 * n] = free(row);
+        }
+        for row in 0..rows {
+            self.entries[rows * rows + row] = free(row);
         }
     }
 
@@ -138,8 +141,13 @@ impl<T: Real> Tableau<T> {
     }
 
     fn at(&self, depth: usize) -> Leaf<'_, T> {
-        let tableau = &self.depths[depth];
-        Leaf { modes: &self.modes, pivots: &self.pivots, tableau, laws: &self.laws }
+        let constants = self.constants(depth).as_chunks().0;
+        Leaf { modes: &self.modes, pivots: &self.pivots, constants, laws: &self.laws }
+    }
+
+    fn constants(&self, depth: usize) -> &[T] {
+        let rows = 2 * self.contacts;
+        &self.entries[depth * size(self.contacts) + rows * rows..][..rows]
     }
 
     fn descend(&mut self, contact: usize, source: usize, visitor: &mut impl Visitor<T>) {
@@ -150,13 +158,20 @@ impl<T: Real> Tableau<T> {
         if self.contacts - contact == AT_ONCE && visitor.ends() {
             return;
         }
-        for group in self.laws[contact].modes() {
+        let is_last = contact + 1 == self.contacts;
+        let law = self.laws[contact];
+        for group in law.modes() {
             for &mode in if self.separately { group } else { &group[..1] } {
                 if self.without_slip && mode.slides() {
                     continue;
                 }
                 self.modes[contact] = mode;
-                let depth = self.decide(contact, mode, source);
+                let impulse = law.impulse(mode);
+                let depth = self.decide_own(contact, impulse, source);
+                if is_last && visitor.drops(&self.modes, self.constants(depth).as_chunks().0[contact]) {
+                    continue;
+                }
+                self.decide_others(contact, impulse, source);
                 self.descend(contact + 1, depth, visitor);
             }
         }
@@ -164,70 +179,96 @@ impl<T: Real> Tableau<T> {
 
     /// Eliminates the contact's impulses and returns the depth that holds the tableau then.
     fn decide(&mut self, contact: usize, mode: Mode, source: usize) -> usize {
-        let n = self.contacts;
-        let width = 2 * n + 1;
-        let (tangential, normal) = (2 * contact, 2 * contact + 1);
         let impulse = self.laws[contact].impulse(mode);
+        let depth = self.decide_own(contact, impulse, source);
+        self.decide_others(contact, impulse, source);
+        depth
+    }
+
+    /// The contact's own rows once its impulses are eliminated; returns the depth that holds them.
+    fn decide_own(&mut self, contact: usize, impulse: Impulse, source: usize) -> usize {
         if impulse == Impulse::Zero {
             // Its columns are simply not read any more.
             self.pivots[contact] = T::one();
             return source;
         }
-        let (before, after) = self.depths.split_at_mut(contact + 1);
-        let (old, new) = (&before[source][..], &mut after[0][..]);
-        let columns = normal + 1..width;
-        // The rows before the contact's own two, and those after them.
-        let (above, rest) = old.split_at(tangential * width);
-        let (own, below) = rest.split_at(2 * width);
-        let (new_above, rest) = new.split_at_mut(tangential * width);
-        let (new_own, new_below) = rest.split_at_mut(2 * width);
-        let (own_t, own_n) = own.split_at(width);
-        let (new_t, new_n) = new_own.split_at_mut(width);
+        let Step { rows, tangential, normal, old, new } = Step::of(self.contacts, contact, &mut self.entries, source);
+        let [g_tt, g_nt] = [old[tangential * rows + tangential], old[tangential * rows + normal]];
+        let [g_tn, g_nn] = [old[normal * rows + tangential], old[normal * rows + normal]];
         if let Impulse::Along(ray) = impulse {
-            let ray = ray.map(T::from_f64);
-            let along = |row: &[T]| ray[0] * row[tangential] + ray[1] * row[normal];
-            let pivot = along(own_n);
+            let (factor, pivot) = (along(ray, g_tt, g_tn), along(ray, g_nt, g_nn));
             self.pivots[contact] = pivot;
-            for column in columns.clone() {
-                new_n[column] = -own_n[column] / pivot;
-            }
-            for (old, new) in [(above, new_above), (own_t, new_t), (below, new_below)] {
-                for (old, new) in old.chunks_exact(width).zip(new.chunks_exact_mut(width)) {
-                    let factor = along(old);
-                    for column in columns.clone() {
-                        new[column] = old[column] + factor * new_n[column];
-                    }
-                }
+            for column in normal + 1..=rows {
+                let lambda = -old[column * rows + normal] / pivot;
+                new[column * rows + tangential] = old[column * rows + tangential] + factor * lambda;
+                new[column * rows + normal] = lambda;
             }
         } else {
-            let [g_tt, g_tn] = [own_t[tangential], own_t[normal]];
-            let [g_nt, g_nn] = [own_n[tangential], own_n[normal]];
             let determinant = g_tt * g_nn - g_tn * g_nt;
             self.pivots[contact] = determinant;
-            for column in columns.clone() {
-                let (c_t, c_n) = (own_t[column], own_n[column]);
-                new_t[column] = (g_tn * c_n - g_nn * c_t) / determinant;
-                new_n[column] = (g_nt * c_t - g_tt * c_n) / determinant;
-            }
-            for (old, new) in [(above, new_above), (below, new_below)] {
-                for (old, new) in old.chunks_exact(width).zip(new.chunks_exact_mut(width)) {
-                    let (by_t, by_n) = (old[tangential], old[normal]);
-                    for column in columns.clone() {
-                        new[column] = old[column] + by_t * new_t[column] + by_n * new_n[column];
-                    }
-                }
+            for column in normal + 1..=rows {
+                let (c_t, c_n) = (old[column * rows + tangential], old[column * rows + normal]);
+                new[column * rows + tangential] = (g_tn * c_n - g_nn * c_t) / determinant;
+                new[column * rows + normal] = (g_nt * c_t - g_tt * c_n) / determinant;
             }
         }
         contact + 1
     }
+
+    /// The rows of the other contacts, once the contact's own are known.
+    fn decide_others(&mut self, contact: usize, impulse: Impulse, source: usize) {
+        if impulse == Impulse::Zero {
+            return;
+        }
+        let Step { rows, tangential, normal, old, new } = Step::of(self.contacts, contact, &mut self.entries, source);
+        for row in (0..rows).filter(|row| row / 2 != contact) {
+            let (by_t, by_n) = (old[tangential * rows + row], old[normal * rows + row]);
+            if let Impulse::Along(ray) = impulse {
+                let factor = along(ray, by_t, by_n);
+                for column in normal + 1..=rows {
+                    new[column * rows + row] = old[column * rows + row] + factor * new[column * rows + normal];
+                }
+            } else {
+                for column in normal + 1..=rows {
+                    let (l_t, l_n) = (new[column * rows + tangential], new[column * rows + normal]);
+                    new[column * rows + row] = old[column * rows + row] + by_t * l_t + by_n * l_n;
+                }
+            }
+        }
+    }
+}
+
+/// The tableaus before and after a contact is decided, and its place in them.
+struct Step<'a, T> {
+    rows: usize,
+    tangential: usize,
+    normal: usize,
+    old: &'a [T],
+    new: &'a mut [T],
+}
+
+impl<'a, T> Step<'a, T> {
+    #[inline]
+    fn of(contacts: usize, contact: usize, entries: &'a mut [T], source: usize) -> Self {
+        let (rows, size) = (2 * contacts, size(contacts));
+        let (before, after) = entries.split_at_mut((contact + 1) * size);
+        let (old, new) = (&before[source * size..][..size], &mut after[..size]);
+        Self { rows, tangential: 2 * contact, normal: 2 * contact + 1, old, new }
+    }
+}
+
+/// What an impulse along a ray does by its tangential and its normal part; that is one of most.
+#[inline]
+fn along<T: Real>([ray_t, ray_n]: [f64; 2], by_t: T, by_n: T) -> T {
+    by_t.scaled(ray_t) + if ray_n == 1.0 { by_n } else { by_n.scaled(ray_n) }
+}
+
+/// Entries of a tableau.
+fn size(contacts: usize) -> usize {
+    2 * contacts * (2 * contacts + 1)
 }
 
 impl<T: Real> Leaf<'_, T> {
-    fn constant(&self, row: usize) -> T {
-        let columns = 2 * self.modes.len();
-        self.tableau[row * (columns + 1) + columns]
-    }
-
     fn impulses(&self, contact: usize) -> Impulse {
         self.laws[contact].impulse(self.modes[contact])
     }
@@ -235,7 +276,7 @@ impl<T: Real> Leaf<'_, T> {
     /// The two numbers of a contact: `[c_t, xi_n]` if L = 0, `[c_t, lambda]` if L is lambda times a ray, `[L_t, L_n]`
     /// if L is free.
     pub fn numbers(&self, contact: usize) -> Pair<T> {
-        [self.constant(2 * contact), self.constant(2 * contact + 1)]
+        self.constants[contact]
     }
 
     /// Impulse of a contact, [tangential, normal] \[N s\].
@@ -262,7 +303,7 @@ impl<T: Real> Leaf<'_, T> {
 impl Leaf<'_, Rounded> {
     /// Whether an error is known of every number, so that no pivot is zero.
     pub fn is_known(&self) -> bool {
-        (0..2 * self.modes.len()).all(|row| self.constant(row).error.is_finite())
+        self.constants.as_flattened().iter().all(|own| own.error.is_finite())
     }
 }
 

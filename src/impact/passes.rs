@@ -10,7 +10,7 @@ use super::outcome::{Motion, Rejection};
 use super::problem::{ContactProblem, Precision, PrecisionTask};
 use super::reading::{motion, read, rejects};
 use crate::budget::{ROUNDS, is_spent_after};
-use crate::law::{Impulse, Mode};
+use crate::law::{Impulse, Law, Mode};
 use crate::planar::Pair;
 use crate::scalar::{Ordered, Rounded, Sign};
 use std::collections::BTreeMap;
@@ -35,16 +35,28 @@ impl Visitor<Rounded> for F64Pass<'_, '_> {
         is_spent_after(ROUNDS)
     }
 
+    fn drops(&mut self, modes: &[Mode], last: Pair<Rounded>) -> bool {
+        let Self { shares, regular, collected, .. } = self;
+        let laws = collected.problem.laws();
+        let (Some(&mode), Some(law)) = (modes.last(), laws.last()) else { return false };
+        // A leaf may stand for others, and that in which all stick may show that G is regular.
+        let is_wanted = *shares || !*regular && is_free(modes, laws) || collected.options.rejections.contain(modes);
+        let drops = !is_wanted && rejects(last, mode, law);
+        collected.total += u64::from(drops);
+        drops
+    }
+
     fn leaf(&mut self, leaf: &Leaf<'_, Rounded>) {
         let Self { labels, shares, regular, undecided, collected } = self;
         let Collected { problem, scale, options, .. } = *collected;
         let laws = problem.laws();
         // If every impulse is free, the pivots are those of the whole matrix.
-        *regular = *regular
-            || leaf.modes.iter().zip(laws).all(|(&mode, law)| law.impulse(mode) == Impulse::Free) && leaf.is_known();
+        *regular = *regular || is_free(leaf.modes, laws) && leaf.is_known();
         labels.visit(leaf.modes, laws, *shares, |modes| {
             collected.total += 1;
-            if rejects(leaf, modes, laws) && !options.rejections.contain(modes) {
+            let mut contacts = modes.iter().zip(laws).enumerate();
+            let is_rejected = contacts.any(|(contact, (&mode, law))| rejects(leaf.numbers(contact), mode, law));
+            if is_rejected && !options.rejections.contain(modes) {
                 return;
             }
             let number = modes.iter().fold(0, |number, &mode| 4 * number + mode as u64);
@@ -69,6 +81,11 @@ impl Visitor<Rounded> for F64Pass<'_, '_> {
             undecided.push(Pending { number, modes: modes.to_vec() });
         });
     }
+}
+
+/// Whether all impulses are unknowns.
+fn is_free(modes: &[Mode], laws: &[Law]) -> bool {
+    modes.iter().zip(laws).all(|(&mode, law)| law.impulse(mode) == Impulse::Free)
 }
 
 /// Combinations whose signs, or whose outcomes, need more digits than f64 has.

@@ -28,21 +28,15 @@ impl Rejection {
     }
 }
 
-/// Whether the first wrong sign is found, with which most combinations are done.
-pub fn rejects<T: Ordered>(leaf: &Leaf<'_, T>, modes: &[Mode], laws: &[Law]) -> bool {
-    modes.iter().zip(laws).enumerate().any(|(contact, (&mode, law))| {
-        let numbers = leaf.numbers(contact);
-        let mut wrong = law.is_unheld(mode) && matches!(numbers[0].sign(), Sign::Positive | Sign::Negative);
-        law.conditions(mode, |condition| {
-            wrong = wrong || {
-                match condition.function.at(|which| numbers[which], T::from_f64).sign() {
-                    Sign::Zero => condition.inequality.is_strict(),
-                    sign => sign == Sign::Negative,
-                }
-            };
-        });
-        wrong
-    })
+/// Whether the two numbers of a contact have a wrong sign for its mode, with which most combinations are done.
+#[inline]
+pub fn rejects<T: Ordered>(numbers: Pair<T>, mode: Mode, law: &Law) -> bool {
+    let mut wrong = law.is_unheld(mode) && matches!(numbers[0].sign(), Sign::Positive | Sign::Negative);
+    law.conditions(mode, |inequality, function| {
+        let sign = function.at(|which| numbers[which], |mu, own| own.scaled(mu)).sign();
+        wrong |= sign == Sign::Negative || sign == Sign::Zero && inequality.is_strict();
+    });
+    wrong
 }
 
 /// The signs of all slacks, and of the frictionless contacts' equality c_t = 0, as one; `at_zero` is empty memory.

@@ -234,7 +234,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
         let by_speed = T::one() / T::from_f64(scale.speed);
         let mut inequalities = Vec::new();
         for (contact, (&mode, law)) in modes.iter().zip(problem.laws()).enumerate() {
-            law.conditions(mode, |Condition { inequality, function }| {
+            law.conditions(mode, |inequality, function| {
                 // By the constant and each direction, the two numbers of the contact.
                 let place = |which: usize| generators.place(contact, which);
                 let number = |which: usize, part: Option<usize>| match (inequality.is_strict(), part) {
@@ -244,7 +244,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
                     (false, Some(at)) => solutions.directions[at][place(which)],
                 };
                 let factor = T::from_f64(scale.factor(contact, &Condition { inequality, function })) * by_speed;
-                let scaled = |part| factor * function.at(|which| number(which, part), T::from_f64);
+                let scaled = |part| factor * function.at(|which| number(which, part), |mu, own: T| own.scaled(mu));
                 let coefficients = (0..solutions.directions.len()).map(|at| scaled(Some(at))).collect();
                 let function = LinearFunction { constant: scaled(None), coefficients };
                 inequalities.push(Constraint { contact, inequality, function });

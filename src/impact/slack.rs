@@ -18,9 +18,9 @@ pub struct Slack<T> {
 pub fn slacks<T: Real>(leaf: &Leaf<'_, T>, modes: &[Mode], laws: &[Law], mut visitor: impl FnMut(Slack<T>)) {
     for (contact, (&mode, law)) in modes.iter().zip(laws).enumerate() {
         let numbers = leaf.numbers(contact);
-        law.conditions(mode, |condition| {
-            let number = condition.function.at(|which| numbers[which], T::from_f64);
-            visitor(Slack { contact, condition, number });
+        law.conditions(mode, |inequality, function| {
+            let number = function.at(|which| numbers[which], |mu, own| own.scaled(mu));
+            visitor(Slack { contact, condition: Condition { inequality, function }, number });
         });
     }
 }
@@ -65,9 +65,9 @@ impl Scale {
         self.cone.clear();
         self.cone.extend(problem.laws().iter().zip(self.mobility.chunks_exact(2)).map(|(law, mobility)| {
             let mut cone = 0.0;
-            law.conditions(Mode::Stick, |condition| {
-                if condition.inequality == Inequality::FrictionCone {
-                    cone = condition.scale([mobility[0], mobility[1]]);
+            law.conditions(Mode::Stick, |inequality, function| {
+                if inequality == Inequality::FrictionCone {
+                    cone = Condition { inequality, function }.scale([mobility[0], mobility[1]]);
                 }
             });
             cone

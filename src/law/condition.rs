@@ -25,15 +25,15 @@ pub struct Condition<T = f64> {
 }
 
 impl<T: Real> Function<T> {
-    /// The value at the contact's numbers, first (0) and second (1), with the law's coefficients put into their kind.
+    /// The value at the contact's numbers, first (0) and second (1), which are `scaled` by the law's coefficients.
     #[inline]
-    pub fn at<N: Real>(self, number: impl Fn(usize) -> N, coefficient: impl Fn(T) -> N) -> N {
+    pub fn at<N: Real>(self, number: impl Fn(usize) -> N, scaled: impl Fn(T, N) -> N) -> N {
         match self {
             Self::First => number(0),
             Self::MinusFirst => -number(0),
             Self::Second => number(1),
-            Self::ConeMinus(mu) => coefficient(mu) * number(1) - number(0),
-            Self::ConePlus(mu) => coefficient(mu) * number(1) + number(0),
+            Self::ConeMinus(mu) => scaled(mu, number(1)) - number(0),
+            Self::ConePlus(mu) => scaled(mu, number(1)) + number(0),
         }
     }
 }

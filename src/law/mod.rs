@@ -132,35 +132,39 @@ impl<T: Real> Law<T> {
 
     /// Calls `visit` with every inequality of a mode, that of its velocity last.
     #[inline]
-    pub fn conditions(&self, mode: Mode, mut visit: impl FnMut(Condition<T>)) {
-        let mut ask = |inequality, function| visit(Condition { inequality, function });
-        match (*self, mode) {
-            (_, Mode::Separate) => {}
+    pub fn conditions(&self, mode: Mode, mut visit: impl FnMut(Inequality, Function<T>)) {
+        let pushed = match (self, mode) {
+            (_, Mode::Separate) => None,
             (Self::Unbounded, Mode::SlidePlus | Mode::SlideMinus) | (Self::Sliding(Friction::Infinite, _), _) => {
-                ask(Inequality::TangentialImpulse, Function::Second);
-            }
-            (Self::Coulomb(mu), Mode::Stick) => {
-                ask(Inequality::NormalImpulse, Function::Second);
-                ask(Inequality::FrictionCone, Function::ConeMinus(mu));
-                ask(Inequality::FrictionCone, Function::ConePlus(mu));
+                Some(Inequality::TangentialImpulse)
             }
             (Self::Frictionless | Self::Coulomb(_) | Self::Unbounded | Self::Sliding(..), _) => {
-                ask(Inequality::NormalImpulse, Function::Second);
+                Some(Inequality::NormalImpulse)
             }
+        };
+        let moved = match mode {
+            Mode::Separate => Some((Inequality::NormalVelocity, Function::Second)),
+            Mode::SlidePlus | Mode::SlideMinus if matches!(self, Self::Sliding(..)) => None,
+            Mode::SlidePlus => Some((Inequality::TangentialVelocity, Function::First)),
+            Mode::SlideMinus => Some((Inequality::TangentialVelocity, Function::MinusFirst)),
+            Mode::Stick => None,
+        };
+        if let Some(inequality) = pushed {
+            visit(inequality, Function::Second);
         }
-        match mode {
-            Mode::Separate => ask(Inequality::NormalVelocity, Function::Second),
-            Mode::Stick => {}
-            _ if matches!(self, Self::Sliding(..)) => {}
-            Mode::SlidePlus => ask(Inequality::TangentialVelocity, Function::First),
-            Mode::SlideMinus => ask(Inequality::TangentialVelocity, Function::MinusFirst),
+        if let (&Self::Coulomb(mu), Mode::Stick) = (self, mode) {
+            visit(Inequality::FrictionCone, Function::ConeMinus(mu));
+            visit(Inequality::FrictionCone, Function::ConePlus(mu));
+        }
+        if let Some((inequality, function)) = moved {
+            visit(inequality, function);
         }
     }
 
     /// Whether c_t = 0 of a mode has no impulse to hold it: an equation more than unknowns.
     #[inline]
     pub fn is_unheld(&self, mode: Mode) -> bool {
-        mode == Mode::Stick && !matches!(self.impulse(mode), Impulse::Free)
+        mode == Mode::Stick && matches!(self, Self::Frictionless | Self::Sliding(..))
     }
 
     /// The modes that share velocity and impulse with a closed `mode` whose `inequality` is zero; `tangential` is the

@@ -87,6 +87,12 @@ pub trait Real:
     fn one() -> Self {
         Self::from_f64(1.0)
     }
+
+    /// The product with a number that is exactly `factor`.
+    #[inline]
+    fn scaled(self, factor: f64) -> Self {
+        Self::from_f64(factor) * self
+    }
 }
 
 impl Real for f64 {

@@ -69,6 +69,14 @@ impl Real for Rounded {
     fn from_f64(value: f64) -> Self {
         Self { value, error: 0.0 }
     }
+
+    #[inline]
+    fn scaled(self, factor: f64) -> Self {
+        let (value, [own, others]) = (self.value * factor, [self.reach(), factor.abs()]);
+        let error = self.error * others + UNIT_ROUNDOFF * value.abs();
+        let least = if own < others { own } else { others };
+        Self { value, error: error + if least == 0.0 { 0.0 } else { f64::MIN_POSITIVE } }
+    }
 }
 
 impl Ordered for Rounded {
@@ -116,6 +124,7 @@ mod tests {
             let r = exact(c);
             for (found, truth) in [
                 (x * y, &p * &q),
+                (x.scaled(c), &p * &r),
                 (x * y + z * x, &p * &q + &r * &p),
                 (x - x * y, &p - &p * &q),
                 (x / y, &p / &q),
@@ -132,16 +141,24 @@ mod tests {
     #[test]
     fn zeros_stay_zeros_and_doubt_stays_doubt() {
         let [zero, third] = [Rounded::zero(), Rounded::one() / Rounded::from_f64(3.0)];
-        for number in [zero * third, zero / third, third * zero + zero, -zero - zero * zero] {
+        for number in [zero * third, zero / third, third * zero + zero, -zero - zero * zero, third.scaled(0.0)] {
             assert_eq!(number.sign(), Sign::Zero);
         }
         let unknown = Rounded { value: 1.0, error: f64::INFINITY };
         let vague = third * Rounded::from_f64(3.0) - Rounded::one();
-        for number in [zero * unknown, zero / unknown, zero / vague, third / vague, unknown - unknown, third / zero] {
+        for number in [
+            zero * unknown,
+            unknown.scaled(0.0),
+            zero / unknown,
+            zero / vague,
+            third / vague,
+            unknown - unknown,
+            third / zero,
+        ] {
             assert_eq!(number.sign(), Sign::Undecided, "{number:?}");
         }
         // A product that underflows is no zero.
         let tiny = Rounded::from_f64(1e-200);
-        assert_eq!((tiny * tiny).sign(), Sign::Undecided);
+        assert_eq!([tiny * tiny, tiny.scaled(1e-200)].map(Ordered::sign), [Sign::Undecided; 2]);
     }
 }

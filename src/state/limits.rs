@@ -48,11 +48,11 @@ impl State {
             Some(joint) => joints().all(|other| other.parent != robot.joints[joint].child),
             None => robot.joints.is_empty(),
         };
-        let angles = robot.coordinates().zip(self.position.iter().copied()).enumerate();
-        let like = move |&(at, (_, angle)): &(usize, (&str, f64))| {
+        let like = move |&(at, angle): &(usize, f64)| {
             angle.abs() > TAU && is_free_angle(at) && (angle.fract() == 0.0 || !is_wheel(at))
         };
-        angles.filter(like).map(|(_, named)| named)
+        let angles = self.position.iter().copied().enumerate().filter(like);
+        angles.filter_map(|(at, angle)| Some((robot.coordinates().nth(at)?, angle)))
     }
 }
 

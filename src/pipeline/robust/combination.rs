@@ -118,8 +118,8 @@ impl<T: Ordered> UncertainProblem<T> {
                 (Impulse::Along(_), _) => numerator(column),
                 (Impulse::Free, which) => numerator(column + which),
             };
-            law.conditions(mode, |condition| {
-                numerators.push((Some(condition.inequality), condition.function.at(number, |mu| mu)));
+            law.conditions(mode, |inequality, function| {
+                numerators.push((Some(inequality), function.at(number, |mu, own| mu * own)));
             });
             if law.is_unheld(mode) {
                 numerators.push((None, velocity(tangential)));
