@@ -26,15 +26,27 @@ pub struct Inequalities {
     pub ends: Vec<usize>,
 }
 
+/// Memory that is reused from problem to problem.
+#[derive(Debug, Clone, Default)]
+pub struct InequalityScratch {
+    tableau: Tableau<f64>,
+    labels: Labels,
+    scale: Scale,
+}
+
 impl Inequalities {
     /// Those of `problem`; combinations and their inequalities are always in the same order as long as the frictions
     /// are zero, finite or infinite as before. Those of a combination that is singular up to rounding are all zero.
-    pub fn of(problem: &ContactProblem) -> Self {
-        let mut tableau = Tableau::<f64>::default();
-        let mut labels = Labels::default();
+    pub fn of(problem: &ContactProblem, scratch: &mut InequalityScratch) -> Self {
+        let InequalityScratch { tableau, labels, scale } = scratch;
+        let (contacts, combinations) = (problem.contacts(), 1 << (2 * problem.contacts()));
         let mut all = Self::default();
+        // Under Coulomb's law a contact has eight inequalities in its four modes.
+        all.numerators.reserve(2 * contacts * combinations);
+        all.negligible.reserve(2 * contacts * combinations);
+        all.determinants.reserve(combinations);
+        all.ends.reserve(combinations);
         tableau.load(problem);
-        let mut scale = Scale::default();
         scale.measure(problem, Errors::NONE);
         tableau.visit(&mut |leaf: &Leaf<'_, f64>| {
             let determinant = if is_singular(leaf, problem) { 0.0 } else { leaf.pivots.iter().product::<f64>() };
@@ -87,7 +99,7 @@ mod tests {
         for mu in [Friction::Finite(0.4), Friction::Finite(6.0), Friction::Infinite] {
             for before in [[1.0, -1.0], [-3.0, -1.0], [0.5, 0.2], [2.5, -0.5]] {
                 let problem = ContactProblem::new(vec![2.0, 1.0, 1.0, 2.0], vec![before], vec![mu], vec![0.0]).unwrap();
-                let all = Inequalities::of(&problem);
+                let all = Inequalities::of(&problem, &mut InequalityScratch::default());
                 let valid = |combination: &usize| {
                     let determinant = all.determinants[*combination];
                     all.numerators[all.of_combination(*combination)].iter().all(|number| number * determinant > 0.0)

@@ -33,7 +33,7 @@ pub use collected::{AnalysisOptions, EXPLAINED, ListedRejections};
 pub(crate) use digits::{DIGITS, is_known};
 #[cfg(feature = "plot")]
 pub(crate) use explanation::mirrored;
-pub use inequalities::Inequalities;
+pub use inequalities::{Inequalities, InequalityScratch};
 pub use outcome::{
     Analysis, AtZero, Border, Effort, Explanation, Family, ImpulseRegion, Motion, Next, OpenCombinations, Outcome,
     Rejection, RejectionReason, Verdict,

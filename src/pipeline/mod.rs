@@ -302,6 +302,15 @@ impl<'r> Pipeline<'r> {
         })
     }
 
+    /// As [`Pipeline::answer`], whatever the state's uncertainty is, in brief and without the friction needed.
+    pub(crate) fn outcomes(&mut self, state: &State) -> Result<Box<Impact>> {
+        let Options { brief, friction_needed, .. } = self.options;
+        (self.options.brief, self.options.friction_needed) = (true, false);
+        let answer = self.answer_explaining(state, &[]);
+        (self.options.brief, self.options.friction_needed) = (brief, friction_needed);
+        answer
+    }
+
     /// As [`Pipeline::impact`]; if modes are `chosen`, of all rejected combinations those are listed.
     fn strike(&mut self, state: &State, chosen: Option<&[Vec<Mode>]>) -> Result<Answer> {
         let scene = &state.scene;

@@ -4,7 +4,7 @@ use super::Study;
 use super::regime::Regime;
 use crate::budget::is_spent;
 use crate::description::Description;
-use crate::impact::{Analysis, Inequalities, Verdict};
+use crate::impact::{Analysis, Inequalities, InequalityScratch, Verdict};
 use crate::law::Mode;
 use crate::pipeline::{Impact, Options, Pipeline, Unsolved};
 use crate::robot::Reduction;
@@ -37,6 +37,7 @@ pub struct Solver<'a> {
     model: &'a RobotStudy<'a>,
     /// For the robot as it is; `None` if the study varies it.
     pipeline: Option<Pipeline<'a>>,
+    scratch: InequalityScratch,
     /// All regimes so far.
     known: Vec<Arc<Regime>>,
     /// What is followed at the points that were asked last: neighboring stretches share their ends.
@@ -92,7 +93,8 @@ impl RobotStudy<'_> {
 impl<'a> Solver<'a> {
     pub fn new(model: &'a RobotStudy<'a>) -> Self {
         let pipeline = (!model.study.varies_the_robot()).then(|| Pipeline::new(model.robot, model.asked()));
-        Self { model, pipeline, known: Vec::new(), recent: VecDeque::new() }
+        let scratch = InequalityScratch::default();
+        Self { model, pipeline, scratch, known: Vec::new(), recent: VecDeque::new() }
     }
 
     /// Asks about the state at a point; robot or state may be refused there, and every state is once a budget is spent.
@@ -142,7 +144,13 @@ impl<'a> Solver<'a> {
 
     /// The regime of a point.
     pub fn regime(&mut self, point: &[f64]) -> Arc<Regime> {
-        let regime = Regime::of(&self.at(point, |_, state, pipeline| pipeline.answer_explaining(&state, &[])));
+        let found = self.at(point, |_, state, pipeline| {
+            let answer = pipeline.outcomes(&state);
+            let regime = Regime::of(&answer);
+            answer.into_iter().for_each(|impact| pipeline.recycle(impact));
+            Ok(regime)
+        });
+        let regime = found.unwrap_or_else(|refused| Regime::of(&Err(refused)));
         if let Some(known) = self.known.iter().find(|known| ***known == regime) {
             return Arc::clone(known);
         }
@@ -166,7 +174,7 @@ impl<'a> Solver<'a> {
         let (Unsolved { contacts, problem, clearance }, tolerance) = unsolved.ok()?;
         Some(Watched {
             inequalities: match contacts.len() <= WATCHED_CONTACTS {
-                true => Inequalities::of(&problem),
+                true => Inequalities::of(&problem, &mut self.scratch),
                 false => Inequalities::default(),
             },
             contacts: contacts.into_iter().map(|contact| contact.name.to_string()).collect(),
