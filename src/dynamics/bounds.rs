@@ -278,7 +278,7 @@ impl RoundingBounds {
 
 /// (M^-1)_ii of one column: |D^-1/2 L^-T e_i|^2; `y` has an entry for each column and is scratch.
 fn squared_ease(plan: &Plan, factor: &LtlFactor, column: usize, y: &mut [f64]) -> f64 {
-    // Entries off the branch of the column stay zero, and are not read.
+    // Entries off the branch of the column are zero; those of `y` are stale, and not read.
     let (ancestors, row) = (|column: usize| plan.branch(plan.parents[column]), factor.row(column));
     ancestors(column).for_each(|j| y[j] = -row[j]);
     let mut sum = 1.0 / factor.pivot(column);

@@ -51,7 +51,7 @@ impl State {
         let like = move |&(at, angle): &(usize, f64)| {
             angle.abs() > TAU && is_free_angle(at) && (angle.fract() == 0.0 || !is_wheel(at))
         };
-        let angles = self.position.iter().copied().enumerate().filter(like);
+        let angles = self.position.iter().copied().take(robot.dofs()).enumerate().filter(like);
         angles.filter_map(|(at, angle)| Some((robot.coordinates().nth(at)?, angle)))
     }
 }
