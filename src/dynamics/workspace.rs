@@ -70,8 +70,9 @@ pub struct Workspace<T = f64> {
 }
 
 impl<T: Copy> Workspace<T> {
-    /// A row of J by columns: tangential (2i) or normal (2i + 1) of contact i.
-    pub fn jacobian_row(&self, row: usize) -> impl Iterator<Item = T> + '_ {
+    /// A row of J by columns: tangential (2i) or normal (2i + 1) of contact i, which there must be.
+    #[cfg(any(test, feature = "accuracy"))]
+    pub(crate) fn jacobian_row(&self, row: usize) -> impl Iterator<Item = T> + '_ {
         let nv = self.contact_jacobian.len() / self.contact_velocity.len();
         self.contact_jacobian[row / 2 * nv..][..nv].iter().map(move |own| own[row % 2])
     }

@@ -53,8 +53,8 @@ pub struct Leaf<'a, T> {
 pub trait Visitor<T> {
     fn leaf(&mut self, leaf: &Leaf<'_, T>);
 
-    /// Whether a combination is not to be visited, of which only the numbers of the last contact are known yet; not asked
-    /// where one combination is visited by itself.
+    /// Whether a combination is not to be visited, of which only the numbers of the last contact are known yet: a visitor
+    /// that drops some counts them itself. Not asked where one combination is visited by itself.
     fn drops(&mut self, _modes: &[Mode], _last: Pair<T>) -> bool {
         false
     }

@@ -471,10 +471,8 @@ impl<'r> Pipeline<'r> {
         order.sort_by_key(|&column| plan.coordinates()[column]);
         let names: Vec<&str> = self.robot.coordinates().collect();
         let mass = |i: usize, j: usize| workspace.mass_matrix[i.max(j) * nv + i.min(j)];
-        let jacobian = |row: usize| {
-            let own: Vec<f64> = workspace.jacobian_row(row).collect();
-            order.iter().map(|&column| own[column]).collect()
-        };
+        let entry = |row: usize, column: usize| workspace.contact_jacobian[row / 2 * nv + column][row % 2];
+        let jacobian = |row: usize| order.iter().map(|&column| entry(row, column)).collect();
         Matrices {
             coordinates: order.iter().map(|&column| names[plan.coordinates()[column]].to_owned()).collect(),
             mass_matrix: order.iter().map(|&i| order.iter().map(|&j| mass(i, j)).collect()).collect(),

@@ -67,3 +67,20 @@ impl fmt::Display for OutsideLimits<'_> {
         f.write_str(if meant { "; degrees?" } else { "" })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lists_of_another_length_are_read_as_far_as_they_go() {
+        let robot = Robot::from_urdf(include_str!("../../urdf/minimalistic.urdf")).unwrap();
+        let names = |position: Vec<f64>| {
+            let state = State { position, ..State::zero(&robot) };
+            state.like_degrees(&robot).map(|(name, _)| name).collect::<Vec<_>>()
+        };
+        assert_eq!(names(vec![90.0, 90.0, 45.0]), ["pitch"]);
+        assert_eq!(names(vec![0.0, 0.0, 0.0, 30.5, 90.0]), Vec::<&str>::new());
+        assert_eq!(names(vec![0.0, 0.0, 0.0, 30.0, 90.0]), ["hip"]);
+    }
+}
