@@ -6,7 +6,8 @@
 //!
 //! The angles of a pose are rounded, so a flat sole is tilted by some 1e-16 rad. Contacts that bounce, or whose friction
 //! is infinite, may then balance on that tilt with impulses of 1e16 N s. What only digits below those of the pose say
-//! is not read from it: all numbers beyond f64 take such contacts as exactly level.
+//! is not read from it: all numbers beyond f64 take such contacts as exactly level. Points that are given by name are
+//! meant where they are; of these only those count that are level in all digits.
 
 use super::Contact;
 use super::placement::Placement;
@@ -20,8 +21,8 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 pub struct Level {
     /// The other one, which is level with none.
     pub with: usize,
-    /// How far along the tangent it is from there \[m\].
-    pub along: f64,
+    /// How far along the tangent it is taken to be from there \[m\]; `None` if its place is exactly level by itself.
+    pub along: Option<f64>,
 }
 
 /// Which contacts are level with which, up to rounding; none of those behind the last entry. The foot of a `stance` keeps
@@ -33,7 +34,7 @@ pub fn level(contacts: &[Contact], placement: &Placement, stance: Option<usize>)
         let others = stance.into_iter().chain((0..index).filter(is_own));
         let found = others.filter(|_| stance != Some(index)).find_map(|with| {
             let along = along(contact, &contacts[with], placement)?;
-            Some(Level { with, along })
+            Some(Level { with, along: Some(along) })
         });
         if found.is_some() {
             levels.resize(index, None);

@@ -99,20 +99,14 @@ impl<T: Trigonometry> Configuration<T> {
         self.sin.clear();
         self.sin.resize(plan.places, T::zero());
         for body in &plan.bodies {
-            let (place, value) = (body.place, position.get(body.coordinate).copied().unwrap_or(0.0));
-            let turn = match (body.motion, body.mimic) {
-                (JointMotion::Root, _) if !plan.floating => continue,
-                (JointMotion::Fixed, _) => continue,
-                (JointMotion::Root | JointMotion::Revolute { .. }, None) => Rotation::by(value),
-                (JointMotion::Root | JointMotion::Revolute { .. }, Some(mimic)) => mimic.turn(value),
-                (JointMotion::Prismatic { .. }, None) => continue,
-                (JointMotion::Prismatic { .. }, Some(mimic)) => {
-                    let [multiplier, value, offset] = [mimic.multiplier, value, mimic.offset].map(T::from_f64);
-                    self.displacement[place] = multiplier * value + offset;
-                    continue;
-                }
-            };
-            (self.cos[place], self.sin[place]) = (turn.cos, turn.sin);
+            let place = body.place;
+            if let Some(turn) = plan.turn::<T>(body, position) {
+                (self.cos[place], self.sin[place]) = (turn.cos, turn.sin);
+            } else if let (JointMotion::Prismatic { .. }, Some(mimic)) = (body.motion, body.mimic) {
+                let value = position.get(body.coordinate).copied().unwrap_or(0.0);
+                let [multiplier, value, offset] = [mimic.multiplier, value, mimic.offset].map(T::from_f64);
+                self.displacement[place] = multiplier * value + offset;
+            }
         }
     }
 }
@@ -139,6 +133,19 @@ impl MimicRatio {
         // A part that is zero turns nothing, in any number.
         let parts = [error, self.offset].into_iter().filter(|&part| part != 0.0);
         parts.fold(Rotation::by(product), |turn, part| turn.then(Rotation::by(part)))
+    }
+}
+
+impl Plan {
+    /// The turn of a body at `position` (q), in numbers of any kind.
+    pub(crate) fn rotation<N: Trigonometry>(&self, body: usize, position: &[f64]) -> Rotation<N> {
+        let turns = self.way_to_root(body).filter_map(|(_, body)| {
+            let turn = self.turn(body, position)?;
+            let is_back = matches!(body.motion, JointMotion::Revolute { sign, .. } if sign < 0.0);
+            Some(if is_back { turn.back() } else { turn })
+        });
+        // Turns of the plane commute.
+        turns.fold(Rotation::identity(), Rotation::then)
     }
 }
 
@@ -228,6 +235,17 @@ impl<T: Real> Plan<T> {
         }
         plan.is_long = (0..plan.columns()).any(|column| plan.branch(Some(column)).take(LONG).count() >= LONG);
         plan
+    }
+
+    /// By what a body's joint turns at `position` (q), before its sign; `None` if it does not turn.
+    fn turn<N: Trigonometry>(&self, body: &PlanBody<T>, position: &[f64]) -> Option<Rotation<N>> {
+        let turns = match body.motion {
+            JointMotion::Root => self.floating,
+            JointMotion::Revolute { .. } => true,
+            JointMotion::Prismatic { .. } | JointMotion::Fixed => false,
+        };
+        let value = position.get(body.coordinate).copied().unwrap_or(0.0);
+        turns.then(|| body.mimic.map_or_else(|| Rotation::by(value), |mimic| mimic.turn(value)))
     }
 
     /// The column of a coordinate, which may be known already from another joint that it moves.

@@ -16,7 +16,7 @@ use super::explanation::explanation;
 use super::families::FamiliesPass;
 use super::outcome::{Analysis, OpenCombinations, Outcome, Verdict};
 use super::passes::{F64Pass, UndecidedPass};
-use super::problem::{ContactProblem, Precision, Remembered, Source, escalate};
+use super::problem::{ContactProblem, Precision, PrecisionTask, Remembered, Source, escalate};
 use super::rank::{rank_and_condition, shows_regular};
 use super::relaxation::Relaxation;
 use super::slack::Scale;
@@ -137,6 +137,10 @@ impl Scratch {
         self.scale.measure(problem, errors);
         self.tableau.separately = !options.reductions.frictionless;
         let (delassus, free) = (self.scale.delassus(problem, errors), self.scale.free(problem, errors));
+        let mut shared = Vec::new();
+        if (0..contacts).any(|contact| source.shared_tangent(contact).is_some()) {
+            shared.extend((0..contacts).map(|contact| source.shared_tangent(contact)));
+        }
         self.tableau.load_entries(problem.laws(), delassus, free);
         let name = |contact| source.contact_name(contact);
         let mut pass = F64Pass {
@@ -154,8 +158,8 @@ impl Scratch {
             self.tableau.visit(&mut pass);
         } else {
             let without_slip = self.tableau.without_slip;
-            let search =
-                Search::of((problem, source), &self.scale, &mut self.relaxation, without_slip, options.rejections);
+            let posed = (problem, source, &*shared);
+            let search = Search::of(posed, &self.scale, &mut self.relaxation, without_slip, options.rejections);
             (pass.collected.effort, kernel) = (search.effort, search.kernel);
             pass.shares = false;
             for modes in &search.survivors {
@@ -177,7 +181,10 @@ impl Scratch {
         if !undecided.is_empty() {
             let first = Precision::first(regular || is_searched && self.relaxation.is_regular, problem);
             let mut pass = UndecidedPass { undecided, blunt: BTreeMap::new(), kernel, collected: &mut collected };
-            escalate(source, first, &mut pass);
+            let is_enclosed = !shared.is_empty() && errors.delassus.is_finite() && self.scale.is_far_from_underflow();
+            if !(is_enclosed && pass.attempt(&self.scale.enclosed(problem, errors, shared), Precision::Enclosed)) {
+                escalate(source, first, &mut pass);
+            }
             pass.finish();
         }
         if !collected.pending_families.is_empty() {
@@ -230,7 +237,70 @@ fn no_slip_consistent(outcomes: &[Outcome], open: Option<&OpenCombinations>) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::impact::problem::Errors;
     use crate::law::Friction;
+    use crate::scalar::{Ordered, Trigonometry};
+    use proptest::prelude::*;
+
+    /// A problem of level soles with two contacts each, of which that is known.
+    struct Soles<'a>(&'a ContactProblem);
+
+    impl Source for Soles<'_> {
+        fn problem<T: Ordered + Trigonometry>(&self) -> ContactProblem<T> {
+            self.0.problem()
+        }
+
+        fn errors(&self) -> Errors<'_> {
+            Errors::NONE
+        }
+
+        fn shared_tangent(&self, contact: usize) -> Option<usize> {
+            contact.checked_sub(contact % 2).filter(|&first| first != contact)
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn what_soles_share_changes_no_answer(
+            sides in prop::collection::vec(prop::array::uniform3(prop::array::uniform6(-1.0..1.0f64)), 1..=2),
+            before in prop::array::uniform3(prop::array::uniform2(-1.0..1.0f64)),
+            mu in prop_oneof![Just(Friction::Infinite), (0.05..2.0f64).prop_map(Friction::Finite)],
+            bounce in prop_oneof![Just(0.0), 0.1..0.9f64],
+            all in any::<bool>(),
+        ) {
+            let rows: Vec<_> = sides.iter().flat_map(|&[t, first, second]| [t, first, t, second]).collect();
+            let dot = |a: &[f64; 6], b: &[f64; 6]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
+            let delassus = rows.iter().flat_map(|a| rows.iter().map(|b| dot(a, b))).collect();
+            let velocity = |side: usize| [[before[side][0], before[2][0]], [before[side][0], before[side][1]]];
+            let velocity: Vec<_> = (0..sides.len()).flat_map(velocity).collect();
+            let contacts = velocity.len();
+            let problem = ContactProblem::new(delassus, velocity, vec![mu; contacts], vec![bounce; contacts]).unwrap();
+            // Rows that G rounded apart from what it is made of are exactly those of another G.
+            prop_assume!(problem.is_given());
+            let options = AnalysisOptions { rejections: all.into(), ..AnalysisOptions::default() };
+            let known = Scratch::default().analyze(&problem, &Soles(&problem), options).unwrap();
+            let unknown = analyze(&problem, all.into()).unwrap();
+            prop_assert_eq!((known.verdict, known.proven), (unknown.verdict, unknown.proven));
+            prop_assert_eq!((known.rank, known.index_sum), (unknown.rank, unknown.index_sum));
+            let because = |analysis: &Analysis| -> Vec<_> {
+                analysis.rejected.iter().map(|own| (own.modes.clone(), own.because)).collect()
+            };
+            prop_assert_eq!(because(&known), because(&unknown));
+            prop_assert_eq!(known.outcomes.len(), unknown.outcomes.len());
+            for (one, other) in known.outcomes.iter().zip(&unknown.outcomes) {
+                prop_assert_eq!((&one.modes, one.index, one.impulse_unique), (&other.modes, other.index, other.impulse_unique));
+                let numbers = |own: &Outcome| -> Vec<f64> {
+                    let pairs = own.impulse.iter().chain(&own.velocity_after).flatten().copied();
+                    pairs.chain([own.energy_loss, own.margin.unwrap_or(0.0)]).collect()
+                };
+                let (one, other) = (numbers(one), numbers(other));
+                let size = other.iter().fold(1.0, |most: f64, own| most.max(own.abs()));
+                for (a, b) in one.iter().zip(&other) {
+                    prop_assert!((a - b).abs() <= 1e-9 * size, "{one:?} is not {other:?}");
+                }
+            }
+        }
+    }
 
     #[test]
     fn more_contacts_than_are_tried_are_refused() {

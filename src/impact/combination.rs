@@ -4,7 +4,7 @@ use super::digits::{DIGITS, Numbers, after};
 use super::enumerate::Tableau;
 use super::linear::Unsettled;
 use super::outcome::{Motion, Rejection};
-use super::problem::{ContactProblem, Errors};
+use super::problem::ContactProblem;
 use super::reading::{CombinationReading, motion, read};
 use super::singular::{Equations, SingularCase};
 use super::slack::{Scale, slacks};
@@ -52,23 +52,24 @@ impl Solved {
 /// A problem in these numbers and its elimination.
 pub struct CombinationSolver<'e, T> {
     exact: &'e ContactProblem<T>,
-    /// Of its own numbers: those of f64 may be off.
     scale: Scale,
     tableau: Tableau<T>,
 }
 
 impl<'e, T: Ordered> CombinationSolver<'e, T> {
-    pub fn new(exact: &'e ContactProblem<T>) -> Self {
+    pub fn new(exact: &'e ContactProblem<T>, scale: Scale) -> Self {
         let mut tableau = Tableau::<T>::default();
         tableau.load(exact);
-        let mut scale = Scale::default();
-        scale.measure(&exact.map(T::to_f64), Errors::NONE);
         Self { exact, scale, tableau }
     }
 
     pub fn solve(&mut self, modes: &[Mode]) -> Result<Solved, Unsettled> {
         let Self { exact, scale, tableau } = self;
         T::freeing(|| {
+            let equations = Equations::of(exact, scale, modes);
+            if equations.are_shared() {
+                return equations.solve().map(Solved::Singular);
+            }
             let mut index = 1;
             let ends = |pivot: T| {
                 let sign = pivot.sign();
@@ -77,7 +78,7 @@ impl<'e, T: Ordered> CombinationSolver<'e, T> {
             };
             let leaf = match tableau.leaf_unless(modes, ends) {
                 Ok(leaf) => leaf,
-                Err(Sign::Zero) => return Equations::of(exact, scale, modes).solve().map(Solved::Singular),
+                Err(Sign::Zero) => return equations.solve().map(Solved::Singular),
                 Err(_) => return Err(Unsettled),
             };
             let reading = read(&leaf, modes, exact.laws(), scale, Vec::new());

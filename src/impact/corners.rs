@@ -11,7 +11,8 @@
 //!
 //! Cost: one program per corner and facet of S, however many corners the polyhedron itself has.
 
-use super::linear::{LinearFunction, Unsettled, extended, maximize, settled, solve};
+use super::linear::{LinearFunction, Unsettled, extended, settled, solve};
+use super::simplex::maximize;
 use crate::scalar::{Ordered, dot};
 use std::cmp::Ordering;
 

@@ -104,10 +104,11 @@ impl Numbers {
             let ([t, n], after) = (impulse[contact], after[contact]);
             let [of_t, of_n] = scales.impulse(contact, &laws[contact]);
             let speed = scales.speed(contact);
-            after.iter().all(|&entry| is_known(entry, speed)) && is_known(n, of_n) && is_known(t, of_t)
+            let known = |number, size| is_known(number, size, scale.digits());
+            after.iter().all(|&entry| known(entry, speed)) && known(n, of_n) && known(t, of_t)
         };
         Self {
-            are_sharp: is_known(energy, 0.0) && (0..modes.len()).all(of_contact),
+            are_sharp: is_known(energy, 0.0, scale.digits()) && (0..modes.len()).all(of_contact),
             energy_loss: energy.to_f64(),
             friction_needed: friction_needed(modes, laws, &motion.impulse).collect(),
             motion,
@@ -132,24 +133,32 @@ fn nearest<T: Ordered>(list: &[Pair<T>]) -> Vec<Pair<f64>> {
 }
 
 impl Numbers {
-    /// Takes over the friction that contacts need whose impulses are not unique.
-    pub fn take_friction<T: Ordered>(&mut self, needed: &[Option<T>], laws: &[Law]) {
-        let known = |(needed, law): (&Option<T>, &Law)| needed.is_none_or(|ratio| is_known(ratio, least_friction(law)));
+    /// Takes over the friction that contacts need whose impulses are not unique, to so many `digits`.
+    pub fn take_friction<T: Ordered>(&mut self, needed: &[Option<T>], laws: &[Law], digits: f64) {
+        let known =
+            |(needed, law): (&Option<T>, &Law)| needed.is_none_or(|ratio| is_known(ratio, least_friction(law), digits));
         self.are_sharp &= needed.iter().zip(laws).all(known);
         let nearest = |(needed, law): (&Option<T>, &Law)| needed.map(|ratio| at_most(law, ratio.to_f64()));
         self.friction_needed = needed.iter().zip(laws).map(nearest).collect();
     }
 }
 
-/// Whether a number is known to its digits of itself, or of a `scale` that is larger.
-pub fn is_known<T: Ordered>(number: T, scale: f64) -> bool {
-    number.error() <= DIGITS * scale.max(number.to_f64().abs())
+impl Scale {
+    /// Up to what bound of its error a number likely has the digits that are promised.
+    pub fn digits(&self) -> f64 {
+        DIGITS / self.likely_part
+    }
+}
+
+/// Whether a number is known to so many `digits`, as of [`DIGITS`], of itself or of a `scale` that is larger.
+pub fn is_known<T: Ordered>(number: T, scale: f64, digits: f64) -> bool {
+    number.error() <= digits * scale.max(number.to_f64().abs())
 }
 
 /// Whether the ends of a range are known to their digits of the largest of both and `own`, which lies between.
-pub fn is_known_range<T: Ordered>(ends: [Option<T>; 2], own: T) -> bool {
+pub fn is_known_range<T: Ordered>(ends: [Option<T>; 2], own: T, digits: f64) -> bool {
     let scale = ends.into_iter().flatten().fold(own.to_f64().abs(), |most, end| most.max(end.to_f64().abs()));
-    ends.into_iter().flatten().all(|end| is_known(end, scale))
+    ends.into_iter().flatten().all(|end| is_known(end, scale, digits))
 }
 
 /// The share of the normal impulse that counts as a tangential impulse's scale.

@@ -4,6 +4,7 @@ use super::collected::{Collected, Corner, FoundFamilies, Pending};
 use super::linear::{Unsettled, settled};
 use super::problem::{ContactProblem, Precision, PrecisionTask};
 use super::singular::{Equations, modes_of};
+use super::slack::Scale;
 use crate::law::Mode;
 use crate::scalar::Ordered;
 
@@ -56,7 +57,7 @@ impl FamiliesPass<'_, '_> {
         exact: &ContactProblem<T>,
         known: &[(Vec<Mode>, Vec<T>)],
     ) -> Result<Option<FamilyCorners<T>>, Unsettled> {
-        let scale = self.collected.scale;
+        let scale = &Scale::of(exact);
         let Some(velocities) = Equations::of(exact, scale, &pending.modes).family()? else {
             return Ok(None);
         };

@@ -60,8 +60,9 @@ impl Generators {
         let mut impulse = vec![T::zero(); self.rows];
         for (&(contact, ray), &factor) in self.rays.iter().zip(lambda) {
             for (row, part) in [2 * contact, 2 * contact + 1].into_iter().zip(ray) {
+                // A product with one would be rounded.
                 if part != 0.0 {
-                    impulse[row] = impulse[row] + T::from_f64(part) * factor;
+                    impulse[row] = impulse[row] + if part == 1.0 { factor } else { factor.scaled(part) };
                 }
             }
         }

@@ -3,6 +3,8 @@
 //! ```text
 //!     B = G_NR - G_NS G_SS^+ G_SR     S: rows of sticking contacts, N: normal rows of sliding ones, R: their rays
 //! ```
+//!
+//! Of tangential rows that sticking contacts share one is enough.
 
 use super::linear::{Unsettled, settled};
 use super::problem::ContactProblem;
@@ -19,8 +21,15 @@ pub fn index<T: Ordered>(problem: &ContactProblem<T>, modes: &[Mode]) -> Result<
         match law.impulse(mode) {
             Impulse::Zero => {}
             Impulse::Along(ray) => sliding.push((contact, ray.map(T::from_f64))),
-            Impulse::Free => stuck.extend([2 * contact, 2 * contact + 1]),
+            Impulse::Free => {
+                let is_stuck = |&other: &usize| problem.laws()[other].impulse(modes[other]) == Impulse::Free;
+                let shared = problem.shared_tangent(contact).filter(is_stuck);
+                stuck.extend((2 * contact..2 * contact + 2).skip(usize::from(shared.is_some())));
+            }
         }
+    }
+    if sliding.is_empty() {
+        return Ok(Some(1));
     }
     // Rows S then N, columns S then R.
     let rows = stuck.iter().copied().chain(sliding.iter().map(|(contact, _)| 2 * contact + 1));

@@ -3,6 +3,7 @@
 //! Read [`problem`], then [`enumerate`] (numbers), [`slack`] (inequalities), and [`analysis`], where they meet.
 
 mod linear;
+mod simplex;
 pub mod outcome;
 pub mod problem;
 pub mod enumerate;
@@ -13,7 +14,7 @@ pub mod inequalities;
 mod reading;
 mod kernel;
 mod index;
-mod program;
+mod least_impulse;
 mod corners;
 mod needed;
 mod singular;

@@ -7,7 +7,8 @@
 //!
 //! The minimum is a linear program in w = s y with s = 1 / L_n (Charnes and Cooper 1962).
 
-use super::linear::{LinearFunction, Unsettled, maximize, settled};
+use super::linear::{LinearFunction, Unsettled, settled};
+use super::simplex::{join, maximize};
 use crate::law::{Law, Mode};
 use crate::planar::Pair;
 use crate::scalar::{Ordered, Real};
@@ -40,14 +41,14 @@ pub fn friction_needed<T: Ordered>(
 fn groups<T: Ordered>(impulses: &[Pair<LinearFunction<T>>]) -> Result<Vec<usize>, Unsettled> {
     let mut groups: Vec<usize> = (0..impulses.len()).collect();
     for direction in 0..impulses.first().map_or(0, |pair| pair[0].coefficients.len()) {
-        let mut first = None;
+        let mut changed = Vec::new();
         for (contact, pair) in impulses.iter().enumerate() {
             let [t, n] = pair.each_ref().map(|entry| settled(entry.coefficients[direction]));
             if t?.is_ne() || n?.is_ne() {
-                let (from, to) = (groups[contact], *first.get_or_insert(groups[contact]));
-                groups.iter_mut().filter(|group| **group == from).for_each(|group| *group = to);
+                changed.push(contact);
             }
         }
+        join(&mut groups, changed.into_iter());
     }
     Ok(groups)
 }

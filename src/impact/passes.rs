@@ -9,6 +9,7 @@ use super::linear::Unsettled;
 use super::outcome::{Motion, Rejection};
 use super::problem::{ContactProblem, Precision, PrecisionTask};
 use super::reading::{motion, read, rejects};
+use super::slack::Scale;
 use crate::budget::{ROUNDS, is_spent_after};
 use crate::law::{Impulse, Law, Mode};
 use crate::planar::Pair;
@@ -115,8 +116,19 @@ impl PrecisionTask for UndecidedPass<'_, '_> {
         let mut open = std::mem::take(&mut self.undecided);
         let before = open.len();
         // What the contacts' dependence excludes is not solved for; if it cannot be shown, everything is.
-        self.kernel = self.kernel.take().or_else(|| T::freeing(|| Kernel::of(exact)).ok());
-        let excludes = |modes: &[Mode]| self.kernel.as_ref().and_then(|kernel| kernel.excludes(modes, exact.laws()));
+        // Numbers other than those of f64 have their own magnitudes.
+        let (known, scale) = match precision {
+            Precision::Enclosed => {
+                let shared = (0..exact.contacts()).map(|contact| exact.shared_tangent(contact));
+                (Some(Kernel::of_shared(shared)), self.collected.scale.clone())
+            }
+            _ => (None, Scale::of(exact)),
+        };
+        if known.is_none() && self.kernel.is_none() {
+            self.kernel = T::freeing(|| Kernel::of(exact)).ok();
+        }
+        let kernel = known.as_ref().or(self.kernel.as_ref());
+        let excludes = |modes: &[Mode]| kernel.and_then(|kernel| kernel.excludes(modes, exact.laws()));
         open.retain(|pending| match excludes(&pending.modes) {
             Some(because) => {
                 let rejection = || Rejection::of(&pending.modes, because);
@@ -126,7 +138,7 @@ impl PrecisionTask for UndecidedPass<'_, '_> {
             None => true,
         });
         let left = if precision == Precision::Interval { PRECISE_COMBINATIONS } else { usize::MAX };
-        let mut attempt = Attempt { pass: self, solver: CombinationSolver::new(exact), precision, left };
+        let mut attempt = Attempt { pass: self, solver: CombinationSolver::new(exact, scale), precision, left };
         open.into_iter().for_each(|pending| attempt.solve(pending));
         let Self { undecided, collected, .. } = self;
         *precision.share(&mut collected.effort) += (before - undecided.len()) as u64;

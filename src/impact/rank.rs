@@ -27,6 +27,12 @@ pub fn rank_and_condition<S: Source>(
     }
     let mobility = &scale.mobility;
     let scaled = |i: usize, j: usize| problem.delassus(i, j) / (mobility[i] * mobility[j]);
+    let is_own = |row: &usize| row % 2 == 1 || source.shared_tangent(row / 2).is_none();
+    let own: Vec<usize> = (0..rows).filter(is_own).collect();
+    let without_shared = || DMatrix::from_fn(own.len(), own.len(), |i, j| scaled(own[i], own[j]));
+    if own.len() < rows && scale.is_far_from_underflow() && is_definite(without_shared(), source.errors().delassus) {
+        return (own.len(), None);
+    }
     let [least, greatest] = if problem.contacts() == 1 && reductions.lone {
         // G of a single contact scaled to a unit diagonal: [[1, r], [r, 1]].
         let coupling = scaled(0, 1).abs();
@@ -50,6 +56,17 @@ pub fn rank_and_condition<S: Source>(
         // No precision shows whether the rank is full.
         None => (rows, None),
     }
+}
+
+/// The least eigenvalue of a scaled G that counts as regular.
+pub const REGULAR: f64 = 1e-6;
+
+/// Whether f64 shows that a symmetric matrix scaled to a unit diagonal, with entries that may be off by `errors`, has no
+/// eigenvalue below half of [`REGULAR`]: a Cholesky factor exists only if rounding hides no negative one (Rump 2006).
+pub fn is_definite(matrix: DMatrix<f64>, errors: f64) -> bool {
+    let rows = matrix.nrows();
+    rows as f64 * (errors + rows as f64 * f64::EPSILON) < 0.5 * REGULAR
+        && (matrix - DMatrix::identity(rows, rows) * REGULAR).cholesky().is_some()
 }
 
 /// Beyond this the least eigenvalue of G has lost half of its digits.

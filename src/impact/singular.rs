@@ -9,7 +9,8 @@
 //! and the impulse listed is its member of least norm. A velocity that the modes exclude only by depending on others (a
 //! flat foot whose heel sticks cannot slide at the toe) belongs to the list of modes that says so: its redundant twin.
 //! If even the velocity depends on y it is a family: a convex set of velocities, given by its dimension and its
-//! corners. A family's closure holds velocities of other modes, so that a corner may be another combination's outcome.
+//! corners. Contacts that are known to share a tangential row have one equation for it, and directions that shift their
+//! tangential impulses from one to the other move nothing. A family's closure holds velocities of other modes, so that a corner may be another combination's outcome.
 //! It is bounded: L.c+ <= sum of L_n e |c_n-|, so that L.G L = L.(c+ - c_free) grows no faster than L does. No
 //! tolerance decides: see [`super::linear`].
 
@@ -17,18 +18,22 @@ use super::corners::corners;
 use super::digits::{Numbers, is_known, is_known_range};
 use super::generators::Generators;
 use super::index::index;
-use super::linear::{LinearFunction, Solutions, Unsettled, extended, maximize, settled, solve, vanishing, widest};
+use super::least_impulse::least_impulse;
+use super::linear::{LinearFunction, Solutions, Unsettled, extended, settled, solve};
 use super::needed::friction_needed;
 use super::outcome::{Motion, Range, Rejection, RejectionReason};
 use super::problem::ContactProblem;
-use super::program::least_impulse;
+use super::simplex::{Program, vanishing, widest};
 use super::slack::Scale;
-use crate::law::{Condition, Inequality, Law, Mode};
+use crate::law::{Condition, Impulse, Inequality, Law, Mode};
 use crate::scalar::{Ordered, dot};
 use std::cmp::Ordering;
 
 /// Slacks are not followed beyond this: the impulses are then unbounded.
 const UNBOUNDED: f64 = 1e3;
+
+/// Inequalities whose values differ by this part are equally violated, when one of them is named.
+const EQUALLY_BAD: f64 = 1e-9;
 
 /// The solutions of a combination whose equations are singular.
 #[derive(Debug, Clone)]
@@ -100,6 +105,15 @@ pub struct Equations<'a, T> {
     scale: &'a Scale,
     modes: &'a [Mode],
     generators: Generators,
+    shared: Vec<SharedImpulse>,
+}
+
+/// A contact that sticks as another one does whose tangential row it shares: places of lambda, and its row.
+#[derive(Clone, Copy)]
+struct SharedImpulse {
+    first: usize,
+    other: usize,
+    row: usize,
 }
 
 /// The velocity rows that a combination sets to zero.
@@ -110,7 +124,22 @@ fn zero_rows(modes: &[Mode], laws: &[Law]) -> impl Iterator<Item = usize> {
 
 impl<'a, T: Ordered> Equations<'a, T> {
     pub fn of(problem: &'a ContactProblem<T>, scale: &'a Scale, modes: &'a [Mode]) -> Self {
-        Self { problem, scale, modes, generators: Generators::of(modes, problem.laws()) }
+        let generators = Generators::of(modes, problem.laws());
+        let is_free = |&contact: &usize| problem.laws()[contact].impulse(modes[contact]) == Impulse::Free;
+        let shared = (0..modes.len()).filter(is_free).filter_map(|contact| {
+            let with = problem.shared_tangent(contact).filter(is_free)?;
+            Some(SharedImpulse {
+                first: generators.place(with, 0),
+                other: generators.place(contact, 0),
+                row: 2 * contact,
+            })
+        });
+        Self { problem, scale, modes, shared: shared.collect(), generators }
+    }
+
+    /// Whether two contacts are known to have the same effect, so that their impulses are not determined.
+    pub fn are_shared(&self) -> bool {
+        !self.shared.is_empty()
     }
 
     pub fn solve(&self) -> Result<SingularCase, Unsettled> {
@@ -124,13 +153,11 @@ impl<'a, T: Ordered> Equations<'a, T> {
     /// As [`Equations::solve`]; the solutions of a family are those that the inequalities leave, with one in the
     /// interior of its set as their origin.
     fn velocities(&self) -> Result<SingularCase<Space<T>>, Unsettled> {
-        let Self { problem, modes, generators, .. } = self;
-        let equation = |row: usize| extended(&generators.velocity_row(problem, row), -problem.free_row(row));
-        let Some(solutions) = solve(generators.count(), zero_rows(modes, problem.laws()).map(equation).collect())?
-        else {
+        let modes = self.modes;
+        let Some(solutions) = self.solutions()? else {
             return Ok(SingularCase::Rejected(Rejection::of(modes, RejectionReason::NoSolution)));
         };
-        let space = self.space(solutions);
+        let space = self.space(solutions, self.shared.len());
         for Constraint { function, .. } in space.inequalities.iter().filter(|own| own.inequality.is_strict()) {
             if function.is_constant()? && settled(function.constant)?.is_eq() {
                 return Ok(SingularCase::Rejected(Rejection::of(modes, RejectionReason::RedundantTwin)));
@@ -147,7 +174,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
         }
         let origin = space.solutions.at(&inside);
         if standing.is_gt() {
-            return Ok(SingularCase::Family(self.space(Solutions { origin, ..space.solutions })));
+            return Ok(SingularCase::Family(self.space(Solutions { origin, ..space.solutions }, self.shared.len())));
         }
         let from_inside: Vec<LinearFunction<T>> = functions.iter().map(|each| each.seen_from(&inside)).collect();
         let (equalities, inner) = vanishing(&from_inside)?;
@@ -158,13 +185,47 @@ impl<'a, T: Ordered> Equations<'a, T> {
         let shifted = Solutions { origin, ..space.solutions };
         let origin = shifted.at(&inner);
         let left = shifted.where_zero(equalities.iter().map(|&place| &from_inside[place]))?.ok_or(Unsettled)?;
-        let space = self.space(Solutions { origin, ..left });
+        let space = self.space(Solutions { origin, ..left }, 0);
         if space.is_one_velocity()? {
             // What the equations leave free, the inequalities do not.
             let still = vec![T::zero(); space.solutions.directions.len()];
             return Ok(SingularCase::Valid(self.outcome(&space, &still, T::zero())?));
         }
         Ok(SingularCase::Family(space))
+    }
+
+    /// What the rows that the modes hold at zero leave of lambda; the directions of shared impulses come first.
+    fn solutions(&self) -> Result<Option<Solutions<T>>, Unsettled> {
+        let Self { problem, modes, generators, shared, .. } = self;
+        let is_left_out = |place: usize| shared.iter().any(|own| own.other == place);
+        let equation = |row: usize| {
+            let entries = generators.velocity_row(problem, row).into_iter().enumerate();
+            let kept = entries.filter(|&(place, _)| !is_left_out(place)).map(|(_, entry)| entry);
+            kept.chain([-problem.free_row(row)]).collect()
+        };
+        let rows = zero_rows(modes, problem.laws()).filter(|row| shared.iter().all(|own| own.row != *row));
+        let Some(Solutions { origin, directions }) =
+            solve(generators.count() - shared.len(), rows.map(equation).collect())?
+        else {
+            return Ok(None);
+        };
+        let whole = |kept: Vec<T>| -> Vec<T> {
+            let mut kept = kept.into_iter();
+            let entry = |place| if is_left_out(place) { None } else { kept.next() };
+            (0..generators.count()).map(entry).map(|entry| entry.unwrap_or(T::zero())).collect()
+        };
+        let mut origin = whole(origin);
+        let mut all = Vec::new();
+        for &SharedImpulse { first, other, .. } in shared {
+            // Each takes half, as a foot that stands on both: a part of zero would be at both edges of its cone.
+            let half = origin[first].scaled(0.5);
+            (origin[first], origin[other]) = (origin[first] - half, half);
+            let mut direction = vec![T::zero(); generators.count()];
+            (direction[first], direction[other]) = (T::one(), -T::one());
+            all.push(direction);
+        }
+        all.extend(directions.into_iter().map(whole));
+        Ok(Some(Solutions { origin, directions: all }))
     }
 
     /// The velocities of a combination that is a family; `None` if there are too many corners.
@@ -218,19 +279,25 @@ impl<'a, T: Ordered> Equations<'a, T> {
         Ok(SingularOutcome { index: None, margin: None, ..outcome })
     }
 
-    fn space(&self, solutions: Solutions<T>) -> Space<T> {
+    /// What depends on `solutions`, of which the first directions, so many as are `still`, move nothing.
+    fn space(&self, solutions: Solutions<T>, still: usize) -> Space<T> {
         let Self { problem, modes, generators, .. } = self;
         let zero: Vec<usize> = zero_rows(modes, problem.laws()).collect();
-        let velocity = |row: usize| match zero.contains(&row) {
-            true => LinearFunction { constant: T::zero(), coefficients: vec![T::zero(); solutions.directions.len()] },
-            false => solutions.affine(problem.free_row(row), &generators.velocity_row(problem, row)),
+        let velocity = |row: usize| {
+            if zero.contains(&row) {
+                let coefficients = vec![T::zero(); solutions.directions.len()];
+                return LinearFunction { constant: T::zero(), coefficients };
+            }
+            let mut moved = solutions.affine(problem.free_row(row), &generators.velocity_row(problem, row));
+            moved.coefficients[..still].fill(T::zero());
+            moved
         };
         let velocity = (0..2 * modes.len()).map(velocity).collect();
         self.space_of(solutions, velocity)
     }
 
     fn space_of(&self, solutions: Solutions<T>, velocity: Vec<LinearFunction<T>>) -> Space<T> {
-        let Self { problem, scale, modes, generators } = self;
+        let Self { problem, scale, modes, generators, .. } = self;
         let by_speed = T::one() / T::from_f64(scale.speed);
         let mut inequalities = Vec::new();
         for (contact, (&mode, law)) in modes.iter().zip(problem.laws()).enumerate() {
@@ -255,9 +322,11 @@ impl<'a, T: Ordered> Equations<'a, T> {
 
     fn rejected(&self, space: &Space<T>, y: &[T]) -> Rejection {
         let values = space.inequalities.iter().map(|inequality| (inequality, inequality.function.at(y).to_f64()));
-        // The linear program makes several equally bad; of one contact's the cone is named.
+        let least = values.clone().map(|(_, value)| value).fold(f64::INFINITY, f64::min);
+        // The linear program makes several equally bad, up to rounding; of the first contact's the cone is named.
         let order = |own: &Constraint<T>| (own.contact, own.inequality != Inequality::FrictionCone);
-        let worst = values.min_by(|a, b| a.1.total_cmp(&b.1).then_with(|| order(a.0).cmp(&order(b.0))));
+        let equals = values.filter(|(_, value)| *value <= least + EQUALLY_BAD * least.abs());
+        let worst = equals.min_by_key(|(own, _)| order(own));
         let because = worst.map_or(RejectionReason::NoSolution, |(worst, _)| RejectionReason::Violated {
             contact: worst.contact,
             inequality: worst.inequality,
@@ -265,7 +334,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
         let impulse = self.generators.impulse(&space.solutions.at(y));
         let velocity: Vec<T> = space.velocity.iter().map(|row| row.at(y)).collect();
         let motion = Motion::nearest(self.problem, self.modes, impulse.as_chunks().0, velocity.as_chunks().0);
-        Rejection { margin: worst.map(|(_, value)| value), motion: Some(motion), ..Rejection::of(self.modes, because) }
+        Rejection { margin: worst.map(|_| least), motion: Some(motion), ..Rejection::of(self.modes, because) }
     }
 
     /// Whether the only velocity of `space` is that without impulses.
@@ -280,7 +349,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
 
     /// The only velocity of `space`, with its impulses; at `inside` the smallest inequality is `least`, not negative.
     fn outcome(&self, space: &Space<T>, inside: &[T], least: T) -> Result<SingularOutcome, Unsettled> {
-        let Self { problem, scale, modes, generators } = self;
+        let Self { problem, scale, modes, generators, .. } = self;
         let Space { solutions, velocity, inequalities } = space;
         // Velocities are settled; only impulses still depend on y.
         let pressing: Vec<&Constraint<T>> = inequalities.iter().filter(|own| !own.inequality.is_strict()).collect();
@@ -304,6 +373,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
             coefficients: directions.iter().map(|direction| direction[row]).collect(),
         };
         let entries: Vec<LinearFunction<T>> = from.iter().enumerate().map(entry).collect();
+        let program = Program::of(&shifted, directions.len());
         let mut ranges = Vec::new();
         let mut unique = true;
         for entry in &entries {
@@ -313,7 +383,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
             }
             let mut bound = |sign: T| -> Result<Option<T>, Unsettled> {
                 let toward: Vec<T> = entry.coefficients.iter().map(|&each| sign * each).collect();
-                let Some(best) = maximize(&shifted, &toward)? else {
+                let Some(best) = program.maximize(&toward)? else {
                     unique = false;
                     return Ok(None);
                 };
@@ -336,13 +406,13 @@ impl<'a, T: Ordered> Equations<'a, T> {
         let margin = (!inequalities.is_empty() && bounded).then_some(least);
         let velocity: Vec<T> = velocity.iter().map(|row| row.constant).collect();
         let mut numbers = Numbers::of((problem, scale), modes, impulse.as_chunks().0, velocity.as_chunks().0);
-        numbers.are_sharp &= margin.is_none_or(|margin| is_known(margin, 1.0));
+        numbers.are_sharp &= margin.is_none_or(|margin| is_known(margin, 1.0, scale.digits()));
         if !unique {
             let needed = friction_needed(modes, problem.laws(), entries.as_chunks().0, &shifted)?;
-            numbers.take_friction(&needed, problem.laws());
+            numbers.take_friction(&needed, problem.laws(), scale.digits());
         }
         let range = |(&ends, &own): (&[Option<T>; 2], &T)| {
-            numbers.are_sharp &= is_known_range(ends, own);
+            numbers.are_sharp &= is_known_range(ends, own, scale.digits());
             ends.map(|end| end.map(T::to_f64))
         };
         let ranges: Option<Vec<Range>> = (!unique).then(|| ranges.iter().zip(&impulse).map(range).collect());

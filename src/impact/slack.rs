@@ -3,7 +3,8 @@
 use super::enumerate::Leaf;
 use super::problem::{ContactProblem, Errors};
 use crate::law::{Condition, Inequality, Law, Mode};
-use crate::scalar::{Real, Rounded};
+use crate::planar::Pair;
+use crate::scalar::{Ball, Ordered, Real, Rounded};
 
 /// One inequality of a combination and its value.
 #[derive(Debug, Clone, Copy)]
@@ -97,6 +98,13 @@ impl Scale {
         self.likely_part = likely / (errors.delassus + self.noise + ROUNDINGS);
     }
 
+    /// The magnitudes of a problem in numbers that know their errors.
+    pub fn of<T: Ordered>(problem: &ContactProblem<T>) -> Self {
+        let mut scale = Self::default();
+        scale.measure(&problem.map(T::to_f64), Errors::NONE);
+        scale
+    }
+
     /// The entries of G, by row and column, with what they may be off by.
     pub fn delassus(&self, problem: &ContactProblem, errors: Errors<'_>) -> impl Fn(usize, usize) -> Rounded {
         let relative = if self.is_far_from_underflow() { errors.delassus } else { f64::INFINITY };
@@ -121,6 +129,34 @@ impl Scale {
             };
             Rounded { value, error: if errors.delassus.is_finite() { error } else { f64::INFINITY } }
         }
+    }
+
+    /// The problem as balls around its f64 numbers, with each row that contacts are known to share taken once.
+    pub fn enclosed(
+        &self,
+        problem: &ContactProblem,
+        errors: Errors<'_>,
+        shared: Vec<Option<usize>>,
+    ) -> ContactProblem<Ball> {
+        let contacts = problem.contacts();
+        let entry = self.delassus(problem, errors);
+        let own = |row: usize| shared[row / 2].filter(|_| row.is_multiple_of(2)).map_or(row, |with| 2 * with);
+        let ball = |mid: f64, radius: f64| Ball { mid, radius };
+        let columns = |row: usize| (0..2 * contacts).map(move |column| [row, column]);
+        let delassus = (0..2 * contacts).flat_map(columns).map(|at| {
+            let Rounded { value, error } = entry(own(at[0]), own(at[1]));
+            ball(value, error)
+        });
+        let velocity = |list: &[Pair<f64>]| -> Vec<Pair<Ball>> {
+            let entry = |row: usize| {
+                let (contact, axis) = (row / 2, row % 2);
+                ball(list[contact][axis], errors.velocity.map_or(0.0, |errors| errors[contact][axis]))
+            };
+            (0..contacts).map(|contact| [2 * contact, 2 * contact + 1].map(|row| entry(own(row)))).collect()
+        };
+        let (before, free) = (velocity(problem.velocity_before()), velocity(problem.velocity_free()));
+        let (laws, restitution) = (problem.laws().to_vec(), problem.restitution().to_vec());
+        ContactProblem::of_parts(delassus.collect(), before, free, laws, restitution).sharing(shared)
     }
 
     /// Whether products of the problem's magnitudes stay so far from underflow that all rounding is relative.

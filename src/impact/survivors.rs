@@ -41,13 +41,14 @@ impl<'a> Search<'a> {
     /// All combinations of a problem, `without_slip` those in which nothing slides; those of the `rejections` that are
     /// listed by name survive.
     pub fn of<S: Source>(
-        (problem, source): (&'a ContactProblem, &S),
+        (problem, source, shared): (&'a ContactProblem, &S, &[Option<usize>]),
         scale: &Scale,
         relaxation: &'a mut Relaxation,
         without_slip: bool,
         rejections: ListedRejections<'a>,
     ) -> Self {
         relaxation.load(problem, scale, source.errors());
+        relaxation.learn_from(&Kernel::of_shared(shared.iter().copied()));
         let (modes, survivors, open, kernel) = (Vec::new(), Vec::new(), Vec::new(), None);
         let (laws, effort) = (problem.laws(), Effort::default());
         let listed = if let ListedRejections::Only(listed) = rejections { listed } else { &[] };

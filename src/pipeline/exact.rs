@@ -91,7 +91,7 @@ impl ExactState<'_> {
         assembly.points.clear();
         assembly.points.extend(self.contacts.iter().map(|contact| self.point(contact)));
         for (index, level) in self.levels.iter().enumerate() {
-            let &Some(Level { with, along }) = level else { continue };
+            let &Some(Level { with, along: Some(along) }) = level else { continue };
             let (other, own) = (assembly.points[with], &mut assembly.points[index]);
             let [tangent, normal] = own.axes();
             let arm = tangent * T::from_f64(along) + normal * (own.radius - other.radius);
@@ -232,5 +232,11 @@ impl Source for ExactState<'_> {
 
     fn contact_name(&self, contact: usize) -> String {
         self.contacts[contact].name.to_string()
+    }
+
+    fn shared_tangent(&self, contact: usize) -> Option<usize> {
+        let &Level { with, .. } = self.levels.get(contact)?.as_ref()?;
+        // Accelerations differ by what the body's turn brings along.
+        (matches!(self.asked, Asked::Impact) && self.resting[contact] == self.resting[with]).then_some(with)
     }
 }

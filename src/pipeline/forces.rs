@@ -16,7 +16,7 @@ use super::resting::Standing;
 use super::springs::Driven;
 use super::{CONTACT_TOLERANCE, Impact, Pipeline, Prepared};
 use crate::budget::within;
-use crate::contact::{Contact, Surface, level};
+use crate::contact::{Contact, Surface};
 use crate::dynamics::plan::JointMotion;
 use crate::dynamics::{Closed, ContactPoint};
 use crate::error::{Error, Reason, Result, finite};
@@ -309,9 +309,7 @@ impl Pipeline<'_> {
                 merged.outer = merged.outer.iter().filter_map(|&at| place(at)).collect();
                 !merged.outer.is_empty()
             });
-            if state.scene.contacts.is_none() {
-                *levels = level(contacts, placement, *stance);
-            }
+            *levels = self.levels(state, contacts, placement, *stance);
             self.assembly.points = contacts.iter().map(Contact::point_of).collect();
             self.bound_velocities(contacts, levels, velocity, Standing { foot: foot.as_ref(), place: *stance });
             self.assembly.contact_jacobian(velocity, *stance);

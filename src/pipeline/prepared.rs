@@ -18,6 +18,7 @@ use crate::impact::problem::check_matrix_size;
 use crate::impact::{ContactProblem, Errors};
 use crate::planar::{Pair, Vector};
 use crate::robot::Robot;
+use crate::scalar::Residue;
 use crate::state::{NamedLoop, Scene, State, check_length};
 use std::mem::take;
 
@@ -170,8 +171,7 @@ impl Pipeline<'_> {
         self.assembly.points.extend(contacts.iter().map(Contact::point_of));
         self.assembly.contact_jacobian(velocity, stance);
         let standing = Standing { foot: foot.as_ref(), place: stance };
-        // Who names a point means it where it is.
-        let levels = if scene.contacts.is_none() { level(contacts, placement, stance) } else { Vec::new() };
+        let levels = self.levels(state, contacts, placement, stance);
         self.bound_velocities(contacts, &levels, velocity, standing);
         self.take_as_resting(state, velocity, contacts, standing, (resting, &mut notes));
         self.assembly.delassus();
@@ -455,6 +455,33 @@ impl Pipeline<'_> {
         });
     }
 
+    /// Which contacts are level with which: up to rounding, or if they are named exactly.
+    pub(super) fn levels(
+        &self,
+        state: &State,
+        contacts: &[Contact],
+        placement: &Placement,
+        stance: Option<usize>,
+    ) -> Vec<Option<Level>> {
+        let mut levels = level(contacts, placement, stance);
+        if state.scene.contacts.is_some() {
+            for (index, own) in levels.iter_mut().enumerate() {
+                let is_level = |own: &Level| self.is_exactly_level(state, &contacts[index], &contacts[own.with]);
+                *own = own.filter(is_level).map(|own| Level { along: None, ..own });
+            }
+        }
+        levels
+    }
+
+    /// Whether two points of one body have the same height above the ground in all digits of the pose.
+    fn is_exactly_level(&self, state: &State, a: &Contact, b: &Contact) -> bool {
+        let ground = |own: &Contact| state.scene.ground.axes(own.ground);
+        let [a, b] = [a, b].map(|own| own.exact_point::<Residue>(self.robot, ground(own)));
+        let turn = self.assembly.plan.rotation::<Residue>(a.body, &state.position);
+        let [_, normal] = a.axes();
+        (normal.dot(turn.apply(a.center - b.center)) - a.radius + b.radius).is_zero() == Some(true)
+    }
+
     /// Bounds the rounding of c; the foot of the stance rests.
     pub(super) fn bound_velocities(
         &mut self,
@@ -466,7 +493,8 @@ impl Pipeline<'_> {
         let Self { robot, assembly: Assembly { plan, configuration, .. }, bounds, .. } = self;
         let arms = contacts.iter().enumerate().map(|(index, contact)| {
             // The place of a level contact is added up from that of the other.
-            let other = levels.get(index).copied().flatten().map(|level| contacts[level.with].arm(robot).length);
+            let other = levels.get(index).copied().flatten().filter(|level| level.along.is_some());
+            let other = other.map(|level| contacts[level.with].arm(robot).length);
             let own = contact.arm(robot);
             Arm { length: own.length + other.unwrap_or(0.0), ..own }
         });

@@ -131,7 +131,7 @@ impl Attempt for Response<'_> {
             None => size(entry),
             Some(row) => size(rates + (row & !1)).max(size(rates + (row | 1))),
         };
-        if (0..entries).all(|entry| is_known(sum(entry), scale(entry))) {
+        if (0..entries).all(|entry| is_known(sum(entry), scale(entry), DIGITS)) {
             self.found = Some((0..entries).map(|entry| sum(entry).to_f64()).collect());
         }
         self.found.is_some()

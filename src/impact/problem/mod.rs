@@ -40,6 +40,8 @@ pub struct ContactProblem<T = f64> {
     approach: Vec<T>,
     laws: Vec<Law>,
     restitution: Vec<f64>,
+    /// What [`Source::shared_tangent`] says of each contact; empty if nothing is known.
+    shared: Vec<Option<usize>>,
     origin: Origin,
 }
 
@@ -106,6 +108,11 @@ impl<T: Real> ContactProblem<T> {
         if row % 2 == 1 && self.restitution[row / 2] != 0.0 { free + self.bounce(row / 2) } else { free }
     }
 
+    /// The contact whose tangential row this one has as well, if that is known.
+    pub(super) fn shared_tangent(&self, contact: usize) -> Option<usize> {
+        self.shared.get(contact).copied().flatten()
+    }
+
     /// The same problem in another number.
     pub fn map<U: Real>(&self, number: impl Fn(T) -> U) -> ContactProblem<U> {
         let vectors = |list: &[Pair<T>]| list.iter().map(|c| c.map(&number)).collect();
@@ -116,6 +123,7 @@ impl<T: Real> ContactProblem<T> {
             approach: self.approach.iter().map(|&entry| number(entry)).collect(),
             laws: self.laws.clone(),
             restitution: self.restitution.clone(),
+            shared: Vec::new(),
             origin: Origin::Given,
         }
     }
@@ -137,7 +145,13 @@ impl<T: Ordered> ContactProblem<T> {
             Sign::Undecided => T::one() / T::zero(),
         };
         let approach = velocity_before.iter().map(approach).collect();
-        Self { delassus, velocity_before, velocity_free, approach, laws, restitution, origin: Origin::Given }
+        let (shared, origin) = (Vec::new(), Origin::Given);
+        Self { delassus, velocity_before, velocity_free, approach, laws, restitution, shared, origin }
+    }
+
+    /// The same problem, in which it is known which contacts share their tangential rows.
+    pub(super) fn sharing(self, shared: Vec<Option<usize>>) -> Self {
+        Self { shared, ..self }
     }
 }
 
@@ -205,8 +219,8 @@ impl ContactProblem {
             }
         }
         let laws = friction.into_iter().map(Into::into).collect();
-        let (approach, origin) = (Vec::new(), Origin::Given);
-        Self { delassus, velocity_before, velocity_free, approach, laws, restitution, origin }.completed()
+        let (approach, shared, origin) = (Vec::new(), Vec::new(), Origin::Given);
+        Self { delassus, velocity_before, velocity_free, approach, laws, restitution, shared, origin }.completed()
     }
 
     /// As [`ContactProblem::checked`], in the memory of another problem, with the friction and restitution of each contact.

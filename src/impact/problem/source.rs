@@ -2,6 +2,7 @@
 //!
 //! ```text
 //!     f64 with an error bound --> plain balls --> balls --> balls around pairs of f64 --> intervals of 256, 1024, 4096 bits
+//!          (and balls around it)
 //! ```
 //!
 //! From the balls on, each number also has a residue that shows whether it is exactly zero (see
@@ -32,6 +33,12 @@ pub trait Source {
     /// What an outcome calls a contact.
     fn contact_name(&self, contact: usize) -> String {
         format!("contact/{contact}")
+    }
+
+    /// The contact, which has no such one itself, that moves along the ground exactly as this one does whatever happens:
+    /// both stand level on one body. Their rows of G are the same, and so are both c_t.
+    fn shared_tangent(&self, _contact: usize) -> Option<usize> {
+        None
     }
 }
 
@@ -68,6 +75,10 @@ impl<S: Source> Source for Remembered<'_, S> {
 
     fn contact_name(&self, contact: usize) -> String {
         self.source.contact_name(contact)
+    }
+
+    fn shared_tangent(&self, contact: usize) -> Option<usize> {
+        self.source.shared_tangent(contact)
     }
 }
 
@@ -122,6 +133,8 @@ pub trait PrecisionTask {
 /// A kind of numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Precision {
+    /// Balls around the numbers of f64 with their bounds, where contacts that share a row are known.
+    Enclosed,
     /// Balls that do not recognize an exact zero.
     Plain,
     Ball,
@@ -141,6 +154,7 @@ impl Precision {
     /// How many combinations were decided in these numbers.
     pub fn share(self, effort: &mut Effort) -> &mut u64 {
         match self {
+            Self::Enclosed => &mut effort.bound,
             Self::Plain | Self::Ball => &mut effort.ball,
             Self::DoubleDouble => &mut effort.double_double,
             Self::Interval => &mut effort.precise,

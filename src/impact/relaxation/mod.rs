@@ -26,6 +26,7 @@ pub use dictionary::Lack;
 use super::kernel::{Kernel, Relation};
 use super::linear::Unsettled;
 use super::problem::{ContactProblem, Errors};
+use super::rank::{REGULAR, is_definite};
 use super::slack::Scale;
 use crate::law::{Law, Mode};
 use crate::planar::Pair;
@@ -39,8 +40,6 @@ use std::cmp::Ordering;
 const NOGOODS: usize = 256;
 /// What is added to the diagonal of a G that may be singular.
 const DAMPING: f64 = 1e-9;
-/// The least eigenvalue of a scaled G that counts as regular.
-const REGULAR: f64 = 1e-6;
 
 /// The relaxation of one problem in f64, free of units; memory that is reused.
 #[derive(Debug, Clone, Default)]
@@ -169,9 +168,7 @@ impl Relaxation {
         let kappa = (0..self.rays.len()).map(lifts).fold(f64::INFINITY, f64::min) - w.lp_norm(1) * of_matrix;
         let by_lift = if kappa > 0.0 && !is_two_way { size(&w) / kappa } else { f64::INFINITY };
         let least = along.iter().filter(|entries| entries[1] != 0.0).map(|entries| entries[1]).fold(1.0, f64::min);
-        // A Cholesky factor exists only if rounding hides no negative eigenvalue (Rump 2006).
-        self.is_regular = (matrix - DMatrix::identity(rows, rows) * REGULAR).cholesky().is_some()
-            && rows as f64 * (of_matrix + rows as f64 * f64::EPSILON) < 0.5 * REGULAR;
+        self.is_regular = is_definite(matrix.clone(), of_matrix);
         let by_eigenvalue = if self.is_regular { (2.0 * rows as f64 / REGULAR).sqrt() / least } else { f64::INFINITY };
         let per_root = by_lift.min(by_eigenvalue);
         let rest = (&free - matrix * &z).amax() + of_free + z.lp_norm(1) * of_matrix;

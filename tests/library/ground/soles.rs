@@ -127,6 +127,27 @@ fn one_legged([torso, leg]: [f64; 2]) -> Robot {
     ]))
 }
 
+/// Points that are named are level if they are so in all digits; then balls around f64 are all that a foot needs.
+#[test]
+fn named_corners_of_a_level_sole_need_no_more_digits() {
+    let robot = one_legged([0.0; 2]);
+    let corners = [-0.075, 0.135].map(|x| json!({"link": "foot", "offset": [x, 0, -0.055], "radius": 0}));
+    let struck = |pitch: f64, tilt: f64| {
+        let state = json!({
+            "position": {"base": {"pitch": pitch}, "joints": {"hip": 0.25 - pitch, "ankle": tilt - 0.25}},
+            "velocity": {"base": {"x": 0.1, "z": -1.0, "pitch": 0.2}, "joints": {"hip": 0.3}},
+            "friction": 0.9, "contacts": corners,
+        });
+        impact(&robot, state).analysis.expect("an analysis")
+    };
+    for (pitch, tilt, is_level) in [(0.125, 0.0, true), (-0.5, 0.0, true), (0.125, 1e-9, false), (0.01, 0.0, false)] {
+        let analysis = struck(pitch, tilt);
+        assert!(analysis.proven && analysis.verdict == Verdict::Unique, "{pitch} {tilt}");
+        // 0.25 - 0.01 is rounded, so that the last pose is tilted by 1e-17 rad.
+        assert_eq!((analysis.effort.ball == 0, analysis.rank), (is_level, Some(3)), "{pitch} {tilt}");
+    }
+}
+
 /// A sole that the angles' rounding tilts by 1e-16 rad has no impulses of 1e16 N s: the answer is that of a sole that
 /// no rounding tilts.
 #[test]
