@@ -1,6 +1,6 @@
 //! One combination of modes, solved in numbers that know their own signs.
 
-use super::digits::{DIGITS, Numbers, after};
+use super::digits::{Numbers, after};
 use super::enumerate::Tableau;
 use super::linear::Unsettled;
 use super::outcome::{Motion, Rejection};
@@ -52,6 +52,7 @@ impl Solved {
 /// A problem in these numbers and its elimination.
 pub struct CombinationSolver<'e, T> {
     exact: &'e ContactProblem<T>,
+    /// That of these numbers, or of f64 with its errors if they are balls around it.
     scale: Scale,
     tableau: Tableau<T>,
 }
@@ -97,7 +98,7 @@ impl<'e, T: Ordered> CombinationSolver<'e, T> {
             let mut numbers = Numbers::of((exact, scale), modes, &impulse, &velocity);
             slacks(&leaf, modes, exact.laws(), |slack| {
                 let error = scale.scaled(&slack, slack.number.error());
-                numbers.are_sharp &= error <= DIGITS * reading.margin.unwrap_or(0.0).max(1.0);
+                numbers.are_sharp &= error <= scale.digits() * reading.margin.unwrap_or(0.0).max(1.0);
             });
             Ok(Solved::Regular { reading, index, numbers })
         })

@@ -57,7 +57,7 @@ impl<T: Ordered> Program<T> {
         for block in &self.blocks {
             let gain: Vec<T> = block.entries.iter().map(|&entry| objective[entry]).collect();
             if gain.iter().any(|own| own.sign() != Sign::Zero) {
-                let Some(best) = block.maximize(&gain)? else { return Ok(None) };
+                let Some(best) = maximize_block(&block.functions, &gain)? else { return Ok(None) };
                 block.put(&best, &mut y);
             }
         }
@@ -76,41 +76,6 @@ impl<T: Ordered> Block<T> {
         self.entries.iter().zip(own).for_each(|(&entry, &value)| y[entry] = value);
     }
 
-    /// As [`Program::maximize`], of this block alone.
-    fn maximize(&self, objective: &[T]) -> Result<Option<Vec<T>>, Unsettled> {
-        let (functions, free) = (&self.functions, objective.len());
-        if let &[gain] = objective {
-            // One entry goes on until the first function stops it.
-            let rising = match settled(gain)? {
-                Ordering::Equal => return Ok(Some(vec![T::zero()])),
-                sign => sign.is_gt(),
-            };
-            let rows = functions.iter().enumerate().map(|(label, own)| (label, own.coefficients[0], own.constant));
-            let stop = first_at_zero(rows, rising)?;
-            let way = |(_, [value, speed]): (usize, Pair<T>)| if rising { value / speed } else { -(value / speed) };
-            return Ok(stop.map(|stop| vec![way(stop)]));
-        }
-        let mut dictionary = Dictionary {
-            rows: functions.iter().map(|function| extended(&function.coefficients, function.constant)).collect(),
-            gain: objective.to_vec(),
-            // Labels below `free` are entries of y, which may take any sign; the others are the functions' own values.
-            basic: (free..free + functions.len()).collect(),
-            nonbasic: (0..free).collect(),
-            free,
-        };
-        while let Some((column, rising)) = dictionary.entering()? {
-            let Some(row) = dictionary.leaving(column, rising)? else { return Ok(None) };
-            dictionary.pivot(row, column);
-        }
-        let mut y = vec![T::zero(); free];
-        for (row, &label) in dictionary.rows.iter().zip(&dictionary.basic) {
-            if label < free {
-                y[label] = row[free];
-            }
-        }
-        Ok(Some(y))
-    }
-
     /// As [`widest`], of this block alone.
     fn widest(&self, cap: T) -> Result<(Vec<T>, T), Unsettled> {
         let least = least(&self.functions, cap)?;
@@ -118,12 +83,47 @@ impl<T: Ordered> Block<T> {
         let (one, still) = (T::one(), vec![T::zero(); self.entries.len()]);
         let shifted = self.functions.iter().map(|function| function.extended(function.constant - least, -one));
         let top = LinearFunction { constant: cap - least, coefficients: extended(&still, -one) };
-        let program = Self { entries: Vec::new(), functions: shifted.chain([top]).collect() };
+        let program: Vec<LinearFunction<T>> = shifted.chain([top]).collect();
         // The cap bounds the program.
-        let mut y = program.maximize(&extended(&still, one))?.ok_or(Unsettled)?;
+        let mut y = maximize_block(&program, &extended(&still, one))?.ok_or(Unsettled)?;
         let rise = y.pop().ok_or(Unsettled)?;
         Ok((y, least + rise))
     }
+}
+
+/// As [`Program::maximize`], of one block.
+fn maximize_block<T: Ordered>(functions: &[LinearFunction<T>], objective: &[T]) -> Result<Option<Vec<T>>, Unsettled> {
+    let free = objective.len();
+    if let &[gain] = objective {
+        // One entry goes on until the first function stops it.
+        let rising = match settled(gain)? {
+            Ordering::Equal => return Ok(Some(vec![T::zero()])),
+            sign => sign.is_gt(),
+        };
+        let rows = functions.iter().enumerate().map(|(label, own)| (label, own.coefficients[0], own.constant));
+        let stop = first_at_zero(rows, rising)?;
+        let way = |(_, [value, speed]): (usize, Pair<T>)| if rising { value / speed } else { -(value / speed) };
+        return Ok(stop.map(|stop| vec![way(stop)]));
+    }
+    let mut dictionary = Dictionary {
+        rows: functions.iter().map(|function| extended(&function.coefficients, function.constant)).collect(),
+        gain: objective.to_vec(),
+        // Labels below `free` are entries of y, which may take any sign; the others are the functions' own values.
+        basic: (free..free + functions.len()).collect(),
+        nonbasic: (0..free).collect(),
+        free,
+    };
+    while let Some((column, rising)) = dictionary.entering()? {
+        let Some(row) = dictionary.leaving(column, rising)? else { return Ok(None) };
+        dictionary.pivot(row, column);
+    }
+    let mut y = vec![T::zero(); free];
+    for (row, &label) in dictionary.rows.iter().zip(&dictionary.basic) {
+        if label < free {
+            y[label] = row[free];
+        }
+    }
+    Ok(Some(y))
 }
 
 /// The least value of the functions at y = 0, at most `cap`.
@@ -268,6 +268,7 @@ pub fn widest<T: Ordered>(functions: &[LinearFunction<T>], dimension: usize, cap
 mod tests {
     use super::*;
     use crate::impact::linear::tests::{Number, affine, numbers};
+    use crate::scalar::{Ball, Real};
 
     #[test]
     fn a_degenerate_program_does_not_cycle() {
@@ -282,5 +283,35 @@ mod tests {
         let value = affine(0.0, &[0.75, -150.0, 0.02, -6.0]).at(&y).to_f64();
         // 0.04 and 0.02 are not exact, so neither is the corner.
         assert!((value - 0.05).abs() < 1e-15, "{value}");
+    }
+
+    #[test]
+    fn functions_without_a_common_entry_are_programs_of_their_own() {
+        // |y1| <= 1/3 or so, y2 >= 1/4 at least by 1/8: in plain balls neither sees the other.
+        let third = 1.0 / 3.0;
+        let affine = |constant: f64, coefficients: [f64; 3]| LinearFunction {
+            constant: Ball::from_f64(constant),
+            coefficients: coefficients.map(Ball::<f64>::from_f64).to_vec(),
+        };
+        let functions = [
+            affine(third, [1.0, 0.0, 0.0]),
+            affine(third, [-1.0, 0.0, 0.0]),
+            affine(0.125, [0.0, 1.0, 0.0]),
+            affine(0.75, [0.0, -0.5, 0.0]),
+            affine(0.3, [0.0; 3]),
+        ];
+        let numbers = |y: Vec<Ball>| y.into_iter().map(Ordered::to_f64).collect::<Vec<_>>();
+        let cap = Ball::from_f64(1e3);
+        let (y, least) = widest(&functions, 3, cap).unwrap();
+        let off =
+            numbers(y).iter().zip([0.0, 1.25 / 3.0, 0.0]).map(|(own, expected)| (own - expected).abs()).sum::<f64>();
+        assert!(off < 1e-15 && least.to_f64() == 0.3, "{off} {least:?}");
+        let negative = [&functions[..], &[affine(-0.5, [0.0; 3])]].concat();
+        assert_eq!(widest(&negative, 3, cap).unwrap().1.to_f64(), -0.5);
+        let objective = [1.0, -1.0, 0.0].map(Ball::from_f64);
+        assert_eq!(maximize(&functions, &objective).unwrap().map(numbers), Some(vec![third, -0.125, 0.0]));
+        // Nothing holds the last entry.
+        assert!(maximize(&functions, &[0.0, 0.0, 1.0].map(Ball::from_f64)).unwrap().is_none());
+        assert_eq!(maximize(&[], &[Ball::zero(); 2]).unwrap().map(numbers), Some(vec![0.0; 2]));
     }
 }

@@ -9,10 +9,12 @@
 //! and the impulse listed is its member of least norm. A velocity that the modes exclude only by depending on others (a
 //! flat foot whose heel sticks cannot slide at the toe) belongs to the list of modes that says so: its redundant twin.
 //! If even the velocity depends on y it is a family: a convex set of velocities, given by its dimension and its
-//! corners. Contacts that are known to share a tangential row have one equation for it, and directions that shift their
-//! tangential impulses from one to the other move nothing. A family's closure holds velocities of other modes, so that a corner may be another combination's outcome.
+//! corners. A family's closure holds velocities of other modes, so that a corner may be another combination's outcome.
 //! It is bounded: L.c+ <= sum of L_n e |c_n-|, so that L.G L = L.(c+ - c_free) grows no faster than L does. No
 //! tolerance decides: see [`super::linear`].
+//!
+//! Contacts that are known to share a tangential row have one equation for it, and directions that shift their
+//! tangential impulses from one to the other move nothing.
 
 use super::corners::corners;
 use super::digits::{Numbers, is_known, is_known_range};
@@ -282,9 +284,11 @@ impl<'a, T: Ordered> Equations<'a, T> {
     /// What depends on `solutions`, of which the first directions, so many as are `still`, move nothing.
     fn space(&self, solutions: Solutions<T>, still: usize) -> Space<T> {
         let Self { problem, modes, generators, .. } = self;
-        let zero: Vec<usize> = zero_rows(modes, problem.laws()).collect();
+        // A row that is shared with one that is held at zero is zero as well.
+        let own = |row: usize| problem.shared_tangent(row / 2).filter(|_| row % 2 == 0).map_or(row, |with| 2 * with);
+        let zero: Vec<usize> = zero_rows(modes, problem.laws()).map(own).collect();
         let velocity = |row: usize| {
-            if zero.contains(&row) {
+            if zero.contains(&own(row)) {
                 let coefficients = vec![T::zero(); solutions.directions.len()];
                 return LinearFunction { constant: T::zero(), coefficients };
             }

@@ -11,7 +11,7 @@ use super::exact::{Asked, ExactState};
 use super::resting::Standing;
 use super::{Aspect, CONTACT_TOLERANCE, Pipeline};
 use crate::contact::{Contact, Footing, Level, Merged, Placement, Surface, level};
-use crate::dynamics::plan::Plan;
+use crate::dynamics::plan::{Plan, PlanBody};
 use crate::dynamics::{Arm, Constraints, Workspace, has_balance, kinetic_energy, mass_diagonal};
 use crate::error::{Error, Reason, Result, along_normal, finite};
 use crate::impact::problem::check_matrix_size;
@@ -165,6 +165,9 @@ impl Pipeline<'_> {
         if scene.contacts.is_none() && !self.options.brief {
             self.note_near_miss(contacts, nearest, &mut notes);
         }
+        if !self.options.brief {
+            notes.extend(self.upside_down(contacts, placement));
+        }
         check_matrix_size(contacts.len())?;
         let stance = foot.as_ref().and_then(|foot| place_of(foot, contacts));
         self.assembly.points.clear();
@@ -247,6 +250,20 @@ impl Pipeline<'_> {
         notes.extend(given.filter(|(_, link)| !has_foot(*link)).map(|(what, link)| {
             format!("{what} is given to {}, which has no foot: it has no effect", self.robot.links[link].name)
         }));
+    }
+
+    /// That the robot's center of mass is below all contacts, as of a robot that is drawn head down.
+    fn upside_down(&self, contacts: &[Contact], placement: &Placement) -> Option<String> {
+        let bodies = self.assembly.plan.bodies.iter().enumerate();
+        let sum = bodies.fold((0.0, Vector::zero()), |(mass, moment), (body, PlanBody { inertia, .. })| {
+            let own = placement.world(body, Vector::zero()) * inertia.mass + placement.turned(body, inertia.first);
+            (mass + inertia.mass, moment + own)
+        });
+        let (mass, moment) = sum;
+        let center = moment * (1.0 / mass);
+        let above = |contact: &Contact| contact.normal().dot(contact.point - center);
+        let depth = contacts.iter().map(above).reduce(f64::min).filter(|&depth| depth > 0.0 && mass > 0.0)?;
+        Some(format!("the center of mass is {depth:.3} m below all contacts: is the pose upside down?"))
     }
 
     /// Compiles the plan, unless the last one was for the same braked joints and rotors.
@@ -479,7 +496,9 @@ impl Pipeline<'_> {
         let [a, b] = [a, b].map(|own| own.exact_point::<Residue>(self.robot, ground(own)));
         let turn = self.assembly.plan.rotation::<Residue>(a.body, &state.position);
         let [_, normal] = a.axes();
-        (normal.dot(turn.apply(a.center - b.center)) - a.radius + b.radius).is_zero() == Some(true)
+        // The normal of a profile is a unit vector only up to rounding.
+        let [a, b] = [a, b].map(|own| turn.apply(own.center) - normal * own.radius);
+        normal.dot(a - b).is_zero() == Some(true)
     }
 
     /// Bounds the rounding of c; the foot of the stance rests.

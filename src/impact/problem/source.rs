@@ -35,8 +35,8 @@ pub trait Source {
         format!("contact/{contact}")
     }
 
-    /// The contact, which has no such one itself, that moves along the ground exactly as this one does whatever happens:
-    /// both stand level on one body. Their rows of G are the same, and so are both c_t.
+    /// Another contact whose tangential row of G and c_t are exactly those of this one, as both stand level on one body;
+    /// that one has none itself.
     fn shared_tangent(&self, _contact: usize) -> Option<usize> {
         None
     }

@@ -148,6 +148,28 @@ fn named_corners_of_a_level_sole_need_no_more_digits() {
     }
 }
 
+/// The sides 3, 4 and 5 give a normal (-0.6, 0.8) whose length in f64 is not one, so that a circle's point is not level
+/// with a point of its body that 3, 4 and 5 themselves would make so.
+#[test]
+fn circles_on_a_profile_are_not_level_with_points() {
+    let robot = robot(&urdf::robot(&[
+        urdf::link("body", 2.0, [0.1, 0.3], 0.4, ""),
+        urdf::link("arm", 1.0, [0.1, 0.2], 0.1, ""),
+        urdf::joint("shoulder", urdf::HINGE, ["body", "arm"], [0.1, 0.6], ""),
+    ]));
+    let state = json!({
+        "position": {"base": {"z": 0.5}, "joints": {"shoulder": 0.3}},
+        "velocity": {"base": {"x": 0.3, "z": -1.0, "pitch": -3.0}, "joints": {"shoulder": 0.4}},
+        "friction": "infinite", "ground": {"profile": [[-4.0, -3.0], [0.0, 0.0], [4.0, 3.0]]},
+        "contacts": [{"link": "body", "offset": [0.0, 0.0, 0.0], "radius": 0.0},
+            {"link": "body", "offset": [0.0, 0.0, 0.25], "radius": 0.2}],
+    });
+    let analysis = impact(&robot, state).analysis.expect("an analysis");
+    assert!(analysis.proven && analysis.effort.bound < 16);
+    // Both stick, too, with impulses as great as the rest of that length is small.
+    assert_eq!(analysis.verdict, Verdict::Ambiguous);
+}
+
 /// A sole that the angles' rounding tilts by 1e-16 rad has no impulses of 1e16 N s: the answer is that of a sole that
 /// no rounding tilts.
 #[test]
