@@ -34,6 +34,9 @@ pub struct Summary {
     pub smallest_margins: Vec<Nearest>,
     /// States in which feet slide because friction is too small.
     pub more_friction: MoreFriction,
+    /// States in which some foot slides in every outcome whatever the friction is.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub slides_regardless: u64,
     /// States with contacts that were taken as exactly at rest, because they are slow (`resting_speed`).
     pub resting: u64,
     /// The modes of the contacts, in the order of their first appearance, at most 1,000 different lists.
@@ -128,6 +131,7 @@ impl Summary {
         if let Some(friction) = impact.friction_needed {
             self.more_friction.add(MoreFriction { states: 1, greatest: Some(Needed { state: state(), friction }) });
         }
+        self.slides_regardless += u64::from(impact.slides_regardless);
         for outcome in analysis.outcomes.iter().filter(|outcome| outcome.decided) {
             let names = impact.contacts.iter().map(|contact| &*contact.name);
             let known = |list: &&mut ModeCount| {
@@ -157,6 +161,7 @@ impl Summary {
             self.insert(near);
         }
         self.more_friction.add(following.more_friction);
+        self.slides_regardless += following.slides_regardless;
         self.resting += following.resting;
         for list in following.modes {
             let known = |known: &&mut ModeCount| known.modes == list.modes && known.contacts == list.contacts;
@@ -256,6 +261,9 @@ impl fmt::Display for Summary {
                 f,
                 "all outcomes slide because friction is too small: {states}; most is needed by {state}: {friction}"
             )?;
+        }
+        if self.slides_regardless > 0 {
+            writeln!(f, "some foot slides whatever the friction: {}", self.slides_regardless)?;
         }
         if self.resting > 0 {
             let states = self.resting;

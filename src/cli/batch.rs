@@ -138,7 +138,7 @@ pub(super) fn run(args: &Args) -> Completion {
     let mut output = args.begin(&question, (input_format, format), &head, origin)?;
     let ((answered, refused), begun) = (output.kept(), output.is_empty()?);
     let mut sink = OutputSink::new(output, &name, &progress);
-    sink.gait = Gait::new(args.mirror.forward());
+    sink.gait = Gait::new(args.mirror.forward(), args.recording.touchdowns);
     if begun {
         sink.write(&head)?;
     }
@@ -166,7 +166,7 @@ pub(super) fn run(args: &Args) -> Completion {
     args.report(&question, &counts, answered, thresholds)?;
     if args.plot.path().is_some() {
         let page = |rendered| Ok(gait.page(&robot.name, rendered));
-        args.plot.draw_or_page(&gait.picture(&robot.name), "the input holds no states", page)?;
+        args.plot.draw_or_page(&gait.picture(&robot.name), "no state was answered", page)?;
     }
     Ok(if counts.refused + refused == 0 { Answered::All } else { args.refused })
 }

@@ -25,6 +25,7 @@ const FLAGS: &[(&str, &str)] = &[
     ("drop", "--drop"),
     ("ground_height", "--ground-height"),
     ("foreign", "--foreign"),
+    ("touchdowns", "--touchdowns"),
     ("input_format", "--input-format"),
     ("format", "--format"),
     ("budget", "--budget"),

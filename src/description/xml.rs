@@ -100,13 +100,19 @@ fn refuse_many(text: &str) -> Result<()> {
     if let Some((offset, _)) = text.match_indices("xmlns").nth(MOST_NAMESPACES) {
         return refused("namespaces", MOST_NAMESPACES, offset + 1);
     }
+    // No more attributes than equals signs: only where these are many it matters which of them are attributes.
+    let equals = |text: &str| memchr::memchr_iter(b'=', text.as_bytes()).count();
+    let has_many = equals(text) > MOST_NODES as usize;
     let (mut offset, mut links, mut all_attributes, mut in_comment) = (0, 0, 0, false);
     for part in text.split('<') {
         let commented = in_comment || part.starts_with("!--");
         in_comment = commented && !part.contains("-->");
         links += usize::from(!commented && is_link(part));
         let is_attribute = |&at: &usize| part[at + 1..].trim_start().starts_with(['"', '\'']);
-        let attributes = memchr::memchr_iter(b'=', part.as_bytes()).filter(is_attribute).count();
+        let attributes = match equals(part) {
+            few if few <= MOST_ATTRIBUTES && !has_many => few,
+            _ => memchr::memchr_iter(b'=', part.as_bytes()).filter(is_attribute).count(),
+        };
         all_attributes += attributes;
         for (what, count, limit) in [
             ("links", links, MOST_LINKS),
@@ -124,8 +130,8 @@ fn refuse_many(text: &str) -> Result<()> {
 
 /// Whether the text after a `<` begins the element `link` of some namespace.
 fn is_link(part: &str) -> bool {
-    let name = part.find(|c: char| c.is_whitespace() || "/>".contains(c)).map_or(part, |end| &part[..end]);
-    name.rsplit(':').next() == Some("link")
+    let name = part.split(|c: char| c.is_whitespace() || matches!(c, '/' | '>')).next();
+    name.is_some_and(|name| name.rsplit(':').next() == Some("link"))
 }
 
 fn refuse_deep_nesting(document: &Document<'_>) -> Result<()> {

@@ -127,6 +127,9 @@ pub struct Impact {
     /// |L_t| / L_n of the contacts that stick, infinite if one sticks without a normal impulse; of several outcomes
     /// without a sliding contact that of the one that needs least. `None` if infinite friction gives none.
     pub friction_needed: Option<f64>,
+    /// Whether some contact slides in every outcome however great friction is: [`Impact::friction_needed`] was asked for,
+    /// and there is none.
+    pub slides_regardless: bool,
     /// What it has of forces in place of an impact.
     pub sustained: Option<Sustained>,
     /// Whether the outcomes are the same on the box of the state's uncertainty; `None` if it has none.
@@ -333,12 +336,13 @@ impl<'r> Pipeline<'r> {
             let is_decided = matches!(analysis.verdict, Verdict::Unique | Verdict::Ambiguous);
             is_decided && analysis.no_slip_consistent == Some(false)
         };
-        let mut friction_needed = None;
+        let (mut friction_needed, mut slides_regardless) = (None, false);
         if self.options.friction_needed && analysis.as_ref().is_some_and(slides) {
             let rough = problem.under(Law::Unbounded);
             let source = ExactState { laws: rough.laws(), ..source };
             let asked = AnalysisOptions { rejections: ListedRejections::Nothing, ..asked };
             friction_needed = self.scratch.friction_without_slip(&rough, &source, asked);
+            slides_regardless = friction_needed.is_none() && !is_spent();
         }
         if let Some(analysis) = analysis.as_mut().filter(|_| !brief || next) {
             let unstruck = Unstruck { before: velocity, applied, free, errors: &[], closed: Closed::Change };
@@ -354,6 +358,7 @@ impl<'r> Pipeline<'r> {
         let foot = prepared.foot.take();
         let mut impact = self.unanswered(prepared);
         (impact.analysis, impact.friction_needed) = (analysis, friction_needed);
+        impact.slides_regardless = slides_regardless;
         (impact.left_out, impact.matrices) = (left_out, matrices);
         Ok(Answer { impact, foot, rows: self.assembly.rows.clone() })
     }
@@ -373,6 +378,7 @@ impl<'r> Pipeline<'r> {
             stance,
             analysis,
             friction_needed,
+            slides_regardless,
             sustained,
             holds,
             matrices,
@@ -386,6 +392,7 @@ impl<'r> Pipeline<'r> {
         *notes = take(&mut prepared.notes);
         (*nearest, *kinetic_energy, *stance) = (prepared.nearest, prepared.kinetic_energy, prepared.stance);
         (*analysis, *friction_needed, *sustained, *holds, *matrices) = (None, None, None, None, None);
+        *slides_regardless = false;
         left_out.clear();
         problem.velocity_before().clone_into(velocity_before);
         self.spare = Some(prepared);

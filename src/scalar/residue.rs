@@ -241,6 +241,9 @@ impl Trigonometry for Residue {
         if !angle.is_finite() {
             return [Self::UNDEFINED; 2];
         }
+        if angle == 0.0 {
+            return [Self::one(), Self::ZERO];
+        }
         let first = FirstField::point(FirstOrder::of(angle, &FIRST_TABLES, 1), &FIRST_TABLES);
         let second = SecondField::point(SecondOrder::of(angle, &SECOND_TABLES, 1), &SECOND_TABLES);
         [0, 1].map(|at| Self([first[at], second[at]]))

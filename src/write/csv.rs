@@ -534,5 +534,5 @@ pub(super) fn notes(notes: &[String]) -> String {
 
 /// A note without the speeds of a resting contact: in a walk every row has such a contact.
 fn short(note: &str) -> &str {
-    note.find(AT_REST).map_or(note, |end| &note[..end + AT_REST.len()])
+    memchr::memmem::find(note.as_bytes(), AT_REST.as_bytes()).map_or(note, |end| &note[..end + AT_REST.len()])
 }

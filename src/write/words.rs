@@ -155,8 +155,8 @@ impl Wording {
             Verdict::None if self.drawn.given == FORCES.drawn.given => NO_FORCES,
             // Regular contacts always have an outcome.
             Verdict::None => {
-                "No outcome is consistent: no impulse brings every contact to what is asked of it, since they depend on \
-                 each other, or nothing that may move moves them."
+                "No outcome is consistent: contacts that depend on each other are asked for rebounds, or are held to the \
+                 ground, as no impulses can do together; lower `restitution`, or name fewer `contacts`."
             }
             Verdict::Undecided => "Undecided: some sign was settled by no precision; what it leaves open is listed.",
             Verdict::NoImpact => "No impact: the only outcome needs no impulse from the ground.",

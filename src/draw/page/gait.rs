@@ -14,6 +14,8 @@ use crate::{Mode, Verdict};
 #[derive(Debug, Clone, Default)]
 pub struct Gait {
     forward: Forward,
+    /// Whether the states are single moments, and nothing is known of the time between them.
+    apart: bool,
     states: Vec<ListedKeyframe>,
     halvings: u32,
     count: usize,
@@ -26,9 +28,9 @@ struct GaitRun<'g> {
 }
 
 impl Gait {
-    /// Without states.
-    pub fn new(forward: Forward) -> Self {
-        Self { forward, ..Self::default() }
+    /// Without states; whether those that come are single moments, `apart` from each other.
+    pub fn new(forward: Forward, apart: bool) -> Self {
+        Self { forward, apart, ..Self::default() }
     }
 
     pub fn push(&mut self, mut state: ListedKeyframe) {
@@ -76,6 +78,9 @@ impl Gait {
         let crowd = self.impacts().filter_map(contacts).max().unwrap_or(0);
         let beside = BESIDE.min(0.8 * WIDTH / (crowd * self.impacts().count()) as f64);
         let size = plot::MARK.min(0.5 * beside).max(2.0);
+        // The band of a single moment is as wide as its marks.
+        let apart = 0.5 * (crowd + 1) as f64 * beside * (range.1 - range.0) / WIDTH;
+        let reach = if self.apart { apart } else { f64::INFINITY };
         let (feet, marks) = self.marks(&order, beside * (range.1 - range.0) / WIDTH);
         let values: [(&str, MarkValue); 2] =
             [("margin", |mark| mark.margin), ("friction needed", |mark| mark.friction)];
@@ -89,7 +94,7 @@ impl Gait {
         let given = words::Wording::of(aspect).drawn.given.0;
         let last = panels.len() - 1;
         for (at, panel) in panels.iter_mut().enumerate() {
-            (panel.bands, panel.x.bare) = (bands(&runs, &order), at < last);
+            (panel.bands, panel.x.bare) = (bands(&runs, &order, reach), at < last);
         }
         if crowd > 1 {
             panels[0].title =
@@ -169,31 +174,26 @@ impl Gait {
 }
 
 /// More bands are not distinguishable.
-const BANDS: usize = 400;
+const BANDS: usize = 160;
 
-/// A band for all neighboring runs of one kind; no bands if they are not distinguishable.
-fn bands(runs: &[GaitRun], order: &[f64]) -> Vec<Band> {
+/// A band for all neighboring states of one kind, no farther from each than half way to the next one and than `reach`;
+/// no bands if they are not distinguishable.
+fn bands(runs: &[GaitRun], order: &[f64], reach: f64) -> Vec<Band> {
     let mut bands: Vec<Band> = Vec::new();
     let mut last = None;
-    for run in runs {
-        let (from, to, look) = (run.at[0], run.at[run.at.len() - 1], run.look());
+    let looks = runs.iter().flat_map(|run| std::iter::repeat_n(run.look(), run.at.len()));
+    for (number, (look, &at)) in looks.zip(order).enumerate() {
+        let half = |other: Option<&f64>| other.map(|other| 0.5 * (other - at).abs());
+        let [before, after] =
+            [number.checked_sub(1).and_then(|before| order.get(before)), order.get(number + 1)].map(half);
+        // The first and the last state lie in the middle of their parts, too.
+        let side = |own: Option<f64>, other: Option<f64>| own.or(other).unwrap_or(0.0).min(reach);
+        let (from, to) = (at - side(before, after), at + side(after, before));
         match bands.last_mut() {
-            Some(band) if last == Some(look.answer) => band.to = to,
-            before => {
-                // Neighbors meet half way.
-                let from = before.map_or(from, |band| {
-                    band.to = 0.5 * (band.to + from);
-                    band.to
-                });
-                bands.push(Band { from, to, letter: String::new(), fill: look.fill });
-            }
+            Some(band) if last == Some(look.answer) && before.is_some_and(|half| half <= reach) => band.to = to,
+            _ => bands.push(Band { from, to, letter: String::new(), fill: look.fill }),
         }
         last = Some(look.answer);
-    }
-    // The first and the last state lie in the middle of their parts, too.
-    if let ([from, second, ..], [.., before, to]) = (order, order) {
-        bands.first_mut().into_iter().for_each(|band| band.from -= 0.5 * (second - from));
-        bands.last_mut().into_iter().for_each(|band| band.to += 0.5 * (to - before));
     }
     if bands.len() > BANDS { Vec::new() } else { bands }
 }

@@ -98,8 +98,9 @@ impl<'w> Writer<'w> {
             for (at, outcome) in outcomes.iter().enumerate().filter(|(_, outcome)| !outcome.modes.is_empty()) {
                 let border = if outcome.border.is_some() { ", on a border" } else { "" };
                 let family = if outcome.family { ", a corner of a family" } else { "" };
+                let open = if outcome.decided { "" } else { ", not excluded" };
                 let words = self.in_words(&outcome.modes);
-                writeln!(self.out, "  {}  {words}{border}{family}{}", at + 1, graded(outcome))?;
+                writeln!(self.out, "  {}  {words}{open}{border}{family}{}", at + 1, graded(outcome))?;
                 self.next(outcome)?;
             }
             self.families()?;

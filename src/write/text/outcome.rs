@@ -19,6 +19,9 @@ impl Writer<'_> {
         let words = self.in_words(&outcome.modes);
         let open = if outcome.decided { "" } else { ", not excluded" };
         writeln!(self.out, "\n{strong}{count}  {words}{open}{plain}{}", graded(outcome))?;
+        if !outcome.decided {
+            return writeln!(self.out, "  what it would be is not known");
+        }
 
         let (impulses, speeds) = (scale(outcome.impulse.iter().copied().flatten()), self.speeds());
         let mut table = Table::default()

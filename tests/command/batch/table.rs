@@ -72,6 +72,11 @@ fn options_that_need_a_table_are_refused_without_one() {
     batch(&["-", "--output-format", "csv", "--matrices"], strike(1, 0.0)).refusal(2);
     for (options, table, words) in [
         (&["--touchdowns"][..], "q_base_z,v_base_z\n0.5,-1\n", "error: <stdin>:1:1: a column \"time\" is missing"),
+        (
+            &["--touchdowns"],
+            "time,v_base_z\n0,-1\n",
+            "error: <stdin>:1:1: the base's motion, such as q_base_z, is missing",
+        ),
         (&["--friction", "1"], "id,q_base_z,v_base_z\r1,0.5,-1\r", "a line break that is not one of this table"),
     ] {
         let stderr = batch(&[&["-", "--input-format", "csv"], options].concat(), table).refusal(1);
