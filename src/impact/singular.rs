@@ -285,7 +285,8 @@ impl<'a, T: Ordered> Equations<'a, T> {
     fn space(&self, solutions: Solutions<T>, still: usize) -> Space<T> {
         let Self { problem, modes, generators, .. } = self;
         // A row that is shared with one that is held at zero is zero as well.
-        let own = |row: usize| problem.shared_tangent(row / 2).filter(|_| row % 2 == 0).map_or(row, |with| 2 * with);
+        let own =
+            |row: usize| problem.shared_tangent(row / 2).filter(|_| row.is_multiple_of(2)).map_or(row, |with| 2 * with);
         let zero: Vec<usize> = zero_rows(modes, problem.laws()).map(own).collect();
         let velocity = |row: usize| {
             if zero.contains(&own(row)) {
