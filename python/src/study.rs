@@ -129,7 +129,7 @@ fn found(
 ) -> heelstrike::Result<(Vec<u8>, Vec<String>)> {
     let (robot, feet) = (&model.robot, &model.options.feet[..]);
     let header = states.header(robot, recording.rates(), &[], true).map_err(|refused| refused.error)?;
-    let header = header.ok_or_else(|| Error::new(Reason::Missing("a header".into())))?;
+    let header = header.ok_or_else(|| Error::new(Reason::Missing("a header".into())))?.with_base()?;
     let question = Question {
         robot,
         options: model.options.clone(),

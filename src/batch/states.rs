@@ -49,7 +49,7 @@ impl States {
     /// not flat and for text without a line.
     ///
     /// # Errors
-    /// As [`Header::read`] and [`Header::in_order`], of text with the line.
+    /// As [`Header::read`] and [`Header::with_time`], of text with the line.
     pub fn header(
         &mut self,
         robot: &Robot,
@@ -58,12 +58,12 @@ impl States {
         in_order: bool,
     ) -> std::result::Result<Option<Header>, RefusedRecord> {
         let refused = |error| RefusedRecord { error, excerpt: None };
-        let ordered = |header: Header| if in_order { header.in_order() } else { Ok(header) };
+        let with_time = |header: Header| if in_order { header.with_time() } else { Ok(header) };
         let (chunks, form) = match self {
             Self::Text(chunks, form) => (chunks, *form),
             #[cfg(feature = "columnar")]
             Self::Columns(parts) => {
-                return parts.header(robot, rates, foreign).and_then(ordered).map(Some).map_err(refused);
+                return parts.header(robot, rates, foreign).and_then(with_time).map(Some).map_err(refused);
             }
         };
         let first = if form == Form::Ndjson {
@@ -80,7 +80,7 @@ impl States {
             RefusedRecord { error: error.on(place.line, place.column), excerpt }
         })?;
         chunks.expect_columns(header.count());
-        ordered(header).map(Some).map_err(|error| refused(error.on(line, 1)))
+        with_time(header).map(Some).map_err(|error| refused(error.on(line, 1)))
     }
 
     /// The rows with their times.

@@ -375,6 +375,10 @@ impl Args {
             let error = Error::new(Reason::Inconsistent(format!("{what} a table")));
             return Err(Failure::Usage(error.hint("give CSV with a header, or say --input-format csv")));
         }
-        Ok(header)
+        if !self.recording.touchdowns {
+            return Ok(header);
+        }
+        let header = header.map(Header::with_base).transpose();
+        Ok(header.map_err(|error| error.in_file(input::name(&self.states)))?)
     }
 }

@@ -205,12 +205,14 @@ impl Header {
         self.time.is_some()
     }
 
-    /// The same, refused if there is no column `time`, or none of where a base that floats is; without a line.
-    pub fn in_order(self) -> Result<Self> {
-        if !self.has_time() {
-            let missing = Error::new(Reason::Missing("a column \"time\"".into()));
-            return Err(missing.hint("touchdowns need the time of each row"));
-        }
+    /// The same, refused if there is no column `time`; without a line.
+    pub fn with_time(self) -> Result<Self> {
+        let missing = || Error::new(Reason::Missing("a column \"time\"".into()));
+        if self.has_time() { Ok(self) } else { Err(missing().hint("touchdowns need the time of each row")) }
+    }
+
+    /// The same, refused if the base floats and no column says where it is, as touchdowns need; without a line.
+    pub fn with_base(self) -> Result<Self> {
         if ["q_base_x", "q_base_z", "q_base_pitch"].iter().all(|base| self.missing.iter().any(|name| name == base)) {
             let missing = Error::new(Reason::Missing("the base's motion, such as q_base_z,".into()));
             return Err(missing.hint(

@@ -72,16 +72,23 @@ fn options_that_need_a_table_are_refused_without_one() {
     batch(&["-", "--output-format", "csv", "--matrices"], strike(1, 0.0)).refusal(2);
     for (options, table, words) in [
         (&["--touchdowns"][..], "q_base_z,v_base_z\n0.5,-1\n", "error: <stdin>:1:1: a column \"time\" is missing"),
-        (
-            &["--touchdowns"],
-            "time,v_base_z\n0,-1\n",
-            "error: <stdin>:1:1: the base's motion, such as q_base_z, is missing",
-        ),
+        (&["--touchdowns"], "time,v_base_z\n0,-1\n", "error: <stdin>: the base's motion, such as q_base_z, is missing"),
         (&["--friction", "1"], "id,q_base_z,v_base_z\r1,0.5,-1\r", "a line break that is not one of this table"),
     ] {
         let stderr = batch(&[&["-", "--input-format", "csv"], options].concat(), table).refusal(1);
         assert!(stderr.contains(words), "{stderr}");
     }
+}
+
+#[test]
+fn joints_alone_are_answered_where_a_foot_is_placed() {
+    let table = "time,q_left_hip,q_right_hip\n0,0.2,-0.2\n0.1,0.3,-0.3\n0.2,0.4,-0.4\n";
+    let options = ["batch", RAMONE, "-", "--input-format", "csv", "--velocity", "central", "--friction", "1"];
+    let placed = heelstrike_reads(&[&options[..], &["--place", "lowest"]].concat(), table).well();
+    assert!(placed.lines().iter().all(|line| line["contacts"][0]["name"].is_string()), "{}", placed.stdout);
+    // Touchdowns have no heights then.
+    let refused = heelstrike_reads(&[&options[..], &["--touchdowns"]].concat(), table).refusal(1);
+    assert!(refused.contains("--place lowest or a column stance, without --touchdowns"), "{refused}");
 }
 
 #[test]
