@@ -15,6 +15,13 @@ fn ten_nearly_singular_contacts_end_with_little_text() {
     assert!(run.stdout.len() < 40_000, "{} bytes", run.stdout.len());
     let sentence = "Undecided: the budget of work ended (--budget), and ";
     assert!(run.stdout.contains(sentence) && run.stdout.contains(" of 1048576 combinations of modes are open"));
+    // What is not known has no numbers, and nothing is said to fail.
+    let whole = ends(&["solve", "-", "--budget", "0.2"], &problem).well().stdout;
+    assert!(
+        whole.contains(", not excluded\n  what it would be is not known\n")
+            && !whole.contains("combinations of modes fail")
+    );
+    assert!(run.stdout.contains(", not excluded\n"));
     let brief = ends(&["solve", "-", "--brief", "--format", "json", "--budget", "0.2"], &problem).well().line();
     assert_eq!((&brief["verdict"], &brief["proven"]), (&json!("undecided"), &json!(false)));
     assert_eq!((&brief["open"]["combinations"], &brief["open"]["beyond_budget"]), (&json!(1_048_576), &json!(true)));
