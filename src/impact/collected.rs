@@ -69,21 +69,15 @@ pub struct Pending {
     pub modes: Vec<Mode>,
 }
 
-/// An outcome and the combination that led to it.
-#[derive(Debug, Clone)]
-struct Numbered {
-    number: u64,
-    outcome: Outcome,
-}
-
 /// The memory of so many outcomes is kept; few states have more.
 const RECYCLED: usize = 16;
 
 /// Memory of outcomes, which is reused.
 #[derive(Debug, Clone, Default)]
 pub struct OutcomeMemory {
-    numbered: Vec<Numbered>,
     outcomes: Vec<Outcome>,
+    /// The number of the combination that led to each.
+    numbers: Vec<u64>,
     lists: Vec<OutcomeLists>,
     at_zero: Vec<(usize, Inequality)>,
 }
@@ -165,7 +159,8 @@ impl<'a> Collected<'a> {
         name: &'a dyn Fn(usize) -> String,
         memory: &'a mut OutcomeMemory,
     ) -> Self {
-        memory.numbered.clear();
+        memory.outcomes.clear();
+        memory.numbers.clear();
         Self {
             problem,
             scale,
@@ -228,7 +223,8 @@ impl<'a> Collected<'a> {
     }
 
     fn push(&mut self, number: u64, outcome: Outcome) {
-        self.memory.numbered.push(Numbered { number, outcome });
+        self.memory.numbers.push(number);
+        self.memory.outcomes.push(outcome);
     }
 
     /// Counts a combination that no precision decided, and lists one of the first with zeros for the impulses that are
@@ -257,7 +253,7 @@ impl<'a> Collected<'a> {
 
     /// The place of the decided outcome with these modes.
     pub fn place_of(&self, modes: &[Mode]) -> Option<usize> {
-        self.memory.numbered.iter().position(|own| own.outcome.decided && own.outcome.modes == modes)
+        self.memory.outcomes.iter().position(|own| own.decided && own.modes == modes)
     }
 
     /// Adds families and their corners, once all other outcomes are known.
@@ -269,10 +265,10 @@ impl<'a> Collected<'a> {
                 Corner::OfFamily(number, own) => {
                     let outcome = self.singular_outcome(own);
                     self.push(number, outcome);
-                    self.memory.numbered.len() - 1
+                    self.memory.outcomes.len() - 1
                 }
             };
-            let outcome = &mut self.memory.numbered[place].outcome;
+            let outcome = &mut self.memory.outcomes[place];
             (outcome.family, outcome.index) = (true, None);
             places.push(place);
         }
@@ -288,9 +284,9 @@ impl<'a> Collected<'a> {
     pub fn finish(mut self) -> Findings {
         self.effort.bound = self.total - self.effort.ball - self.effort.double_double - self.effort.precise;
         if !self.families.is_empty() {
-            let numbered = &self.memory.numbered;
-            let mut order: Vec<usize> = (0..numbered.len()).collect();
-            order.sort_by_key(|&found| numbered[found].number);
+            let numbers = &self.memory.numbers;
+            let mut order: Vec<usize> = (0..numbers.len()).collect();
+            order.sort_by_key(|&found| numbers[found]);
             let mut places = vec![0; order.len()];
             for (place, found) in order.into_iter().enumerate() {
                 places[found] = place;
@@ -301,10 +297,12 @@ impl<'a> Collected<'a> {
             }
             self.families.sort_by_key(|(number, _)| *number);
         }
-        let OutcomeMemory { numbered, outcomes, .. } = self.memory;
-        numbered.sort_by_key(|own| own.number);
-        let mut outcomes = std::mem::take(outcomes);
-        outcomes.extend(numbered.drain(..).map(|own| own.outcome));
+        let mut outcomes = std::mem::take(&mut self.memory.outcomes);
+        if !self.memory.numbers.is_sorted() {
+            let mut numbered: Vec<_> = self.memory.numbers.iter().zip(outcomes.drain(..)).collect();
+            numbered.sort_by_key(|&(number, _)| number);
+            outcomes.extend(numbered.into_iter().map(|(_, outcome)| outcome));
+        }
         self.rejected.sort_by_key(|(number, _)| *number);
         Findings {
             outcomes,
