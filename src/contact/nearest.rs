@@ -43,22 +43,19 @@ impl Footing<'_> {
     /// # Errors
     /// [`Reason::Inconsistent`] if no foot is above the ground.
     pub fn rise(&self) -> Result<f64> {
-        let gap = |rise: f64| {
-            let placement = &self.placement.raised(rise);
-            match self.named() {
-                Some(named) => {
-                    let gap = |contact| self.surface.touch(placement, Point::named(self.robot, contact), 0.0).gap;
-                    named.iter().map(gap).fold(f64::INFINITY, f64::min)
-                }
-                None => {
-                    let gaps = self.feet.iter().map(|foot| self.surface.clearance(foot, placement));
-                    gaps.fold(f64::INFINITY, f64::min)
-                }
+        let gap = |placement: &Placement| match self.named() {
+            Some(named) => {
+                let gap = |contact| self.surface.touch(placement, Point::named(self.robot, contact), 0.0).gap;
+                named.iter().map(gap).fold(f64::INFINITY, f64::min)
+            }
+            None => {
+                let gaps = self.feet.iter().map(|foot| self.surface.clearance(foot, placement));
+                gaps.fold(f64::INFINITY, f64::min)
             }
         };
         let rise = match self.surface {
-            Surface::HalfPlane(plane) => Some(-gap(0.0) / plane.normal().z),
-            Surface::Profile(_) => first_above(gap, self.feet.size()),
+            Surface::HalfPlane(plane) => Some(-gap(self.placement) / plane.normal().z),
+            Surface::Profile(_) => first_above(|rise| gap(&self.placement.raised(rise)), self.feet.size()),
         };
         rise.filter(|rise| rise.is_finite()).ok_or_else(|| {
             let (reason, remedy) = match self.named().is_none() && self.feet.iter().next().is_none() {

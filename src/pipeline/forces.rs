@@ -92,14 +92,14 @@ impl Pipeline<'_> {
         let scene = &state.scene;
         let (mut prepared, slips) = self.prepare_sustained(state)?;
         if state.uncertainty.is_some() {
-            prepared.notes.push("the uncertainty is not asked about: forces are those of the given numbers".to_owned());
+            prepared.impact.notes.push("the uncertainty is not asked about: forces are those of the given numbers".to_owned());
         }
         let unforced = self.pose(state, &mut prepared, &slips)?;
         for &joint in scene.braked.iter().filter(|&&joint| unforced.driven.torque.values()[joint] != 0.0) {
             let name = &self.robot.joints[joint].name;
-            prepared.notes.push(format!("{name} is held: its torque is carried by what holds it, and has no effect"));
+            prepared.impact.notes.push(format!("{name} is held: its torque is carried by what holds it, and has no effect"));
         }
-        let asked = self.asked_of_forces(prepared.contacts.len(), chosen);
+        let asked = self.asked_of_forces(prepared.impact.contacts.len(), chosen);
         let mut analysis = self.analyze_forces(state, &prepared, &unforced, asked);
         let is_none = analysis.as_ref().is_some_and(|own| own.verdict == Verdict::None);
         let mut shock = match is_none {
@@ -151,7 +151,8 @@ impl Pipeline<'_> {
         }
         let mut prepared = self.prepare(state)?;
         self.refuse_uneven(&prepared)?;
-        let Prepared { velocity, foot, contacts, levels, stance, notes, .. } = &mut *prepared;
+        let Prepared { velocity, foot, levels, impact, .. } = &mut *prepared;
+        let Impact { contacts, stance, notes, .. } = &mut **impact;
         if self.assembly.is_constrained() {
             // Those of an impact are infinite.
             self.bound_velocities(contacts, levels, velocity, Standing { foot: foot.as_ref(), place: *stance });
@@ -166,12 +167,12 @@ impl Pipeline<'_> {
 
     /// What happens just after an impact, of its decided outcomes: the forces at the velocities that they print, in
     /// which contacts take part as their modes say. Notes what is not known.
-    pub(super) fn follow(&mut self, state: &State, impact: &Prepared, analysis: &mut Analysis) -> Vec<String> {
+    pub(super) fn follow(&mut self, state: &State, struck: &Prepared, analysis: &mut Analysis) -> Vec<String> {
         let scene = Scene { impulses: Vec::new(), ..state.scene.clone() };
         let after = State { scene, ..state.clone() };
         let mut notes = Vec::new();
         for (at, outcome) in analysis.outcomes.iter_mut().enumerate().filter(|(_, outcome)| outcome.decided) {
-            match self.next(&after, impact, outcome) {
+            match self.next(&after, struck, outcome) {
                 Ok(next) => outcome.next = next,
                 Err(error) => notes.push(format!("what follows outcome {} is not known: {}", at + 1, error.reason())),
             }
@@ -180,20 +181,21 @@ impl Pipeline<'_> {
     }
 
     /// The forces just after an `outcome`; `None` of more contacts than are enumerated.
-    fn next(&mut self, after: &State, impact: &Prepared, outcome: &Outcome) -> Result<Option<Next>> {
+    fn next(&mut self, after: &State, struck: &Prepared, outcome: &Outcome) -> Result<Option<Next>> {
         let slip = |(contact, mode): (usize, &Mode)| match mode {
             Mode::Separate => None,
-            _ if impact.problem.bounce(contact) != 0.0 => None,
+            _ if struck.impact.problem.bounce(contact) != 0.0 => None,
             mode => mode.direction().partial_cmp(&0.0),
         };
         let slips: Vec<Option<Ordering>> = outcome.modes.iter().enumerate().map(slip).collect();
         // The foot of a stance may move after the impact.
         let velocity = outcome.velocity().collect();
-        let mut prepared = Prepared { velocity, foot: None, stance: None, ..impact.clone() };
+        let mut prepared = Prepared { velocity, foot: None, ..struck.clone() };
+        prepared.impact.stance = None;
         self.refuse_uneven(&prepared)?;
-        let Prepared { velocity, contacts, levels, .. } = &prepared;
-        self.bound_velocities(contacts, levels, velocity, Standing { foot: None, place: None });
-        self.assembly.points = prepared.contacts.iter().map(Contact::point_of).collect();
+        let (contacts, levels) = (&prepared.impact.contacts, &prepared.levels);
+        self.bound_velocities(contacts, levels, &prepared.velocity, Standing { foot: None, place: None });
+        self.assembly.points = contacts.iter().map(Contact::point_of).collect();
         self.assembly.contact_jacobian(&prepared.velocity, None);
         self.assembly.workspace.contact_velocity.clone_from(&outcome.velocity_after);
         self.assembly.delassus();
@@ -217,7 +219,7 @@ impl Pipeline<'_> {
         let still = self.still(state, prepared, slips)?;
         let mut position = state.position.clone();
         let base = position.iter_mut().take(self.robot.base_dofs());
-        base.zip(prepared.placement.base().components()).for_each(|(entry, placed)| *entry = placed);
+        base.zip(prepared.impact.placement.base().components()).for_each(|(entry, placed)| *entry = placed);
         let loads = Loads { robot: self.robot, scene: &state.scene, position: &position, still: &still };
         let driven = self.driven(&prepared.velocity, loads)?;
         let (unclosed, drifts) = self.assembly.acceleration(&prepared.velocity, loads);
@@ -231,12 +233,12 @@ impl Pipeline<'_> {
         let own = self.assembly.contact_accelerations(&free, loads);
         let (mut likely, rounding) = self.bound_accelerations(prepared, &free, loads);
         likely.iter_mut().for_each(|error| *error *= LIKELY * self.bounds.likely[0]);
-        let laws = prepared.problem.laws().iter().zip(slips).map(|(law, slip)| match slip {
+        let laws = prepared.impact.problem.laws().iter().zip(slips).map(|(law, slip)| match slip {
             Ordering::Equal => *law,
             slip => Law::Sliding(law.friction(), Mode::closed(*slip)),
         });
         let (laws, delassus) = (laws.collect(), self.assembly.workspace.delassus.clone());
-        prepared.problem = ContactProblem::checked(delassus, own.clone(), own, laws, vec![0.0; slips.len()])?;
+        prepared.impact.problem = ContactProblem::checked(delassus, own.clone(), own, laws, vec![0.0; slips.len()])?;
         Ok(Unforced { still, position, driven, unclosed, free, drifts, likely, rounding })
     }
 
@@ -249,7 +251,7 @@ impl Pipeline<'_> {
     ) -> (Vec<f64>, Vec<Pair<f64>>) {
         if self.assembly.is_constrained() {
             // They go through what answers them, whose rounding no bound follows.
-            return (vec![f64::INFINITY; acceleration.len()], vec![[f64::INFINITY; 2]; prepared.contacts.len()]);
+            return (vec![f64::INFINITY; acceleration.len()], vec![[f64::INFINITY; 2]; prepared.impact.contacts.len()]);
         }
         let Self { robot, assembly, stretched, bounds, .. } = self;
         bounds.stretched_poses(&stretched.plan, &mut stretched.workspace);
@@ -292,12 +294,13 @@ impl Pipeline<'_> {
         let errors = Errors { delassus, velocity, likely: [likely, LIKELY * likely] };
         let exact = prepared.exact(self.robot, state, &self.assembly, errors);
         let source = ExactState { asked: Asked::Forces(unforced.loads(self.robot, &state.scene)), ..exact };
-        self.scratch.analyze(&prepared.problem, &source, asked).ok().map(Analysis::of_forces)
+        self.scratch.analyze(&prepared.impact.problem, &source, asked).ok().map(Analysis::of_forces)
     }
 
     /// Leaves the contacts that have a slip and so take part, with what is known of them, and poses an impact there.
     fn take_part(&mut self, state: &State, prepared: &mut Prepared, slips: &[Option<Ordering>]) -> Result<()> {
-        let Prepared { velocity, foot, contacts, levels, stance, resting, merged, placement, .. } = &mut *prepared;
+        let Prepared { velocity, foot, levels, merged, change, impact, .. } = prepared;
+        let Impact { contacts, stance, resting, placement, problem, .. } = &mut **impact;
         let stays: Vec<usize> = (0..slips.len()).filter(|&at| slips[at].is_some()).collect();
         if stays.len() < slips.len() {
             let place = |at: usize| stays.iter().position(|&own| own == at);
@@ -315,8 +318,7 @@ impl Pipeline<'_> {
             self.assembly.contact_jacobian(velocity, *stance);
             self.assembly.workspace.contact_velocity = known;
             self.assembly.delassus();
-            prepared.problem =
-                self.problem(&state.scene, &prepared.contacts, &prepared.change, ContactProblem::default())?;
+            self.problem(&state.scene, contacts, change, problem)?;
         }
         Ok(())
     }
@@ -324,7 +326,7 @@ impl Pipeline<'_> {
     /// Refuses circles of different radii that act as one contact of a body that turns.
     fn refuse_uneven(&self, prepared: &Prepared) -> Result<()> {
         let uneven = prepared.merged.iter().filter(|merged| merged.is_uneven).flat_map(|merged| &merged.outer);
-        let mut uneven = uneven.map(|&at| &prepared.contacts[at]);
+        let mut uneven = uneven.map(|&at| &prepared.impact.contacts[at]);
         let turning = uneven.find(|own| self.turns(own.body, &prepared.velocity));
         let Some(Contact { name, .. }) = turning else { return Ok(()) };
         let reason = format!("circles of different radii touch the ground at one place, {name}, and roll differently");
@@ -348,7 +350,7 @@ impl Pipeline<'_> {
     /// Which contacts are on a body that does not turn, because another of its contacts on the same straight ground
     /// takes part, too. Contacts that move over a corner of the ground, where the normal turns, are refused.
     fn still(&self, state: &State, prepared: &Prepared, slips: &[Ordering]) -> Result<Vec<bool>> {
-        let contacts = &prepared.contacts;
+        let contacts = &prepared.impact.contacts;
         let still: Vec<bool> = contacts
             .iter()
             .map(|own| {
@@ -388,8 +390,8 @@ impl Pipeline<'_> {
         slips: &[Ordering],
         asked: AnalysisOptions<'_>,
     ) -> Option<Vec<Outcome>> {
-        let struck =
-            self.problem(&state.scene, &prepared.contacts, &prepared.change, ContactProblem::default()).ok()?;
+        let mut struck = ContactProblem::default();
+        self.problem(&state.scene, &prepared.impact.contacts, &prepared.change, &mut struck).ok()?;
         let exact = prepared.exact(self.robot, state, &self.assembly, Errors::UNKNOWN);
         let (laws, restitution) = (struck.laws(), struck.restitution());
         let source = ExactState { asked: Asked::Shock(slips), laws, restitution, ..exact };

@@ -37,7 +37,7 @@ use crate::robot::Robot;
 use crate::scalar::Magnitude;
 use crate::state::{NamedContact, Scene, State, check_length};
 use serde::{Deserialize, Serialize};
-use std::mem::{swap, take};
+use std::mem::replace;
 use std::sync::Arc;
 
 /// What is asked about a state.
@@ -318,7 +318,8 @@ impl<'r> Pipeline<'r> {
     fn strike(&mut self, state: &State, chosen: Option<&[Vec<Mode>]>) -> Result<Answer> {
         let scene = &state.scene;
         let mut prepared = self.prepare(state)?;
-        let Prepared { velocity, applied, free, contacts, problem, .. } = &*prepared;
+        let Prepared { velocity, applied, free, impact, .. } = &*prepared;
+        let Impact { contacts, problem, .. } = &**impact;
         for &entry in free {
             finite(entry, || "a velocity after the applied impulses".into())?;
         }
@@ -350,11 +351,12 @@ impl<'r> Pipeline<'r> {
             analysis.proven &= analysis.outcomes.iter().all(|outcome| outcome.proven);
         }
         let left_out = if brief { Vec::new() } else { self.left_out(scene, &prepared) };
-        prepared.notes.extend(analysis.as_ref().and_then(Analysis::energy_note));
-        prepared.notes.extend(analysis.as_ref().and_then(Analysis::unlisted_note));
+        let notes = &mut prepared.impact.notes;
+        notes.extend(analysis.as_ref().and_then(Analysis::energy_note));
+        notes.extend(analysis.as_ref().and_then(Analysis::unlisted_note));
         let matrices = self.options.matrices.then(|| self.matrices());
         let followed = analysis.as_mut().filter(|_| next).map(|analysis| self.follow(state, &prepared, analysis));
-        prepared.notes.extend(followed.into_iter().flatten());
+        prepared.impact.notes.extend(followed.into_iter().flatten());
         let foot = prepared.foot.take();
         let mut impact = self.unanswered(prepared);
         (impact.analysis, impact.friction_needed) = (analysis, friction_needed);
@@ -363,38 +365,9 @@ impl<'r> Pipeline<'r> {
         Ok(Answer { impact, foot, rows: self.assembly.rows.clone() })
     }
 
-    /// What is known of a state before its analysis, in memory that it exchanges with that of the next state.
+    /// The answer without its analysis, of which the memory is exchanged with that of the next state.
     fn unanswered(&mut self, mut prepared: Box<Prepared>) -> Box<Impact> {
-        let mut impact = self.recycled.take().unwrap_or_default();
-        // A field more is an error here.
-        let Impact {
-            placement,
-            contacts,
-            nearest,
-            velocity_before,
-            kinetic_energy,
-            problem,
-            resting,
-            stance,
-            analysis,
-            friction_needed,
-            slides_regardless,
-            sustained,
-            holds,
-            matrices,
-            left_out,
-            notes,
-        } = &mut *impact;
-        swap(placement, &mut prepared.placement);
-        swap(contacts, &mut prepared.contacts);
-        swap(problem, &mut prepared.problem);
-        swap(resting, &mut prepared.resting);
-        *notes = take(&mut prepared.notes);
-        (*nearest, *kinetic_energy, *stance) = (prepared.nearest, prepared.kinetic_energy, prepared.stance);
-        (*analysis, *friction_needed, *sustained, *holds, *matrices) = (None, None, None, None, None);
-        *slides_regardless = false;
-        left_out.clear();
-        problem.velocity_before().clone_into(velocity_before);
+        let impact = replace(&mut prepared.impact, self.recycled.take().unwrap_or_default());
         self.spare = Some(prepared);
         impact
     }
@@ -446,7 +419,7 @@ impl<'r> Pipeline<'r> {
 
     /// Lists what a scene leaves out.
     fn left_out(&self, scene: &Scene, prepared: &Prepared) -> Vec<LeftOut> {
-        let (laws, out_of_reach) = (prepared.problem.laws(), prepared.out_of_reach);
+        let (laws, out_of_reach) = (prepared.impact.problem.laws(), prepared.out_of_reach);
         let mut all = Vec::new();
         if self.options.reductions.held {
             all.extend(scene.braked.iter().map(|&joint| LeftOut::Column(joint)));

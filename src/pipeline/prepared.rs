@@ -9,7 +9,7 @@
 use super::assembly::{Assembly, Elimination};
 use super::exact::{Asked, ExactState};
 use super::resting::Standing;
-use super::{Aspect, CONTACT_TOLERANCE, Pipeline};
+use super::{Aspect, CONTACT_TOLERANCE, Impact, Pipeline};
 use crate::contact::{Contact, Footing, Level, Merged, Placement, Surface, level};
 use crate::dynamics::plan::{Plan, PlanBody};
 use crate::dynamics::{Arm, Constraints, Workspace, has_balance, kinetic_energy, mass_diagonal};
@@ -45,31 +45,23 @@ pub struct NearestFoot {
 /// A state that is ready to be analyzed.
 #[derive(Debug, Clone, Default)]
 pub struct Prepared {
-    pub placement: Placement,
     /// v just before the impact, with the stance and the loops kept \[m/s, rad/s\].
     pub velocity: Vec<f64>,
     /// The foot of the stance.
     pub foot: Option<Contact>,
-    pub contacts: Vec<Contact>,
-    pub nearest: Option<NearestFoot>,
     /// Contacts for which others act.
     pub merged: Vec<Merged>,
     /// Shapes that were too far from the ground to be asked.
     pub out_of_reach: usize,
-    /// The place of the stance's foot among the contacts.
-    pub stance: Option<usize>,
     /// Contacts that are taken as exactly level with others.
     pub levels: Vec<Option<Level>>,
-    /// Contacts that were taken as exactly at rest.
-    pub resting: Vec<bool>,
-    pub kinetic_energy: f64,
     /// What the applied impulses change in v, without and with what the loops answer.
     pub applied: Vec<f64>,
     pub change: Vec<f64>,
     /// v with that change.
     pub free: Vec<f64>,
-    pub problem: ContactProblem,
-    pub notes: Vec<String>,
+    /// The answer as far as it is known.
+    pub impact: Box<Impact>,
 }
 
 /// What touches the ground.
@@ -88,20 +80,21 @@ impl Prepared {
         assembly: &'a Assembly,
         errors: Errors<'a>,
     ) -> ExactState<'a> {
+        let Impact { stance, contacts, resting, problem, .. } = &*self.impact;
         ExactState {
             robot,
             scene: &state.scene,
             position: &state.position,
             velocity: &self.velocity,
             foot: self.foot.as_ref(),
-            stance: self.stance,
-            contacts: &self.contacts,
+            stance: *stance,
+            contacts,
             levels: &self.levels,
-            resting: &self.resting,
+            resting,
             constraints: Constraints { kept: &assembly.kept, rows: &assembly.rows },
             is_rank_certain: assembly.is_rank_certain,
-            laws: self.problem.laws(),
-            restitution: self.problem.restitution(),
+            laws: problem.laws(),
+            restitution: problem.restitution(),
             errors,
             asked: Asked::Impact,
         }
@@ -121,10 +114,11 @@ impl Pipeline<'_> {
     /// # Errors
     /// As [`Pipeline::answer`].
     pub fn unsolved(&mut self, state: &State) -> Result<Unsolved> {
-        let Prepared { placement, contacts, problem, .. } = *match self.options.aspect {
+        let prepared = match self.options.aspect {
             Aspect::Impact => self.prepare(state)?,
             Aspect::Forces => self.prepare_forces(state)?,
         };
+        let Impact { placement, contacts, problem, .. } = *prepared.impact;
         let clearance = match state.scene.contacts {
             Some(_) => Vec::new(),
             None => {
@@ -146,39 +140,59 @@ impl Pipeline<'_> {
         self.check_inertia(&scene.loops)?;
 
         let odd = self.odd_angles(state)?;
-        let mut notes = odd.clone();
-        self.note_unused_laws(scene, &mut notes);
         let surface = Surface::new(&scene.ground);
         let mut prepared = self.spare.take().unwrap_or_default();
-        let Prepared { placement, velocity, contacts, resting, applied, change, free, problem, .. } = &mut *prepared;
+        // A field more is an error here.
+        let Prepared { velocity, foot, merged, out_of_reach, levels, applied, change, free, impact } = &mut *prepared;
+        let Impact {
+            placement,
+            contacts,
+            nearest,
+            velocity_before,
+            kinetic_energy,
+            problem,
+            resting,
+            stance,
+            analysis,
+            friction_needed,
+            slides_regardless,
+            sustained,
+            holds,
+            matrices,
+            left_out,
+            notes,
+        } = &mut **impact;
+        (*analysis, *friction_needed, *slides_regardless) = (None, None, false);
+        (*sustained, *holds, *matrices) = (None, None, None);
+        left_out.clear();
+        notes.clone_from(&odd);
+        self.note_unused_laws(scene, notes);
         state.velocity.clone_into(velocity);
-        let (base, foot) = self.stand(state, &surface, velocity)?;
-        self.close_loops(&scene.loops, &state.position, foot.as_ref(), velocity, &mut notes)?;
-        *placement = take(placement).moved(&self.assembly.plan, &self.assembly.workspace, base);
+        (*placement, *foot) = self.stand(state, &surface, velocity, take(placement))?;
+        self.close_loops(&scene.loops, &state.position, foot.as_ref(), velocity, notes)?;
         let footing = self.footing(scene, placement, &surface);
         let detected = self
-            .contacts(&footing, foot.as_ref(), take(contacts), &mut notes)
+            .contacts(&footing, foot.as_ref(), take(contacts), notes)
             .map_err(|error| self.sunk(error, scene, self.open_foot(&footing, &[], velocity), odd.first()))?;
-        let Detected { merged, out_of_reach, .. } = detected;
-        *contacts = detected.contacts;
-        let nearest = if self.options.brief { None } else { self.open_foot(&footing, contacts, velocity) };
+        (*contacts, *merged, *out_of_reach) = (detected.contacts, detected.merged, detected.out_of_reach);
+        *nearest = if self.options.brief { None } else { self.open_foot(&footing, contacts, velocity) };
         if scene.contacts.is_none() && !self.options.brief {
-            self.note_near_miss(contacts, nearest, &mut notes);
+            self.note_near_miss(contacts, *nearest, notes);
         }
         if !self.options.brief {
             notes.extend(self.upside_down(contacts, placement));
         }
         check_matrix_size(contacts.len())?;
-        let stance = foot.as_ref().and_then(|foot| place_of(foot, contacts));
+        *stance = foot.as_ref().and_then(|foot| place_of(foot, contacts));
         self.assembly.points.clear();
         self.assembly.points.extend(contacts.iter().map(Contact::point_of));
-        self.assembly.contact_jacobian(velocity, stance);
-        let standing = Standing { foot: foot.as_ref(), place: stance };
-        let levels = self.levels(state, contacts, placement, stance);
-        self.bound_velocities(contacts, &levels, velocity, standing);
-        self.take_as_resting(state, velocity, contacts, standing, (resting, &mut notes));
+        self.assembly.contact_jacobian(velocity, *stance);
+        let standing = Standing { foot: foot.as_ref(), place: *stance };
+        *levels = self.levels(state, contacts, placement, *stance);
+        self.bound_velocities(contacts, levels, velocity, standing);
+        self.take_as_resting(state, velocity, contacts, standing, (resting, notes));
         self.assembly.delassus();
-        let kinetic_energy = self.energy_in_range(&state.velocity, velocity)?;
+        *kinetic_energy = self.energy_in_range(&state.velocity, velocity)?;
         self.bound_delassus();
         if !scene.impulses.is_empty() || (self.assembly.is_constrained() && !self.options.no_proof) {
             // They go through M^-1, whose rounding these bounds do not follow.
@@ -193,25 +207,8 @@ impl Pipeline<'_> {
         self.assembly.answer(change);
         free.clear();
         free.extend(velocity.iter().zip(&*change).map(|(before, change)| before + change));
-        *problem = self.problem(scene, contacts, change, take(problem))?;
-        *prepared = Prepared {
-            placement: take(placement),
-            velocity: take(velocity),
-            foot,
-            contacts: take(contacts),
-            nearest,
-            merged,
-            out_of_reach,
-            stance,
-            levels,
-            resting: take(resting),
-            kinetic_energy,
-            applied: take(applied),
-            change: take(change),
-            free: take(free),
-            problem: take(problem),
-            notes,
-        };
+        self.problem(scene, contacts, change, problem)?;
+        problem.velocity_before().clone_into(velocity_before);
         Ok(prepared)
     }
 
@@ -357,27 +354,35 @@ impl Pipeline<'_> {
         self.options.contact_tolerance.unwrap_or(CONTACT_TOLERANCE * self.feet.size())
     }
 
-    /// The root's origin and the foot of a stance; the `velocity` by coordinate becomes one with which that stands.
-    fn stand(&self, state: &State, surface: &Surface, velocity: &mut [f64]) -> Result<(Vector<f64>, Option<Contact>)> {
+    /// Where the bodies are, in the memory of others, and the foot of a stance; the `velocity` by coordinate becomes one
+    /// with which that stands.
+    fn stand(
+        &self,
+        state: &State,
+        surface: &Surface,
+        velocity: &mut [f64],
+        memory: Placement,
+    ) -> Result<(Placement, Option<Contact>)> {
+        let at = |base, memory: Placement| memory.moved(&self.assembly.plan, &self.assembly.workspace, base);
         if !self.assembly.plan.floating {
-            return Ok((Vector::zero(), None));
+            return Ok((at(Vector::zero(), memory), None));
         }
         let Some(link) = state.scene.stance else {
             let base = Vector::new(state.position[0], state.position[1]);
+            let placement = at(base, memory);
             if !state.scene.place_lowest {
-                return Ok((base, None));
+                return Ok((placement, None));
             }
-            let placement = &Placement::new(&self.assembly.plan, &self.assembly.workspace, base);
-            let rise = self.footing(&state.scene, placement, surface).rise()?;
-            return Ok((base + Vector::new(0.0, rise), None));
+            let rise = self.footing(&state.scene, &placement, surface).rise()?;
+            return Ok((at(base + Vector::new(0.0, rise), placement), None));
         };
-        let placement = &Placement::new(&self.assembly.plan, &self.assembly.workspace, Vector::zero());
-        let footing = self.footing(&state.scene, placement, surface);
+        let placement = at(Vector::zero(), memory);
+        let footing = self.footing(&state.scene, &placement, surface);
         // Within a tolerance that was given for a recording a foot may be tilted: then it stands on its lower end.
         let flat = self.options.contact_tolerance.map_or(f64::INFINITY, |_| CONTACT_TOLERANCE * self.feet.size());
         let stance = footing.stance(link, self.tolerance(), flat)?;
         self.assembly.rest(&stance.foot.point_of(), velocity);
-        Ok((stance.base, Some(stance.foot)))
+        Ok((at(stance.base, placement), Some(stance.foot)))
     }
 
     fn footing<'a>(&'a self, scene: &'a Scene, placement: &'a Placement, surface: &'a Surface) -> Footing<'a> {
@@ -541,8 +546,8 @@ impl Pipeline<'_> {
         scene: &Scene,
         contacts: &[Contact],
         change: &[f64],
-        memory: ContactProblem,
-    ) -> Result<ContactProblem> {
+        problem: &mut ContactProblem,
+    ) -> Result<()> {
         let laws = contacts.iter().map(|contact| {
             let restitution = scene.restitution.of(contact.link).unwrap_or(0.0);
             scene.friction.of(contact.link).map(|friction| (friction, restitution)).ok_or_else(|| {
@@ -562,7 +567,7 @@ impl Pipeline<'_> {
         });
         let Workspace { contact_velocity: before, delassus, .. } = &self.assembly.workspace;
         let pushed = (!scene.impulses.is_empty()).then(|| self.assembly.free(before, change));
-        memory.renewed(delassus, before, pushed.as_ref().unwrap_or(before), laws)
+        problem.renew(delassus, before, pushed.as_ref().unwrap_or(before), laws)
     }
 }
 

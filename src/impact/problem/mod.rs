@@ -220,17 +220,20 @@ impl ContactProblem {
         }
         let laws = friction.into_iter().map(Into::into).collect();
         let (approach, shared, origin) = (Vec::new(), Vec::new(), Origin::Given);
-        Self { delassus, velocity_before, velocity_free, approach, laws, restitution, shared, origin }.completed()
+        let mut problem =
+            Self { delassus, velocity_before, velocity_free, approach, laws, restitution, shared, origin };
+        problem.complete()?;
+        Ok(problem)
     }
 
-    /// As [`ContactProblem::checked`], in the memory of another problem, with the friction and restitution of each contact.
-    pub(crate) fn renewed(
-        mut self,
+    /// Becomes another problem, as [`ContactProblem::checked`], with the friction and restitution of each contact.
+    pub(crate) fn renew(
+        &mut self,
         delassus: &[f64],
         velocity_before: &[Pair<f64>],
         velocity_free: &[Pair<f64>],
         contacts: impl Iterator<Item = Result<(Friction, f64)>>,
-    ) -> Result<Self> {
+    ) -> Result<()> {
         delassus.clone_into(&mut self.delassus);
         velocity_before.clone_into(&mut self.velocity_before);
         velocity_free.clone_into(&mut self.velocity_free);
@@ -241,15 +244,15 @@ impl ContactProblem {
             self.laws.push(friction.into());
             self.restitution.push(restitution);
         }
-        Self { origin: Origin::Given, ..self }.completed()
+        self.origin = Origin::Given;
+        self.complete()
     }
 
-    fn completed(mut self) -> Result<Self> {
+    fn complete(&mut self) -> Result<()> {
         self.approach.clear();
         self.approach.extend(self.velocity_before.iter().map(|c| c[1].min(0.0)));
         self.check_contacts()?;
-        self.check_range()?;
-        Ok(self)
+        self.check_range()
     }
 }
 
