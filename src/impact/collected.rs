@@ -10,6 +10,7 @@ use super::slack::Scale;
 use crate::law::{Inequality, Law, Mode};
 use crate::reductions::Reductions;
 use std::cmp::Ordering;
+use std::mem::take;
 
 /// So many contacts have all their rejected combinations listed, each with its reason.
 pub const EXPLAINED: usize = 6;
@@ -94,10 +95,12 @@ impl OutcomeMemory {
     /// Takes the memory of outcomes that are no longer needed.
     pub fn recycle(&mut self, mut outcomes: Vec<Outcome>) {
         let room = RECYCLED.saturating_sub(self.lists.len());
-        self.lists.extend(outcomes.drain(..).take(room).map(|own| {
-            let motion = Motion { impulse: own.impulse, velocity_after: own.velocity_after };
-            OutcomeLists { modes: own.modes, motion, friction_needed: own.friction_needed }
+        // Where they are: an outcome is large.
+        self.lists.extend(outcomes.iter_mut().take(room).map(|own| {
+            let motion = Motion { impulse: take(&mut own.impulse), velocity_after: take(&mut own.velocity_after) };
+            OutcomeLists { modes: take(&mut own.modes), motion, friction_needed: take(&mut own.friction_needed) }
         }));
+        outcomes.clear();
         self.outcomes = outcomes;
     }
 }
@@ -197,7 +200,7 @@ impl<'a> Collected<'a> {
 
     /// Memory for what is at zero in a reading.
     pub fn at_zero(&mut self) -> Vec<(usize, Inequality)> {
-        std::mem::take(&mut self.memory.at_zero)
+        take(&mut self.memory.at_zero)
     }
 
     /// Memory for an outcome.
@@ -297,7 +300,7 @@ impl<'a> Collected<'a> {
             }
             self.families.sort_by_key(|(number, _)| *number);
         }
-        let mut outcomes = std::mem::take(&mut self.memory.outcomes);
+        let mut outcomes = take(&mut self.memory.outcomes);
         if !self.memory.numbers.is_sorted() {
             let mut numbered: Vec<_> = self.memory.numbers.iter().zip(outcomes.drain(..)).collect();
             numbered.sort_by_key(|&(number, _)| number);
