@@ -102,18 +102,26 @@ pub trait RowSink {
 /// Rows as text.
 impl RowSink for Vec<u8> {
     fn row(&mut self, columns: &Columns, cells: &[Cell]) {
-        let text = |cell: &Cell| -> Vec<u8> {
-            match cell {
-                Cell::Empty => Vec::new(),
-                Cell::Text(text) => text.as_bytes().to_vec(),
-                // The shortest digits that read back as the same number.
-                Cell::Number(number) => format!("{number:?}").into_bytes(),
-                Cell::Integer(number) => number.to_string().into_bytes(),
-                Cell::Boolean(holds) => holds.to_string().into_bytes(),
-                Cell::Carried(carried, which) => carried.text(*which).into_owned(),
-            }
-        };
-        columns.append(cells.iter().map(text), self);
+        let (mut row, mut digits) = (columns.text_row(self), Vec::new());
+        // Writing into memory cannot fail.
+        for cell in cells {
+            digits.clear();
+            let _ = match cell {
+                Cell::Empty => row.write_field([]),
+                Cell::Text(text) => columns.append_text(text.as_bytes(), &mut row),
+                Cell::Number(number) if number.is_finite() => {
+                    // The shortest that read back as the same number, as in JSON.
+                    let _ = serde_json::to_writer(&mut digits, number);
+                    row.write_field(&digits)
+                }
+                Cell::Number(number) => row.write_field(number.to_string()),
+                Cell::Integer(number) => row.write_field(number.to_string()),
+                Cell::Boolean(holds) => row.write_field(holds.to_string()),
+                Cell::Carried(carried, which) => columns.append_text(&carried.text(*which), &mut row),
+            };
+        }
+        let _ = row.write_record(None::<&[u8]>);
+        let _ = row.flush();
     }
 }
 
@@ -324,7 +332,10 @@ impl Columns {
     }
 
     pub fn append_header(&self, out: &mut Vec<u8>) {
-        self.append(&self.names, out);
+        let mut row = self.text_row(out);
+        // Writing into memory cannot fail.
+        let _ = self.names.iter().try_for_each(|name| self.append_text(name.as_bytes(), &mut row));
+        let _ = row.write_record(None::<&[u8]>);
     }
 
     /// Appends the rows of a result, one per outcome, with the state's id, line and touchdown.
@@ -437,19 +448,16 @@ impl Columns {
         cells.0[self.family()] = Cell::Boolean(outcome.family);
     }
 
-    fn append<F: AsRef<[u8]>>(&self, fields: impl IntoIterator<Item = F>, out: &mut Vec<u8>) {
-        let mut builder = csv::WriterBuilder::new();
-        let mut writer = builder.delimiter(self.form.delimiter()).buffer_capacity(1 << 10).from_writer(out);
-        // Writing into memory cannot fail.
-        for field in fields {
-            let text = field.as_ref();
-            let _ = match self.guarded && is_formula(text) {
-                true => writer.write_field([b"'", text].concat()),
-                false => writer.write_field(text),
-            };
+    /// A row of text that ends `out`.
+    fn text_row<'o>(&self, out: &'o mut Vec<u8>) -> csv::Writer<&'o mut Vec<u8>> {
+        csv::WriterBuilder::new().delimiter(self.form.delimiter()).buffer_capacity(1 << 10).from_writer(out)
+    }
+
+    fn append_text(&self, text: &[u8], row: &mut csv::Writer<&mut Vec<u8>>) -> csv::Result<()> {
+        match self.guarded && is_formula(text) {
+            true => row.write_field([b"'", text].concat()),
+            false => row.write_field(text),
         }
-        let _ = writer.write_record(None::<&[u8]>);
-        let _ = writer.flush();
     }
 
     /// The first of the last columns.
