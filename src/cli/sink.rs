@@ -3,16 +3,20 @@
 use super::diagnostic::{note, report_with};
 use super::resume::BatchOutput;
 use super::{Failure, status};
+use crate::Reason;
 use crate::batch::{Block, RefusedRecord, Sink, Summary};
 use crate::draw::page::Gait;
 #[cfg(feature = "columnar")]
 use crate::write::ColumnWriter;
 use indicatif::ProgressBar;
 use memchr::memchr_iter;
+use std::collections::HashMap;
 use std::io::{self, ErrorKind, Write};
+use std::mem::{Discriminant, discriminant};
 
-/// How many refusals are reported on standard error; the output has all of them.
+/// How many refusals are reported on standard error, and how many of one reason at one place; the output has all.
 const REPORTED: u64 = 20;
+const ALIKE: u64 = 3;
 
 /// Writes the answers in their order.
 pub(super) struct OutputSink<'a> {
@@ -24,7 +28,10 @@ pub(super) struct OutputSink<'a> {
     pub summary: Summary,
     /// The states for a page, if one is requested.
     pub gait: Gait,
-    refused: u64,
+    /// How many refusals were reported, of each reason and place, and how many were not.
+    reported: u64,
+    alike: HashMap<(Discriminant<Reason>, Option<String>), u64>,
+    unreported: u64,
     /// Lines written so far.
     lines: usize,
     /// For columns with types.
@@ -41,7 +48,9 @@ impl<'a> OutputSink<'a> {
             progress,
             summary: Summary::default(),
             gait: Gait::default(),
-            refused: 0,
+            reported: 0,
+            alike: HashMap::new(),
+            unreported: 0,
             lines: 0,
             #[cfg(feature = "columnar")]
             columns: None,
@@ -76,11 +85,23 @@ impl<'a> OutputSink<'a> {
     }
 
     fn report(&mut self, RefusedRecord { error, excerpt }: RefusedRecord) {
-        self.refused += 1;
-        if self.refused <= REPORTED {
-            self.progress.suspend(|| report_with(&error.in_file(self.input), excerpt.as_ref()));
-        } else if self.refused == REPORTED + 1 {
-            self.progress.suspend(|| note("further refusals stand in the output alone"));
+        if self.reported < REPORTED {
+            let kind = (discriminant(error.reason()), error.place().map(str::to_owned));
+            let alike = self.alike.entry(kind).or_default();
+            if *alike < ALIKE {
+                (*alike, self.reported) = (*alike + 1, self.reported + 1);
+                return self.progress.suspend(|| report_with(&error.in_file(self.input), excerpt.as_ref()));
+            }
+        }
+        self.unreported += 1;
+    }
+
+    /// Notes how many refusals were not reported.
+    pub fn note_unreported(&self) {
+        match self.unreported {
+            0 => {}
+            1 => note("1 more refusal stands in the output alone"),
+            more => note(&format!("{more} more refusals stand in the output alone")),
         }
     }
 

@@ -96,11 +96,17 @@ fn refused_lines_are_no_failure_if_asked() {
 
 #[test]
 fn many_refusals_do_not_flood_standard_error() {
-    let run = batch(&["-"], "oops\n".repeat(1000));
-    assert_eq!((run.status, run.lines().len()), (1, 1000));
-    assert_eq!(run.stderr.matches("error: ").count(), 20);
-    assert!(run.stderr.contains(" --> <stdin>:20:1\n"), "{}", run.stderr);
-    let end = "\nnote: further refusals stand in the output alone\n1000 states: 1000 refused\n";
+    // Of each kind the first three are shown, of all kinds twenty.
+    let kind = |at: usize| format!("{{\"position\": {{\"x{at}\": 0}}}}\n");
+    let others: String = (0..30).map(kind).collect();
+    let run = batch(&["-"], "oops\n".repeat(1000) + &kind(0) + &others);
+    assert_eq!((run.status, run.lines().len()), (1, 1031));
+    let shown = |what: &str| run.stderr.matches(what).count();
+    assert_eq!(
+        [shown("error: "), shown("expected value"), shown("position.x0\n"), shown("position.x15\n")],
+        [20, 3, 2, 1]
+    );
+    let end = "\nnote: 1011 more refusals stand in the output alone\n1031 states: 1031 refused\n";
     assert!(run.stderr.ends_with(end), "{}", run.stderr);
 }
 
