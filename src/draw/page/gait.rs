@@ -2,13 +2,13 @@
 
 use super::{MOST, Page, PageAxis, PageRegion, PageState};
 use crate::draw::plot::{
-    self, Band, Color, LegendEntry, LegendKey, Mark, Panel, Picture, PlotAxis, PlotShape, Rendered,
+    self, Band, Color, Dash, LegendEntry, LegendKey, Mark, Panel, Picture, PlotAxis, PlotShape, Rendered, Stroke,
 };
 use crate::draw::{Forward, KeyframeAnswer, ListedKeyframe};
 use crate::error::visible;
 use crate::pipeline::Aspect;
 use crate::write::words;
-use crate::{Mode, Verdict};
+use crate::{Friction, Mode, Verdict};
 
 /// States in their order, at most [`MOST`] of them: of more every second, third ... one is kept.
 #[derive(Debug, Clone, Default)]
@@ -86,6 +86,13 @@ impl Gait {
             [("margin", |mark| mark.margin), ("friction needed", |mark| mark.friction)];
         let panel = |(quantity, value)| panel(quantity, x.clone(), &marks, size, value);
         let mut panels: Vec<Panel> = values.into_iter().filter_map(panel).collect();
+        // The friction that all contacts have is a line across what is needed, unless it is far above.
+        let is_near =
+            |mu: f64| marks.iter().filter_map(|mark| mark.friction).any(|own| own.is_finite() && mu < FAR * own);
+        let given_friction = self.friction().filter(|&mu| is_near(mu));
+        if let (Some(mu), Some(needed)) = (given_friction, panels.last_mut()) {
+            needed.shapes.insert(0, PlotShape::Line { points: vec![(range.0, mu), (range.1, mu)], stroke: GIVEN });
+        }
         if panels.is_empty() {
             let y = PlotAxis { bare: true, ..PlotAxis::default() };
             panels.push(Panel { size: (WIDTH, 60.0), ..Panel::new(x, y) });
@@ -106,6 +113,8 @@ impl Gait {
         let legend = feet.map(|(foot, name)| entry(name, LegendKey::Mark(Mark::Circle, FEET[foot % FEET.len()])));
         let shapes = MODES.iter().filter(|(mode, ..)| marks.iter().any(|mark| mark.mode == *mode));
         let legend = legend.chain(shapes.map(|(_, shape, words)| entry(words, LegendKey::Mark(*shape, Color::Gray))));
+        let line = given_friction.map(|mu| entry(&format!("friction {mu}"), LegendKey::Line(GIVEN)));
+        let legend = legend.chain(line);
         Picture {
             title: format!(
                 "{robot}: {} of {} states have {given}s{}",
@@ -125,6 +134,17 @@ impl Gait {
             let happens = !matches!(answer.verdict, Verdict::NoImpact | Verdict::NoContact | Verdict::None);
             happens.then_some((number, state, answer))
         })
+    }
+
+    /// The friction of all contacts of impacts, if it is one, and of use on an axis.
+    fn friction(&self) -> Option<f64> {
+        let contacts = self.impacts().filter_map(|(_, state, _)| state.keyframe.drawing.as_ref());
+        let mut all = contacts.flat_map(|drawing| &drawing.contacts).map(|contact| contact.friction);
+        let first = all.next()?;
+        match first {
+            Friction::Finite(mu) if mu > 0.0 && all.all(|own| own == first) => Some(mu),
+            _ => None,
+        }
     }
 
     /// The feet, and the contacts of every impact; those of one outcome stand `beside` each other.
@@ -231,6 +251,10 @@ const DECADES: f64 = 50.0;
 
 /// The colors of feet, in turn.
 const FEET: [Color; 6] = [Color::Blue, Color::Vermilion, Color::Green, Color::Purple, Color::Black, Color::Orange];
+
+/// The line of the friction that is given; it is drawn if it is not so many times what is needed.
+const FAR: f64 = 10.0;
+const GIVEN: Stroke = Stroke { dash: Dash::DASHED, ..Stroke::solid(Color::Gray, 1.4) };
 
 /// The marks of modes.
 const MODES: [(Mode, Mark, &str); 4] = [

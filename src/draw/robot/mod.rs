@@ -13,6 +13,7 @@
 #[cfg(feature = "plot")]
 pub mod picture;
 
+use crate::Friction;
 use crate::contact::{Contact, Feet, Placement};
 use crate::pipeline::{Aspect, Impact};
 use crate::planar::{Pair, Vector};
@@ -65,6 +66,7 @@ pub struct DrawnContact {
     pub normal: Vector<f64>,
     /// In m/s.
     pub velocity_before: Vector<f64>,
+    pub friction: Friction,
 }
 
 /// The impulse of the ground on each contact \[N s\], and the contacts' velocities after the impact \[m/s\].
@@ -131,11 +133,12 @@ impl Drawing {
         let turned = |pairs: &[Pair<f64>]| -> Vec<Vector<f64>> {
             impact.contacts.iter().zip(pairs).map(|(contact, &pair)| contact.ground.apply(pair.into())).collect()
         };
-        let contact = |(contact, velocity_before): (&Contact, _)| {
+        let contact = |((contact, velocity_before), friction): ((&Contact, _), _)| {
             let (name, point, normal) = (contact.name.to_string(), contact.point, contact.normal());
-            DrawnContact { name, point, normal, velocity_before }
+            DrawnContact { name, point, normal, velocity_before, friction }
         };
-        drawing.contacts = impact.contacts.iter().zip(turned(&impact.velocity_before)).map(contact).collect();
+        let contacts = impact.contacts.iter().zip(turned(&impact.velocity_before)).zip(impact.problem.friction());
+        drawing.contacts = contacts.map(contact).collect();
         let outcomes = impact.analysis.iter().flat_map(|analysis| &analysis.outcomes);
         let on_link = |(pin, &impulse): (&NamedLoop, &Vector<f64>)| {
             let (end, impulse) = if impulse.z < 0.0 { (pin.b, -impulse) } else { (pin.a, impulse) };
