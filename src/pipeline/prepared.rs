@@ -176,8 +176,10 @@ impl Pipeline<'_> {
             .map_err(|error| self.sunk(error, scene, self.open_foot(&footing, &[], velocity), odd.first()))?;
         (*contacts, *merged, *out_of_reach) = (detected.contacts, detected.merged, detected.out_of_reach);
         *nearest = if self.options.brief { None } else { self.open_foot(&footing, contacts, velocity) };
-        if scene.contacts.is_none() && !self.options.brief {
-            self.note_near_miss(contacts, *nearest, notes);
+        match scene.contacts {
+            _ if self.options.brief => {}
+            Some(_) => notes.extend(nearest.and_then(|foot| self.sunk_besides(foot))),
+            None => self.note_near_miss(contacts, *nearest, notes),
         }
         if !self.options.brief {
             notes.extend(self.upside_down(contacts, placement));
@@ -439,6 +441,14 @@ impl Pipeline<'_> {
         let hint = odd.into_iter().fold(hint, |hint, odd| format!("{hint}; {odd}"));
         Error::new(Reason::Penetration { link: link.clone(), depth: *depth, tolerance: *tolerance, velocity })
             .hint(hint)
+    }
+
+    /// The note of a foot that is deep in the ground where other contacts are named.
+    fn sunk_besides(&self, NearestFoot { link, height, .. }: NearestFoot) -> Option<String> {
+        let name = &self.robot.links[link].name;
+        (height < -NEAR_MISS * self.feet.size()).then(|| {
+            format!("{name} is {:.1e} m deep in the ground, and is not among the contacts: it takes no part", -height)
+        })
     }
 
     /// Notes that nothing touches, and a foot that comes down just above the ground.

@@ -134,6 +134,18 @@ fn named_contacts_are_closed_at_any_height_in_order() {
 }
 
 #[test]
+fn a_foot_deep_in_the_ground_besides_named_contacts_is_noted() {
+    let notes = |z: f64, brief: bool| {
+        let place = r#"{"position": {"base": {"z": PLACE}}, "contacts": [{"link": "body", "offset": [0, 0, -1]}]}"#;
+        let options = Options { brief, ..Options::default() };
+        try_impact(&pendulum(1.0), options, place.replace("PLACE", &z.to_string())).unwrap().notes
+    };
+    let expected = "leg is 5.0e-2 m deep in the ground, and is not among the contacts: it takes no part";
+    assert_eq!(notes(0.95, false), [expected]);
+    assert_eq!([notes(0.95, true), notes(0.999, false), notes(1.05, false)], [const { Vec::<String>::new() }; 3]);
+}
+
+#[test]
 fn feet_of_options_are_detected_by_height() {
     let robot = body(r#"<geometry><sphere radius="0.1"/></geometry>"#);
     let feet = vec![NamedContact { link: 0, offset: [0.5, 0.0, -0.25], radius: 0.0 }];
