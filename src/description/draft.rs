@@ -131,6 +131,9 @@ fn refuse_xacro(robot: Node<'_, '_>) -> Result<()> {
     if let Some(element) = robot.descendants().find(|node| node.is_element() && is_macro(node)) {
         return Err(refused(element, format!("<xacro:{}>", element.tag_name().name())));
     }
+    // It may also be written by its number.
+    let text = robot.document().input_text();
+    let has_dollar = text.contains('$') || text.contains("&#");
     for element in robot.children().filter(Node::is_element) {
         let place: fn(&str) -> String = match tag(robot, element) {
             Some(old @ ("include" | "property" | "macro")) => {
@@ -141,6 +144,9 @@ fn refuse_xacro(robot: Node<'_, '_>) -> Result<()> {
             // What other programs read may hold anything.
             _ => continue,
         };
+        if !has_dollar {
+            continue;
+        }
         for inside in element.descendants().filter(|node| node.is_element() && node.tag_name().name() != "gazebo") {
             let mut values = inside.attributes().map(|attribute| attribute.value());
             if let Some(value) = values.find(|value| value.split('$').skip(1).any(|rest| rest.starts_with(['{', '('])))

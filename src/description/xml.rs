@@ -1,6 +1,7 @@
 //! XML elements with their places in the text; hostile texts are refused here, in bounded time and memory.
 
 use crate::error::{Error, Location, Reason, Result};
+use memchr::{memchr_iter, memmem};
 use roxmltree::{Document, Node, ParsingOptions};
 
 /// The deepest nesting of elements that is accepted; URDF itself needs six.
@@ -97,21 +98,23 @@ fn refuse_many(text: &str) -> Result<()> {
         let place = Cursor::new(text).locate(offset.max(1) - 1);
         Err(Error::new(Reason::TooMany { what, limit }).on(place.line, place.column))
     };
-    if let Some((offset, _)) = text.match_indices("xmlns").nth(MOST_NAMESPACES) {
+    if let Some(offset) = memmem::find_iter(text.as_bytes(), "xmlns").nth(MOST_NAMESPACES) {
         return refused("namespaces", MOST_NAMESPACES, offset + 1);
     }
     // No more attributes than equals signs: only where these are many it matters which of them are attributes.
-    let equals = |text: &str| memchr::memchr_iter(b'=', text.as_bytes()).count();
+    let equals = |text: &str| memchr_iter(b'=', text.as_bytes()).count();
     let has_many = equals(text) > MOST_NODES as usize;
     let (mut offset, mut links, mut all_attributes, mut in_comment) = (0, 0, 0, false);
-    for part in text.split('<') {
+    for end in memchr_iter(b'<', text.as_bytes()).chain([text.len()]) {
+        let part = &text[offset..end];
         let commented = in_comment || part.starts_with("!--");
         in_comment = commented && !part.contains("-->");
         links += usize::from(!commented && is_link(part));
         let is_attribute = |&at: &usize| part[at + 1..].trim_start().starts_with(['"', '\'']);
-        let attributes = match equals(part) {
-            few if few <= MOST_ATTRIBUTES && !has_many => few,
-            _ => memchr::memchr_iter(b'=', part.as_bytes()).filter(is_attribute).count(),
+        // An attribute has at least three bytes more, x="".
+        let attributes = match part.len() / 4 {
+            few if few <= MOST_ATTRIBUTES && !has_many => 0,
+            _ => memchr_iter(b'=', part.as_bytes()).filter(is_attribute).count(),
         };
         all_attributes += attributes;
         for (what, count, limit) in [
@@ -123,15 +126,16 @@ fn refuse_many(text: &str) -> Result<()> {
                 return refused(what, limit, offset);
             }
         }
-        offset += part.len() + 1;
+        offset = end + 1;
     }
     Ok(())
 }
 
 /// Whether the text after a `<` begins the element `link` of some namespace.
 fn is_link(part: &str) -> bool {
-    let name = part.split(|c: char| c.is_whitespace() || matches!(c, '/' | '>')).next();
-    name.is_some_and(|name| name.rsplit(':').next() == Some("link"))
+    let ends = |byte: &u8| byte.is_ascii_whitespace() || matches!(byte, b'/' | b'>');
+    let name = part.as_bytes().split(ends).next().unwrap_or_default();
+    name.strip_suffix(b"link").is_some_and(|prefix| prefix.last().is_none_or(|&last| last == b':'))
 }
 
 fn refuse_deep_nesting(document: &Document<'_>) -> Result<()> {
@@ -198,7 +202,7 @@ impl<'a> Cursor<'a> {
     /// Line and column of the byte `offset`, which must not lie before the last one.
     pub(super) fn locate(&mut self, offset: usize) -> Location {
         let passed = self.text.get(self.offset..offset).unwrap_or_default();
-        let lines = memchr::memchr_iter(b'\n', passed.as_bytes()).count();
+        let lines = memchr_iter(b'\n', passed.as_bytes()).count();
         if lines > 0 {
             self.location = Location { line: self.location.line + lines, column: 1 };
         }
