@@ -160,7 +160,7 @@ impl<'q> Batch<'q> {
                 Err((source, error)) => (source, Err(error), None, None),
             };
             let RowOrigin { line, id, carried, excerpt } = origin;
-            let (carried, excerpt, landing) = (Some(&carried), excerpt.as_ref(), landing.as_ref());
+            let (carried, excerpt, landing) = (carried.as_ref(), excerpt.as_ref(), landing.as_ref());
             let around = Around { line, record: b"", excerpt, carried, time, landing };
             self.answerer.answer(state.as_ref().map_err(Error::clone), || id, around, &mut block);
         }
@@ -206,7 +206,7 @@ impl Answerer<'_> {
         match row {
             Ok(row) => {
                 let carried = row.carried();
-                let around = Around { carried: Some(&carried), ..around };
+                let around = Around { carried: carried.as_ref(), ..around };
                 let read = row.read(robot, defaults, state);
                 self.answer(read.map(|()| &*state), || row.id(), around, block);
             }

@@ -23,7 +23,7 @@ pub struct RowOrigin {
     pub line: usize,
     pub id: Option<Value>,
     /// The fields to copy to the result.
-    pub carried: Carried,
+    pub carried: Option<Carried>,
     /// The line, if it is refused.
     pub excerpt: Option<Excerpt>,
 }

@@ -331,7 +331,7 @@ fn foreign_columns_are_carried_beside_a_refusal() {
     let error = row.state(&robot, &Defaults::default()).map(|_| ()).unwrap_err();
     let mut out = Vec::new();
     columns.append_header(&mut out);
-    columns.append_refused(&Refused::new(row.id(), row.line(), &error), Some(&row.carried()), &mut out);
+    columns.append_refused(&Refused::new(row.id(), row.line(), &error), row.carried().as_ref(), &mut out);
     let rows = by_column(&out);
     let cell = |column: &str| rows[0][column].as_str();
     assert_eq!([cell("id"), cell("verdict"), cell("outcome")], ["k,1", "refused", ""]);

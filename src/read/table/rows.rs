@@ -63,18 +63,12 @@ pub enum Carried {
     Columns(Arc<RecordBatch>, usize),
 }
 
-impl Default for Carried {
-    fn default() -> Self {
-        Self::Text(ByteRecord::new())
-    }
-}
-
 impl Carried {
     pub fn new(fields: impl Iterator<Item = String>) -> Self {
         Self::Text(fields.collect::<Vec<_>>().into())
     }
 
-    /// How many there are, in the order of [`Header::carried`]; none if the row could not be read.
+    /// How many there are, in the order of [`Header::carried`].
     pub fn len(&self) -> usize {
         match self {
             Self::Text(cells) | Self::Json(cells) => cells.len(),
@@ -238,16 +232,17 @@ impl Row<'_> {
         }
     }
 
-    /// The fields to copy to the result, if the row has as many as the header.
-    pub fn carried(&self) -> Carried {
+    /// The fields to copy to the result, if there are some and the row has as many as the header.
+    pub fn carried(&self) -> Option<Carried> {
+        self.header.place(TableColumn::Carried)?;
         let cells = match self.source {
             Source::Text(cells, _) if cells.len() == self.header.columns.len() => cells,
-            Source::Text(..) => return Carried::default(),
+            Source::Text(..) => return None,
             #[cfg(feature = "columnar")]
-            Source::Columns(columns, row) => return Carried::Columns(Arc::clone(&columns.carried), row),
+            Source::Columns(columns, row) => return Some(Carried::Columns(Arc::clone(&columns.carried), row)),
         };
         let cells = self.header.places(TableColumn::Carried).filter_map(|at| cells.get(at)).collect();
-        if self.header.form == Form::Ndjson { Carried::Json(cells) } else { Carried::Text(cells) }
+        Some(if self.header.form == Form::Ndjson { Carried::Json(cells) } else { Carried::Text(cells) })
     }
 
     /// The time \[s\].
