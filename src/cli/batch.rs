@@ -154,12 +154,11 @@ pub(super) fn run(args: &Args) -> Completion {
     if let Some(columns) = sink.columns.take() {
         sink.write(&columns.finish()?)?;
     }
-    progress.finish_and_clear();
-    sink.note_unreported();
     let OutputSink { output, summary: mut counts, gait, .. } = sink;
     let useful = answered > 0 || counts.refused < counts.states || counts.states == 0 || args.refused == Answered::All;
     output.finish(useful)?;
     counts.missing_columns = header.as_ref().map_or(Vec::new(), |header| header.missing().to_vec());
+    progress.finish_and_clear();
 
     if let (Some(header), Ok(dropped)) = (&header, dropped.lock()) {
         note_all(notes::left_out(header, &dropped));

@@ -3,7 +3,6 @@
 use super::diagnostic::{note, report_with};
 use super::resume::BatchOutput;
 use super::{Failure, status};
-use crate::Reason;
 use crate::batch::{Block, RefusedRecord, Sink, Summary};
 use crate::draw::page::Gait;
 #[cfg(feature = "columnar")]
@@ -12,10 +11,10 @@ use indicatif::ProgressBar;
 use memchr::memchr_iter;
 use std::collections::HashMap;
 use std::io::{self, ErrorKind, Write};
-use std::mem::{Discriminant, discriminant};
 
-/// How many refusals are reported on standard error, and how many of one reason at one place; the output has all.
+/// How many refusals are reported on standard error; the output has all of them.
 const REPORTED: u64 = 20;
+/// How many are reported of one reason, but for its numbers, at one place.
 const ALIKE: u64 = 3;
 
 /// Writes the answers in their order.
@@ -28,10 +27,9 @@ pub(super) struct OutputSink<'a> {
     pub summary: Summary,
     /// The states for a page, if one is requested.
     pub gait: Gait,
-    /// How many refusals were reported, of each reason and place, and how many were not.
+    /// How many refusals were reported, and how many there were of each place and reason without its numbers.
     reported: u64,
-    alike: HashMap<(Discriminant<Reason>, Option<String>), u64>,
-    unreported: u64,
+    alike: HashMap<(Option<String>, String), u64>,
     /// Lines written so far.
     lines: usize,
     /// For columns with types.
@@ -50,7 +48,6 @@ impl<'a> OutputSink<'a> {
             gait: Gait::default(),
             reported: 0,
             alike: HashMap::new(),
-            unreported: 0,
             lines: 0,
             #[cfg(feature = "columnar")]
             columns: None,
@@ -85,23 +82,21 @@ impl<'a> OutputSink<'a> {
     }
 
     fn report(&mut self, RefusedRecord { error, excerpt }: RefusedRecord) {
-        if self.reported < REPORTED {
-            let kind = (discriminant(error.reason()), error.place().map(str::to_owned));
-            let alike = self.alike.entry(kind).or_default();
-            if *alike < ALIKE {
-                (*alike, self.reported) = (*alike + 1, self.reported + 1);
-                return self.progress.suspend(|| report_with(&error.in_file(self.input), excerpt.as_ref()));
-            }
+        if self.reported > REPORTED {
+            return;
         }
-        self.unreported += 1;
-    }
-
-    /// Notes how many refusals were not reported.
-    pub fn note_unreported(&self) {
-        match self.unreported {
-            0 => {}
-            1 => note("1 more refusal stands in the output alone"),
-            more => note(&format!("{more} more refusals stand in the output alone")),
+        let reason = error.reason().to_string();
+        let kind = (error.place().map(str::to_owned), reason.replace(|c: char| c.is_ascii_digit(), ""));
+        let alike = self.alike.entry(kind).or_default();
+        *alike += 1;
+        if *alike <= ALIKE {
+            self.reported += 1;
+            self.progress.suspend(|| match self.reported {
+                0..=REPORTED => report_with(&error.in_file(self.input), excerpt.as_ref()),
+                _ => note("further refusals stand in the output alone"),
+            });
+        } else if *alike == ALIKE + 1 {
+            self.progress.suspend(|| note(&format!("further refusals like this stand in the output alone: {reason}")));
         }
     }
 
