@@ -109,12 +109,10 @@ impl RowSink for Vec<u8> {
             let _ = match cell {
                 Cell::Empty => row.write_field([]),
                 Cell::Text(text) => columns.append_text(text.as_bytes(), &mut row),
-                Cell::Number(number) if number.is_finite() => {
-                    // The shortest that read back as the same number, as in JSON.
-                    let _ = serde_json::to_writer(&mut digits, number);
+                Cell::Number(number) => {
+                    append_number(*number, &mut digits);
                     row.write_field(&digits)
                 }
-                Cell::Number(number) => row.write_field(number.to_string()),
                 Cell::Integer(number) => row.write_field(number.to_string()),
                 Cell::Boolean(holds) => row.write_field(holds.to_string()),
                 Cell::Carried(carried, which) => columns.append_text(&carried.text(*which), &mut row),
@@ -123,6 +121,23 @@ impl RowSink for Vec<u8> {
         let _ = row.write_record(None::<&[u8]>);
         let _ = row.flush();
     }
+}
+
+/// The shortest digits that read back as the same number, as in JSON.
+fn append_number(number: f64, out: &mut Vec<u8>) {
+    if number.is_finite() {
+        // Writing into memory cannot fail.
+        let _ = serde_json::to_writer(out, &number);
+    } else {
+        out.extend(number.to_string().into_bytes());
+    }
+}
+
+/// The same as text.
+pub(super) fn number_text(number: f64) -> String {
+    let mut digits = Vec::new();
+    append_number(number, &mut digits);
+    String::from_utf8_lossy(&digits).into_owned()
 }
 
 /// What a row of results is about.

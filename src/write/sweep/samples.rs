@@ -3,6 +3,7 @@
 use crate::read::table::Carried;
 use crate::state::NamedContact;
 use crate::sweep::{Regime, RobotStudy, Solver};
+use crate::write::csv::number_text;
 use crate::write::{Columns, Detail, ErrorObject, Kind, Report, RowKind, RowSink, append_line};
 use crate::{Impact, Result};
 use serde::Serialize;
@@ -70,7 +71,7 @@ impl<'a> SampleRecord<'a> {
         letter: impl Fn(&Regime) -> String,
         out: &mut dyn RowSink,
     ) -> bool {
-        let values = || self.point.iter().map(|value| format!("{value:?}"));
+        let values = || self.point.iter().map(|&value| number_text(value));
         let carried = |impact: &Result<Box<Impact>>| Carried::new(values().chain([letter(&Regime::of(impact))]));
         let answered = solver.at(&self.point, |_, state, pipeline| {
             let impact = pipeline.answer(&state);
