@@ -131,7 +131,7 @@ fn refuse_xacro(robot: Node<'_, '_>) -> Result<()> {
     if let Some(element) = robot.descendants().find(|node| node.is_element() && is_macro(node)) {
         return Err(refused(element, format!("<xacro:{}>", element.tag_name().name())));
     }
-    // It may also be written by its number.
+    // A dollar sign may also be written by its number.
     let text = robot.document().input_text();
     let has_dollar = text.contains('$') || text.contains("&#");
     for element in robot.children().filter(Node::is_element) {

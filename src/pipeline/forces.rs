@@ -92,18 +92,14 @@ impl Pipeline<'_> {
         let scene = &state.scene;
         let (mut prepared, slips) = self.prepare_sustained(state)?;
         if state.uncertainty.is_some() {
-            prepared
-                .impact
-                .notes
-                .push("the uncertainty is not asked about: forces are those of the given numbers".to_owned());
+            let notes = &mut prepared.impact.notes;
+            notes.push("the uncertainty is not asked about: forces are those of the given numbers".to_owned());
         }
         let unforced = self.pose(state, &mut prepared, &slips)?;
+        let notes = &mut prepared.impact.notes;
         for &joint in scene.braked.iter().filter(|&&joint| unforced.driven.torque.values()[joint] != 0.0) {
             let name = &self.robot.joints[joint].name;
-            prepared
-                .impact
-                .notes
-                .push(format!("{name} is held: its torque is carried by what holds it, and has no effect"));
+            notes.push(format!("{name} is held: its torque is carried by what holds it, and has no effect"));
         }
         let asked = self.asked_of_forces(prepared.impact.contacts.len(), chosen);
         let mut analysis = self.analyze_forces(state, &prepared, &unforced, asked);

@@ -267,7 +267,7 @@ impl Pipeline<'_> {
 
     /// Compiles the plan, unless the last one was for the same braked joints and rotors.
     pub(super) fn compile(&mut self, scene: &Scene) {
-        // By entries: the masked loads of a comparison of memory at the address of an empty list take 200 cycles.
+        // By entries: to compare the memory of empty lists takes 200 cycles (docs/speed.md).
         if self.braked.iter().ne(&scene.braked) || self.rotor_inertia != scene.rotor_inertia {
             let (without, kept) = match self.options.reductions.held {
                 true => (&scene.braked[..], &[][..]),

@@ -17,6 +17,8 @@ pub struct Gait {
     /// Whether the states are single moments, and nothing is known of the time between them.
     apart: bool,
     states: Vec<ListedKeyframe>,
+    /// The friction of all contacts, of those that are not kept as well; at most two.
+    frictions: Vec<Friction>,
     halvings: u32,
     count: usize,
 }
@@ -34,6 +36,11 @@ impl Gait {
     }
 
     pub fn push(&mut self, mut state: ListedKeyframe) {
+        for contact in state.keyframe.drawing.iter().flat_map(|drawing| &drawing.contacts) {
+            if self.frictions.len() < 2 && !self.frictions.contains(&contact.friction) {
+                self.frictions.push(contact.friction);
+            }
+        }
         if self.count.is_multiple_of(1 << self.halvings) {
             state.keyframe.face(self.forward);
             self.states.push(state);
@@ -86,7 +93,7 @@ impl Gait {
             [("margin", |mark| mark.margin), ("friction needed", |mark| mark.friction)];
         let panel = |(quantity, value)| panel(quantity, x.clone(), &marks, size, value);
         let mut panels: Vec<Panel> = values.into_iter().filter_map(panel).collect();
-        // The friction that all contacts have is a line across what is needed, unless it is far above.
+        // The friction that all contacts have is a line across what is needed, the last panel, unless it is far above.
         let is_near =
             |mu: f64| marks.iter().filter_map(|mark| mark.friction).any(|own| own.is_finite() && mu < FAR * own);
         let given_friction = self.friction().filter(|&mu| is_near(mu));
@@ -136,13 +143,10 @@ impl Gait {
         })
     }
 
-    /// The friction of all contacts of impacts, if it is one, and of use on an axis.
+    /// The friction of all contacts, if it is one, and has a place on an axis.
     fn friction(&self) -> Option<f64> {
-        let contacts = self.impacts().filter_map(|(_, state, _)| state.keyframe.drawing.as_ref());
-        let mut all = contacts.flat_map(|drawing| &drawing.contacts).map(|contact| contact.friction);
-        let first = all.next()?;
-        match first {
-            Friction::Finite(mu) if mu > 0.0 && all.all(|own| own == first) => Some(mu),
+        match self.frictions[..] {
+            [Friction::Finite(mu)] if mu > 0.0 => Some(mu),
             _ => None,
         }
     }
