@@ -559,3 +559,22 @@ pub(super) fn notes(notes: &[String]) -> String {
 fn short(note: &str) -> &str {
     memchr::memmem::find(note.as_bytes(), AT_REST.as_bytes()).map_or(note, |end| &note[..end + AT_REST.len()])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_the_notation_of_json() {
+        for (number, text) in [
+            (5e-5, "0.00005"),
+            (5.46e16, "5.46e+16"),
+            (1.0, "1.0"),
+            (-0.0, "-0.0"),
+            (f64::NAN, "NaN"),
+            (f64::NEG_INFINITY, "-inf"),
+        ] {
+            assert_eq!(number_text(number), text);
+        }
+    }
+}

@@ -110,6 +110,25 @@ fn a_picture_and_the_results_are_two_files() {
 }
 
 #[test]
+fn the_given_friction_is_a_line_if_all_contacts_have_it() {
+    let walk = read("examples/gait/ramone_walk.ndjson");
+    let given = "\"friction\": 0.6";
+    let with = |mu: &str| given.replace("0.6", mu);
+    for (name, states, is_drawn) in [
+        ("one", walk.clone(), true),
+        ("mixed", walk.replacen(given, &with("0.7"), 1), false),
+        ("far", walk.replace(given, &with("600")), false),
+        ("none", walk.replace(given, &with("0")), false),
+        ("infinite", walk.replace(given, &with("\"infinite\"")), false),
+    ] {
+        let states = file(&format!("given_{name}.ndjson"), states);
+        let picture = svg(&["batch", RAMONE, &states, "--quiet"], &format!("given_{name}"));
+        let legend = picture.lines().filter(|line| line.contains(">friction ") && !line.contains(">friction needed"));
+        assert_eq!(legend.count(), usize::from(is_drawn), "{name}");
+    }
+}
+
+#[test]
 fn an_unwritable_file_is_refused_before_the_work() {
     let path = &place("no_such_directory/x.svg");
     for command in [

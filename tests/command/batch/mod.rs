@@ -112,6 +112,16 @@ fn many_refusals_do_not_flood_standard_error() {
 }
 
 #[test]
+fn refusals_are_of_one_kind_if_they_differ_in_numbers_alone() {
+    let stance = |link: &str| format!("{{\"stance\": \"{link}\"}}\n");
+    let deep = |height: u32| format!("{{\"position\": {{\"base\": {{\"z\": 0.{height}}}}}, \"friction\": 1}}\n");
+    let input = stance("lef_foot").repeat(4) + &stance("rigt_foot") + &(11..20).map(deep).collect::<String>();
+    let run = batch(&["-"], input);
+    let shown = |what: &str| run.stderr.matches(what).count();
+    assert_eq!([shown("error: "), shown("named \"rigt_foot\""), shown("alone: ")], [3 + 1 + 3, 1, 2], "{}", run.stderr);
+}
+
+#[test]
 fn an_input_without_states_is_refused() {
     let missing = "error: <stdin>: a state is missing\nhint: the input is empty\n";
     let no_rows = missing.replace("input is empty", "table has a header and no rows");
