@@ -29,6 +29,8 @@ pub struct Unsolved {
     pub problem: ContactProblem,
     /// How far each foot is from the ground \[m\]; empty if the state names its contacts.
     pub clearance: Vec<f64>,
+    /// At which corner of its link's feet each contact is, counted through them; empty as well.
+    pub corners: Vec<usize>,
 }
 
 /// A foot that does not touch.
@@ -119,14 +121,19 @@ impl Pipeline<'_> {
             Aspect::Forces => self.prepare_forces(state)?,
         };
         let Impact { placement, contacts, problem, .. } = *prepared.impact;
-        let clearance = match state.scene.contacts {
-            Some(_) => Vec::new(),
-            None => {
-                let surface = Surface::new(&state.scene.ground);
-                self.feet.iter().map(|foot| surface.clearance(foot, &placement)).collect()
-            }
+        if state.scene.contacts.is_some() {
+            return Ok(Unsolved { contacts, problem, clearance: Vec::new(), corners: Vec::new() });
+        }
+        let surface = Surface::new(&state.scene.ground);
+        let clearance = self.feet.iter().map(|foot| surface.clearance(foot, &placement)).collect();
+        // Of an ellipse the corner is the nearest to what touches.
+        let corner = |contact: &Contact| {
+            let own = self.feet.iter().filter(|foot| foot.link == contact.link);
+            let away = own.flat_map(|foot| foot.outline.corners()).map(|&corner| (corner - contact.center).length());
+            away.enumerate().min_by(|(_, a), (_, b)| a.total_cmp(b)).map_or(0, |(at, _)| at)
         };
-        Ok(Unsolved { contacts, problem, clearance })
+        let corners = contacts.iter().map(corner).collect();
+        Ok(Unsolved { contacts, problem, clearance, corners })
     }
 
     /// Everything up to the contact problem.

@@ -5,6 +5,8 @@
 //!     N at five points --quartic--> sign changes, least |N| --bisected on N itself--> places to ask
 //! ```
 //!
+//! Where a link rolls from one corner to another, both are closed for a moment: such places are bisected and asked, too.
+//!
 //! A combination that one clearly violated inequality excludes, on the whole interval or near a zero, is not followed
 //! there. Nothing here decides anything: at every place where a zero may be, the regime itself is asked for. What N
 //! does between the five points beyond its fourth differences is not seen; that is the part that is not guaranteed.
@@ -173,6 +175,9 @@ impl<W: FnMut(f64) -> Option<Arc<Watched>>> Search<'_, W> {
             self.found.extend(&places[1..NODES - 1]);
             return;
         };
+        for (at, ends) in places.windows(2).zip(nodes.windows(2)) {
+            self.rolls([(at[0], &ends[0]), (at[1], &ends[1])]);
+        }
         let mut followed = followed(&nodes);
         followed.retain(|(quantity, values)| {
             let known = values.iter().all(|value| value.is_finite());
@@ -202,6 +207,22 @@ impl<W: FnMut(f64) -> Option<Arc<Watched>>> Search<'_, W> {
         let apart = crossed.windows(2).filter(|pair| pair[1] - pair[0] > self.resolution);
         self.found.extend(apart.map(|pair| 0.5 * (pair[0] + pair[1])));
         self.found.extend(touched.into_iter().chain(crossed));
+    }
+
+    /// Adds the places between two at which a link rolls from one corner to another: both may be closed there.
+    fn rolls(&mut self, [(mut a, first), (mut b, last)]: [(f64, &Arc<Watched>); 2]) {
+        while first.corners != last.corners && b - a > self.resolution && !is_spent() {
+            let middle = 0.5 * (a + b);
+            match (self.watch)(middle).filter(|watched| same_combinations(watched, first)) {
+                Some(watched) if watched.corners == first.corners => a = middle,
+                Some(watched) if watched.corners == last.corners => b = middle,
+                Some(watched) => {
+                    self.rolls([(a, first), (middle, &watched)]);
+                    return self.rolls([(middle, &watched), (b, last)]);
+                }
+                None => return self.found.push(middle),
+            }
+        }
     }
 
     /// Adds the places where a quantity with these `values` at the nodes is zero or comes near zero.
@@ -445,7 +466,7 @@ mod tests {
             let numerators = vec![-1.0 - 0.1 * x, libm::sin(40.0 * x)];
             let inequalities =
                 Inequalities { determinants: vec![1.0], ends: vec![2], numerators, ..Inequalities::default() };
-            Some(Arc::new(Watched { contacts: Vec::new(), inequalities, clearance: Vec::new() }))
+            Some(Arc::new(Watched { contacts: Vec::new(), inequalities, clearance: Vec::new(), corners: Vec::new() }))
         };
         let places = suspects(&mut watch, 0.0, 1.0, 1e-12);
         assert_eq!((places, asked), (Vec::new(), NODES));

@@ -53,6 +53,8 @@ pub struct Watched {
     pub inequalities: Inequalities,
     /// How far each foot is above the contact tolerance \[m\].
     pub clearance: Vec<f64>,
+    /// At which corner of its link's feet each contact is: one that is alone on its link has the same name at all.
+    pub corners: Vec<usize>,
 }
 
 /// Properties of a region, found at a point in it.
@@ -171,7 +173,7 @@ impl<'a> Solver<'a> {
 
     fn find_watched(&mut self, point: &[f64]) -> Option<Watched> {
         let unsolved = self.at(point, |_, state, pipeline| Ok((pipeline.unsolved(&state)?, pipeline.tolerance())));
-        let (Unsolved { contacts, problem, clearance }, tolerance) = unsolved.ok()?;
+        let (Unsolved { contacts, problem, clearance, corners }, tolerance) = unsolved.ok()?;
         Some(Watched {
             inequalities: match contacts.len() <= WATCHED_CONTACTS {
                 true => Inequalities::of(&problem, &mut self.scratch),
@@ -179,6 +181,7 @@ impl<'a> Solver<'a> {
             },
             contacts: contacts.into_iter().map(|contact| contact.name.to_string()).collect(),
             clearance: clearance.into_iter().map(|height| height - tolerance).collect(),
+            corners,
         })
     }
 }

@@ -11,6 +11,8 @@
 //! alone (lift-off: c_n+ = 0 of the trailing foot). Where neither is valid the trailing foot slides, and where both
 //! are, it does as well: three outcomes.
 
+use crate::support::command::file;
+use crate::support::urdf::{body, collision};
 use crate::sweep::command::{RANGE, Sweep, assert_begins, straight, sweep, written};
 use serde_json::json;
 
@@ -141,4 +143,22 @@ fn a_region_that_ends_beside_a_sample_is_seen() {
     let from = of_block("0", "s*(s + 0.001) + 1e-17", &[]);
     assert_eq!(from.len(), 3, "{from:?}");
     assert!((from[1] + 0.001).abs() < 1e-10 && from[2].abs() < 1e-10, "{from:?}");
+}
+
+/// A cube that falls on an edge: both of its edges touch for a moment where it rolls from one to the other, up to
+/// the angle at which the higher one is as far from the ground as the tolerance.
+#[test]
+fn both_corners_of_a_rolling_foot_are_seen() {
+    let cube = file("cube.urdf", body(0.3, &collision([0.0; 2], "box size=\"1 1 1\"")));
+    let study = json!({"parameters": {"s": {"from": -0.53, "to": 0.67, "steps": 13}}, "state": {"friction": 0.2,
+        "place": "lowest", "position": {"base": {"pitch": "s"}}, "velocity": {"base": {"x": 4, "z": -1}}}});
+    let Sweep { regions, .. } = written(&cube, &study, &["--contact-tolerance", "1e-4"]);
+    let level: Vec<_> =
+        regions.iter().filter(|region| region.contacts.as_ref().is_some_and(|all| all.len() == 2)).collect();
+    assert_eq!(level.len(), 1, "{regions:?}");
+    // Of a side of 1 m.
+    assert!([level[0].from + 1e-4, level[0].to - 1e-4].iter().all(|off| off.abs() < 1e-9), "{level:?}");
+    let beside: Vec<_> =
+        regions.windows(3).find(|three| three[1].from == level[0].from).into_iter().flatten().collect();
+    assert_eq!(beside[0].set(), beside[2].set());
 }
