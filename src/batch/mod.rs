@@ -18,7 +18,7 @@ pub use chunk::{Chunk, Chunks, RECORD_LIMIT};
 pub use recording::{Recording, RowOrigin};
 pub use run::{Block, RefusedRecord, Sink, TaskSource, run};
 pub use states::States;
-pub use summary::{ModeCount, MoreFriction, Nearest, Needed, StateRef, Summary, Verdicts};
+pub use summary::{ModeCount, MoreFriction, Nearest, Needed, OddJoint, OddJoints, StateRef, Summary, Verdicts};
 
 use crate::budget::TotalBudget;
 use crate::draw::{Keyframe, ListedKeyframe};
@@ -266,6 +266,14 @@ impl Answerer<'_> {
         self.keep(state.id.as_ref(), around, block, || {
             Keyframe::of_impact(robot, &self.question.options.feet, state, impact)
         });
+        block.summary.early += u64::from(around.landing.is_some_and(|landing| landing.is_early));
+        if self.question.options.friction_needed
+            && let Some(what) = state.odd_joints(robot).next()
+        {
+            let state = StateRef { id: state.id.clone().map(short_id), line: around.line };
+            let first = Some(OddJoint { state, what });
+            block.summary.odd_joints.add(OddJoints { states: 1, first });
+        }
         match impact.analyzed() {
             Ok(analysis) => {
                 let place = || StateRef { id: state.id.clone().map(short_id), line: around.line };

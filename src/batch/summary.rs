@@ -46,6 +46,12 @@ pub struct Summary {
     /// States with friction of their own, where another one is given for states without.
     #[serde(skip_serializing_if = "is_zero")]
     pub own_friction: u64,
+    /// States with a joint outside its limits or turned by more than a turn.
+    #[serde(skip_serializing_if = "OddJoints::is_empty")]
+    pub odd_joints: OddJoints,
+    /// Touchdowns of feet without noise that were taken before they reach the ground.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub early: u64,
     /// Columns of coordinates that the table of states does not have, which are 0 in all of them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub missing_columns: Vec<String>,
@@ -96,6 +102,37 @@ pub struct MoreFriction {
     /// The one that needs most; of equal ones the first.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub greatest: Option<Needed>,
+}
+
+/// States with a joint outside its limits, or turned by more than a turn as if angles were in degrees.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct OddJoints {
+    /// How many there are.
+    pub states: u64,
+    /// The first of them.
+    pub first: Option<OddJoint>,
+}
+
+/// A state of the batch, and what is odd about the first such joint.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct OddJoint {
+    /// Which state it is.
+    #[serde(flatten)]
+    pub state: StateRef,
+    /// In words.
+    pub what: String,
+}
+
+impl OddJoints {
+    fn is_empty(&self) -> bool {
+        self.states == 0
+    }
+
+    /// Adds those of the states that follow.
+    pub fn add(&mut self, following: Self) {
+        self.states += following.states;
+        self.first = self.first.take().or(following.first);
+    }
 }
 
 /// A state of the batch, and the friction that it needs.
@@ -175,6 +212,8 @@ impl Summary {
         }
         self.other_modes += following.other_modes;
         self.own_friction += following.own_friction;
+        self.odd_joints.add(following.odd_joints);
+        self.early += following.early;
     }
 
     fn near(&mut self, state: impl Fn() -> StateRef, outcomes: &[Outcome]) {
@@ -268,6 +307,20 @@ impl fmt::Display for Summary {
         if self.resting > 0 {
             let states = self.resting;
             writeln!(f, "slow contacts are taken as exactly at rest: {states}; `resting_speed: 0` takes none so")?;
+        }
+        if let OddJoints { states, first: Some(OddJoint { state, what }) } = &self.odd_joints {
+            writeln!(
+                f,
+                "joints outside their limits or beyond a turn: {states}, the first in {state}: {}",
+                visible(what)
+            )?;
+        }
+        if self.early > 0 {
+            let early = self.early;
+            writeln!(
+                f,
+                "feet without noise are taken 2 mm above the ground: {early}; of a simulation see `simulated`"
+            )?;
         }
         let mut lists: Vec<&ModeCount> = self.modes.iter().filter(|list| !list.modes.is_empty()).collect();
         lists.sort_by_key(|list| std::cmp::Reverse(list.outcomes));

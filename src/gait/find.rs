@@ -15,6 +15,9 @@ use crate::state::NamedContact;
 use crate::{Error, Reason, Result};
 use std::collections::VecDeque;
 
+/// Heights have no noise that is a greater part of [`Thresholds::above`].
+const EXACT: f64 = 1e-3;
+
 /// The touchdowns in `samples`, states of `robot` with the `feet` that were added to it: each the sample at the moment
 /// of contact, with its landing. Refused samples stay in their place.
 ///
@@ -253,7 +256,10 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
             let (window, heights, level) = (&self.window, self.heights, self.level);
             let mut sample = Arrival { window, points: &mut self.points, at, heights, level }.sample(&first);
             let (shift_z, striking) = self.points.touch(&mut sample.state, first.point, &also, touching, together);
-            sample.landing = Some(Landing { row: self.window.frames[first.row].row, striking, shift_z, at, touching });
+            let is_clean = self.window.deviation(first.point) <= EXACT * self.thresholds.above;
+            let is_early = heights == Heights::Recorded && first.is_soft() && is_clean;
+            let row = self.window.frames[first.row].row;
+            sample.landing = Some(Landing { row, striking, shift_z, at, touching, is_early });
             let finite = sample.state.position.iter().chain(&sample.state.velocity).all(|entry| entry.is_finite());
             self.ready.push_back(if finite {
                 Ok(sample)

@@ -163,6 +163,9 @@ pub struct Landing {
     pub at: At,
     /// Which other points were taken to touch the ground.
     pub touching: Touching,
+    /// Whether the foot slows down to the ground and its height has no noise, as in a simulation: the state is then one
+    /// before the impact.
+    pub is_early: bool,
 }
 
 /// How recorded heights are meant.

@@ -32,6 +32,13 @@ pub(super) enum Way {
     Along(usize),
 }
 
+impl Strike {
+    /// Whether the point is over the level on which it stops.
+    pub fn is_soft(&self) -> bool {
+        self.onward == Way::Soft && self.height.is_some()
+    }
+}
+
 impl<S> Window<S> {
     /// The strike of a point whose descent ended at the height `end`, known by its last `rows` rows.
     pub fn stopped(&self, point: usize, rows: usize, end: f64, at: At, thresholds: Thresholds) -> Option<Strike> {

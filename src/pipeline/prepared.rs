@@ -146,7 +146,7 @@ impl Pipeline<'_> {
         self.assembly.factorize();
         self.check_inertia(&scene.loops)?;
 
-        let odd = self.odd_angles(state)?;
+        self.check_limits(state)?;
         let surface = Surface::new(&scene.ground);
         let mut prepared = self.spare.take().unwrap_or_default();
         // A field more is an error here.
@@ -172,7 +172,8 @@ impl Pipeline<'_> {
         (*analysis, *friction_needed, *slides_regardless) = (None, None, false);
         (*sustained, *holds, *matrices) = (None, None, None);
         left_out.clear();
-        notes.clone_from(&odd);
+        notes.clear();
+        notes.extend(state.odd_joints(self.robot));
         self.note_unused_laws(scene, notes);
         state.velocity.clone_into(velocity);
         (*placement, *foot) = self.stand(state, &surface, velocity, take(placement))?;
@@ -180,7 +181,7 @@ impl Pipeline<'_> {
         let footing = self.footing(scene, placement, &surface);
         let detected = self
             .contacts(&footing, foot.as_ref(), take(contacts), notes)
-            .map_err(|error| self.sunk(error, scene, self.open_foot(&footing, &[], velocity), odd.first()))?;
+            .map_err(|error| self.sunk(error, state, self.open_foot(&footing, &[], velocity)))?;
         (*contacts, *merged, *out_of_reach) = (detected.contacts, detected.merged, detected.out_of_reach);
         *nearest = if self.options.brief { None } else { self.open_foot(&footing, contacts, velocity) };
         match scene.contacts {
@@ -230,21 +231,14 @@ impl Pipeline<'_> {
         check_length("rotor_inertia", joints.max(state.scene.rotor_inertia.len()), joints)
     }
 
-    /// What is odd about the joints: those outside their limits, or the refusal of the first of them, and angles that
-    /// look like degrees.
-    fn odd_angles(&self, state: &State) -> Result<Vec<String>> {
-        let mut odd = Vec::new();
-        for outside in state.outside_limits(self.robot) {
-            if self.options.strict_limits {
-                let error = Error::new(Reason::Inconsistent(outside.to_string()));
-                let hint = "correct the state or the limits of the robot's file, or do without `strict_limits`";
-                return Err(error.at(format!("position.joints.{}", outside.joint.name)).hint(hint));
-            }
-            odd.push(outside.to_string());
+    /// Refuses a joint outside its limits, if that is asked for.
+    fn check_limits(&self, state: &State) -> Result<()> {
+        match state.outside_limits(self.robot).next().filter(|_| self.options.strict_limits) {
+            None => Ok(()),
+            Some(outside) => Err(Error::new(Reason::Inconsistent(outside.to_string()))
+                .at(format!("position.joints.{}", outside.joint.name))
+                .hint("correct the state or the limits of the robot's file, or do without `strict_limits`")),
         }
-        let like_degrees = state.like_degrees(self.robot);
-        odd.extend(like_degrees.map(|(name, angle)| format!("{name} = {angle} rad is more than a turn; degrees?")));
-        Ok(odd)
     }
 
     /// Notes friction and restitution of links on which nothing can touch.
@@ -434,18 +428,18 @@ impl Pipeline<'_> {
     }
 
     /// The refusal of a foot that is too deep, completed by how the `lowest` foot moves, and for a stance with a remedy
-    /// that leaves the base to it; `odd` is the first thing that is odd about the pose.
-    fn sunk(&self, error: Error, scene: &Scene, lowest: Option<NearestFoot>, odd: Option<&String>) -> Error {
+    /// that leaves the base to it; the first odd joint may be why.
+    fn sunk(&self, error: Error, state: &State, lowest: Option<NearestFoot>) -> Error {
         let Reason::Penetration { link, depth, tolerance, .. } = error.reason() else { return error };
         let velocity = lowest.filter(|foot| self.robot.links[foot.link].name == *link).map(|foot| foot.velocity);
-        let hint = match (scene.stance, error.remedy()) {
+        let hint = match (state.scene.stance, error.remedy()) {
             (Some(_), _) | (_, None) => format!(
                 "a stance leaves the other feet where the pose puts them: correct the pitch or the joints, stand on \
                  {link}, or give `place: lowest` instead of the stance"
             ),
             (None, Some(remedy)) => format!("{remedy}; `place: lowest` puts the lowest foot on the ground"),
         };
-        let hint = odd.into_iter().fold(hint, |hint, odd| format!("{hint}; {odd}"));
+        let hint = state.odd_joints(self.robot).take(1).fold(hint, |hint, odd| format!("{hint}; {odd}"));
         Error::new(Reason::Penetration { link: link.clone(), depth: *depth, tolerance: *tolerance, velocity })
             .hint(hint)
     }

@@ -35,9 +35,17 @@ impl State {
         })
     }
 
+    /// What is odd about the joints, in sentences: those outside their limits, and angles that look like degrees.
+    pub fn odd_joints(&self, robot: &Robot) -> impl Iterator<Item = String> {
+        let like_degrees = self.like_degrees(robot);
+        let like_degrees =
+            like_degrees.map(|(name, angle)| format!("{name} = {angle} rad is more than a turn; degrees?"));
+        self.outside_limits(robot).map(|outside| outside.to_string()).chain(like_degrees)
+    }
+
     /// The pitch and the joints without limits that are more than a turn, as degrees are: name and angle \[rad\]. Wheels,
     /// which carry no other joint, do turn so far: of these the whole numbers, as degrees written by hand are.
-    pub fn like_degrees<'r>(&self, robot: &'r Robot) -> impl Iterator<Item = (&'r str, f64)> {
+    fn like_degrees<'r>(&self, robot: &'r Robot) -> impl Iterator<Item = (&'r str, f64)> {
         let base = robot.base_dofs();
         let is_free_angle = move |at: usize| match at.checked_sub(base) {
             Some(joint) => robot.joints[joint].limits.is_none() && robot.joints[joint].axis.is_revolute(),

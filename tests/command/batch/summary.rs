@@ -56,6 +56,19 @@ all outcomes slide because friction is too small: 2; most is needed by 3 (line 3
 }
 
 #[test]
+fn odd_joints_are_counted_and_the_first_is_named() {
+    let path = place("odd.json");
+    let turned = |pitch: f64| json!({"position": {"base": {"z": 0.5, "pitch": pitch}}});
+    let states = [1.0, 90.0, 180.0].map(|pitch| format!("{}\n", turned(pitch))).concat();
+    let run = batch(&["-", "--brief", "--friction", "1", "--summary", &path], states);
+    let what = "pitch = 90 rad is more than a turn; degrees?";
+    let expected = json!({"states": 2, "first": {"line": 2, "what": what}});
+    assert_eq!(parsed(&read(&path))["odd_joints"], expected);
+    let line = format!("joints outside their limits or beyond a turn: 2, the first in line 2: {what}\n");
+    assert!(run.stderr.contains(&line), "{}", run.stderr);
+}
+
+#[test]
 fn forces_are_answered_and_summed_up() {
     let path = place("forces.json");
     let resting = |x: f64| {

@@ -91,7 +91,8 @@ fn a_foot_that_slows_down_touches_above_its_level() {
         .collect();
     let high = [[-2e-3, 0.03, 0.0], [-1e-3, 0.02, 0.0]];
     let touchdowns = lifted(&[&high[..], &rows].concat(), At::Crossing, Touching::Strike);
-    let [Sample { state, time, .. }] = &touchdowns[..] else { panic!("{touchdowns:?}") };
+    let [touchdown @ Sample { state, time, .. }] = &touchdowns[..] else { panic!("{touchdowns:?}") };
+    assert!(landing(touchdown).is_early);
     let level = 5.0 * 0.005_f64.powi(2) + above();
     assert_near(state.position[3], level + 0.003, 1e-12);
     // Between rows a line is a parabola to 1.25 um, here at 0.2 m/s; backward differences are half a row late.
@@ -109,7 +110,8 @@ fn a_foot_that_is_stopped_at_once_touches_its_level() {
         .collect();
     let high = [[-2e-3, 0.03, 0.0], [-1e-3, 0.02, 0.0]];
     let touchdowns = lifted(&[&high[..], &rows].concat(), At::Crossing, Touching::Strike);
-    let [Sample { state, time, .. }] = &touchdowns[..] else { panic!("{touchdowns:?}") };
+    let [touchdown @ Sample { state, time, .. }] = &touchdowns[..] else { panic!("{touchdowns:?}") };
+    assert!(!landing(touchdown).is_early);
     assert_near(state.position[3], 0.0, 1e-12);
     assert_near(*time, 0.0057 / 0.2, 1e-12);
     assert_near(state.velocity[3], -0.2, 1e-9);

@@ -54,8 +54,8 @@ fn errors(hertz: u32, noise: f64, seed: u64) -> Vec<[f64; 2]> {
     let case = format!("{hertz} Hz, {noise} m, seed {seed}");
     assert_eq!(found.len(), strikes.len(), "{case}");
     let error = |(found, (time, foot)): (&heelstrike::gait::Sample<usize>, &Strike)| {
-        let Some(Landing { striking, .. }) = &found.landing else { panic!("{case}: no landing") };
-        assert_eq!(striking, foot, "{case} at {}", found.time);
+        let Some(Landing { striking, is_early, .. }) = &found.landing else { panic!("{case}: no landing") };
+        assert_eq!((striking.as_str(), *is_early), (*foot, false), "{case} at {}", found.time);
         let joint = 3 + usize::from(striking == "b");
         [found.time - time, found.state.velocity[1] + found.state.velocity[joint] + STRIKES]
     };
