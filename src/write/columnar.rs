@@ -14,7 +14,7 @@ use arrow_schema::{DataType, Field, Schema, SchemaRef};
 use arrow_select::concat::concat_batches;
 use arrow_select::interleave::interleave;
 use parquet::arrow::ArrowWriter;
-use parquet::basic::Compression;
+use parquet::basic::{Compression, Encoding};
 use parquet::errors::ParquetError;
 use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use parquet::schema::types::ColumnPath;
@@ -165,13 +165,17 @@ impl ColumnWriter {
                     .set_max_row_group_row_count(Some(ROW_GROUP))
                     .set_statistics_enabled(EnabledStatistics::Chunk)
                     .set_dictionary_enabled(false);
-                // Of text no one asks for the least and the greatest, and ids are all different.
-                let named = columns.names().iter().zip(columns.kinds());
-                for (name, _) in named.filter(|(_, kind)| **kind == Kind::Text) {
+                for (name, kind) in columns.names().iter().zip(columns.kinds()) {
                     let path = ColumnPath::new(vec![name.clone()]);
-                    properties = properties
-                        .set_column_dictionary_enabled(path.clone(), name != "id")
-                        .set_column_statistics_enabled(path, EnabledStatistics::None);
+                    properties = match kind {
+                        // Of text no one asks for the least and the greatest, and ids are all different.
+                        Kind::Text => properties
+                            .set_column_dictionary_enabled(path.clone(), name != "id")
+                            .set_column_statistics_enabled(path, EnabledStatistics::None),
+                        // Lines and counts follow each other.
+                        Kind::Integer => properties.set_column_encoding(path, Encoding::DELTA_BINARY_PACKED),
+                        _ => properties,
+                    };
                 }
                 let writer = ArrowWriter::try_new(Vec::new(), Arc::clone(&schema), Some(properties.build()));
                 Writer::Parquet(Box::new(writer.map_err(unwritable)?))
