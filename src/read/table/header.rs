@@ -460,8 +460,7 @@ fn coordinate(prefix: &str, name: &str, robot: &Robot, moving: fn(usize) -> Tabl
     }
     if prefix == "v_" && name.starts_with("after_") {
         let reason = Reason::Inconsistent("a velocity after an impact is not one of a state".into());
-        let hint =
-            format!("results are not read as states; give `foreign: {prefix}{}` to copy the column", short(name));
+        let hint = format!("write results with `brief`, or give `foreign: {prefix}{}` to copy the column", short(name));
         return Err(Error::new(reason).hint(hint));
     }
     let known: Vec<String> = robot.coordinates().map(|known| format!("{prefix}{}", prefixed(robot, known))).collect();
