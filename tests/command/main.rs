@@ -100,6 +100,36 @@ fn badly_measured() -> String {
 }
 
 #[test]
+fn many_rejections_are_listed_nearest_first() {
+    // Three contacts on their own, and three at one point, of which some combinations have no margin.
+    let rows = |row: [i32; 2]| (0..3).flat_map(|_| [[row[0], 0], [0, row[1]]]).collect::<Vec<_>>();
+    let unit = |at: usize| (0..6).map(|other| i32::from(at == other)).collect::<Vec<_>>();
+    let alone = json!({"delassus": (0..6).map(unit).collect::<Vec<_>>(), "friction": 0.8,
+        "velocity_before": [[0.5, -1], [-0.7, -0.4], [0.1, -0.2]]});
+    let together = json!({"mass_matrix": [[1, 0], [0, 2]], "velocity": [1, -1], "friction": 0.3,
+        "contact_jacobian": rows([1, 1])});
+    for problem in [alone, together] {
+        let solve = |format| heelstrike_reads(&["solve", "-", "--explain", "--format", format], problem.to_string());
+        let (text, answer) = (solve("text").text(), solve("json").line());
+        let (listed, more) =
+            text.split_once("fails, because\n").and_then(|(_, rest)| rest.split_once("  ... ")).expect("a table");
+        let margins: Vec<f64> = listed
+            .lines()
+            .map(|line| line.split_whitespace().nth(3).and_then(|cell| cell.parse().ok()).unwrap_or(f64::NEG_INFINITY))
+            .collect();
+        assert_eq!(margins.len(), 20, "{text}");
+        assert!(margins.is_sorted_by(|near, far| near >= far), "{text}");
+        let all = list(&answer["rejected"]);
+        let nearest = all.iter().filter_map(|rejection| rejection["margin"].as_f64()).fold(f64::NEG_INFINITY, f64::max);
+        assert!((nearest - margins[0]).abs() < 1e-5 && all.len() > 40, "{nearest} {text}");
+        assert!(more.starts_with(&format!("{} more, none closer to zero", all.len() - 20)), "{more}");
+        // Of what each would have been the same 20, per contact.
+        let after = more.split("what each would have been").nth(1).and_then(|rest| rest.split("\n\n").nth(1));
+        assert_eq!(after.map(|table| table.lines().count()), Some(1 + 20), "{text}");
+    }
+}
+
+#[test]
 fn a_counterexample_can_be_fed_back() {
     let impact = |state: &str| heelstrike_reads(&["impact", RAMONE, "-", "--format", "json"], state).line();
     let first = impact(&badly_measured());

@@ -113,7 +113,7 @@ impl<'w> Writer<'w> {
         self.velocities(outcomes);
         self.torques();
         self.why_nothing_else(outcomes)?;
-        self.rejected();
+        self.rejected()?;
         self.regions();
         self.matrices()?;
         self.closing()

@@ -4,10 +4,14 @@ use super::Writer;
 use crate::impact::{Outcome, RejectionReason};
 use crate::law::Mode;
 use crate::planar::Pair;
+use crate::write::result::Rejected;
 use crate::write::table::{Table, scale};
 use crate::write::words;
 use std::collections::BTreeSet;
 use std::fmt::Write;
+
+/// The most rejected combinations that are listed.
+const LISTED: usize = 20;
 
 impl Writer<'_> {
     /// One line: how many other combinations there are, and what is wrong with them.
@@ -43,8 +47,14 @@ impl Writer<'_> {
         }
     }
 
-    pub(super) fn rejected(&mut self) {
-        let Some(rejected) = self.report.rejected.as_deref().filter(|list| !list.is_empty()) else { return };
+    pub(super) fn rejected(&mut self) -> std::fmt::Result {
+        let Some(all) = self.report.rejected.as_deref().filter(|list| !list.is_empty()) else { return Ok(()) };
+        let mut rejected: Vec<&Rejected> = all.iter().collect();
+        if all.len() > LISTED {
+            let distance = |rejection: &Rejected| rejection.margin.map_or(f64::INFINITY, f64::abs);
+            rejected.sort_by(|one, other| distance(one).total_cmp(&distance(other)));
+            rejected.truncate(LISTED);
+        }
         let mut table = Table::default();
         for (contact, name) in self.names().enumerate() {
             table = table.text(name, rejected.iter().map(|rejection| rejection.modes[contact].to_string()));
@@ -54,6 +64,9 @@ impl Writer<'_> {
             .text("fails, because", rejected.iter().map(|rejection| rejection.because.as_str()));
         self.out.push('\n');
         table.write(&mut self.out);
+        if let more @ 1.. = all.len() - rejected.len() {
+            writeln!(self.out, "  ... {more} more, none closer to zero; JSON has all of them (`format: json`)")?;
+        }
 
         self.out.push_str("\n  what each would have been\n");
         let impulses = || rejected.iter().map(|rejection| rejection.impulse.as_deref());
@@ -70,6 +83,7 @@ impl Writer<'_> {
                 .pairs(self.subject.wording.after, speeds, after().map(of_contact))
                 .write(&mut self.out);
         }
+        Ok(())
     }
 }
 
