@@ -49,7 +49,7 @@ impl Feet {
                 Foot { link: index, body: link.body, outline, offset, bounding_circle, bumps: 0.0 }
             }));
         }
-        let size = size(robot, &feet);
+        let size = robot.size(feet.iter().map(|foot| (foot.body, &foot.outline)));
         Self { feet, names: robot.links.iter().map(|link| link.name.as_str().into()).collect(), size }
     }
 
@@ -81,21 +81,4 @@ impl Feet {
     pub fn size(&self) -> f64 {
         self.size
     }
-}
-
-fn size(robot: &Robot, feet: &[Foot]) -> f64 {
-    let mut origins = vec![Vector::zero(); robot.bodies.len()];
-    for (index, body) in robot.bodies.iter().enumerate() {
-        if let Some((parent, origin, _)) = body.joint.map(|mover| robot.hinge(mover)) {
-            origins[index] = origins[parent] + origin;
-        }
-    }
-    let distance = |body: usize, point: Vector<f64>| (origins[body] + point).length();
-    let centers = robot.centers().into_iter().enumerate();
-    let centers = centers.filter_map(|(index, center)| Some(distance(index, center?)));
-    let soles = feet.iter().map(|foot| {
-        let corners = foot.outline.corners().iter();
-        corners.map(|&corner| distance(foot.body, corner)).fold(0.0, f64::max) + foot.outline.rim.bound()
-    });
-    centers.chain(soles).fold(0.0, f64::max)
 }

@@ -1,10 +1,12 @@
 //! What a user must know before trusting a reduced robot, each with its remedy.
 
+use super::composite::is_physical;
 use super::legs::OBLIQUE;
 use super::plane::Plane;
 use super::reading::{FreezeReason, FrozenJoint};
 use super::reference_pose::ReferencePose;
-use crate::description::{Description, Geometry, JointKind, Matrix, Mesh, UrdfLink, apply, turn};
+use crate::description::{Description, Geometry, Inertial, JointKind, Matrix, Mesh, UrdfLink, apply, turn};
+use std::f64::consts::TAU;
 
 /// An axis up to this far off the normal \[rad\] may have been meant to be parallel to it.
 const NEARLY: f64 = 0.35;
@@ -12,7 +14,11 @@ const NEARLY: f64 = 0.35;
 const SLIGHTLY: f64 = 0.02;
 /// No part of a legged robot is longer than this \[m\].
 const LONGEST: f64 = 10.0;
-/// The most joints that are named.
+/// No radius of gyration is greater than this many sizes of the robot.
+const WIDEST: f64 = 2.0;
+/// A moment of less than this part of the robot's mass times its size squared does not matter: that of a dummy link.
+const SLIGHT: f64 = 1e-3;
+/// The most joints or links that are named.
 const NAMED: usize = 3;
 
 /// The description in its pose and plane.
@@ -110,6 +116,52 @@ pub(super) fn about_lengths(description: &Description) -> Option<String> {
              millimeters"
         )
     })
+}
+
+/// The caution about rotations of more than a turn, as degrees taken for radians.
+pub(super) fn about_angles(description: &Description) -> Option<String> {
+    let of_links = description.links.iter().flat_map(|link| {
+        let inertial = link.inertial.iter().map(|inertial| &inertial.origin);
+        let collisions = link.collisions.iter().map(|collision| &collision.origin);
+        inertial.chain(collisions).map(|origin| (&link.name, origin.rpy))
+    });
+    let of_joints = description.joints.iter().map(|joint| (&joint.name, joint.origin.rpy));
+    // A whole turn may be rounded.
+    let is_wide = |angle: &f64| angle.abs() > 1.001 * TAU;
+    let (name, [roll, pitch, yaw]) = of_joints.chain(of_links).find(|(_, rpy)| rpy.iter().any(is_wide))?;
+    Some(format!(
+        "the rpy of {name}, \"{roll} {pitch} {yaw}\", is more than a turn: angles are in radians, and 90 degrees are \
+         1.5708"
+    ))
+}
+
+/// The cautions about inertias that are half given or wrong, of these links of a robot of this `whole` mass \[kg\] and
+/// size \[m\].
+pub(super) fn about_inertias<'l>(links: impl Iterator<Item = &'l UrdfLink>, (whole, size): (f64, f64)) -> Vec<String> {
+    let kinds = [
+        ("with a mass but no <inertia>, and so a point mass", "give its moments, as in <inertia ixx=\"0.1\" .../>"),
+        ("with an inertia but no mass", "give the mass in kg, or leave out the <inertia>"),
+        ("with an inertia that needs a part far beyond the robot's size", "inertia is in kg m^2, mass in kg"),
+        ("with an inertia that no body has, one moment being more than the other two together", "correct it"),
+    ];
+    let mut found = kinds.map(|_| Vec::new());
+    for link in links {
+        let Some(Inertial { mass, inertia, .. }) = &link.inertial else { continue };
+        let moments = inertia.map(|inertia| [inertia[0][0], inertia[1][1], inertia[2][2]]).unwrap_or_default();
+        let largest = moments.into_iter().fold(0.0, f64::max);
+        // Planar models give a single moment.
+        let is_planar = moments.iter().filter(|&&moment| moment == 0.0).count() == 2;
+        let kind = match inertia {
+            None if *mass > 0.0 => 0,
+            Some(_) if *mass == 0.0 && largest > 0.0 => 1,
+            Some(_) if size > 0.0 && largest > size * size * (WIDEST * WIDEST * mass).max(SLIGHT * whole) => 2,
+            Some(inertia) if !is_planar && !is_physical(inertia) => 3,
+            _ => continue,
+        };
+        found[kind].push(link.name.as_str());
+    }
+    let found = found.into_iter().zip(kinds).filter(|(links, _)| !links.is_empty());
+    found.map(|(links, (what, remedy))| format!("{what}: {}; {remedy}", names(links.into_iter()))).collect()
 }
 
 /// The caution about collision meshes that could not be read.

@@ -310,4 +310,23 @@ impl Robot {
             |(index, parts): (usize, &Vec<LinkInertia>)| (grounds[index].0 == index).then(|| composite(parts).1);
         parts.iter().enumerate().map(center).collect()
     }
+
+    /// The greatest distance from the root's origin to a CoG or to one of these shapes of bodies, with all joints at
+    /// zero \[m\].
+    pub(crate) fn size<'s>(&self, shapes: impl Iterator<Item = (usize, &'s FootShape)>) -> f64 {
+        let mut origins = vec![Vector::zero(); self.bodies.len()];
+        for (index, body) in self.bodies.iter().enumerate() {
+            if let Some((parent, origin, _)) = body.joint.map(|mover| self.hinge(mover)) {
+                origins[index] = origins[parent] + origin;
+            }
+        }
+        let distance = |body: usize, point: Vector<f64>| (origins[body] + point).length();
+        let centers = self.centers().into_iter().enumerate();
+        let centers = centers.filter_map(|(index, center)| Some(distance(index, center?)));
+        let soles = shapes.map(|(body, shape)| {
+            let corners = shape.corners().iter().map(|&corner| distance(body, corner));
+            corners.fold(0.0, f64::max) + shape.rim.bound()
+        });
+        centers.chain(soles).fold(0.0, f64::max)
+    }
 }

@@ -72,6 +72,7 @@ impl Robot {
         cautions.extend(caution::about_meshes(description));
         cautions.extend(caution::about_axes(description));
         cautions.extend(caution::about_lengths(description));
+        cautions.extend(caution::about_angles(description));
         let reading = Reading {
             plane,
             plane_because,
@@ -115,6 +116,11 @@ impl Robot {
             (body.mass, body.com, body.moment) = composite(parts);
         }
         robot.left_out.extend(left_out::passed_over(description));
+        let size = robot.size(robot.links.iter().flat_map(|link| link.shapes.iter().map(|shape| (link.body, shape))));
+        let moving = description.links.iter().zip(&tree.places);
+        let moving = moving.filter(|(_, place)| place.as_ref().is_some_and(|place| robot.moves(place.body)));
+        let cautions = caution::about_inertias(moving.map(|(link, _)| link), (robot.mass(), size));
+        robot.reading.cautions.extend(cautions);
 
         refuse_overflow(&robot)?;
         if robot.mass() == 0.0 {

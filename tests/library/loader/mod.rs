@@ -95,7 +95,7 @@ fn chain(masses: &[f64], joints: &[(&str, &str)]) -> String {
     let letter = |first: char, k: usize| (first..='z').nth(k).expect("few");
     let link = |(k, &mass): (usize, &f64)| match letter('a', k) {
         name if mass == 0.0 => format!("<link name=\"{name}\"></link>\n"),
-        name => link(name, mass, [0.0; 2], 1.0, ""),
+        name => link(name, mass, [0.0; 2], mass, ""),
     };
     let joint = |(k, (kind, axis)): (usize, &(&str, &str))| {
         let [name, parent, child] = [letter('j', k), letter('a', k), letter('a', k + 1)];

@@ -91,6 +91,43 @@ fn hyphens_in_a_comment_are_named_with_their_place() {
 }
 
 #[test]
+fn doubtful_inertias_and_angles_are_noted() {
+    let shape = urdf::collision([0.0, -0.5], "box size=\"0.1 0.1 0.9\"");
+    let good = urdf::robot(&[link("a", 3.0, [0.0; 2], 0.05, &shape)]);
+    let replaced = |from: &str, to: &str| {
+        assert!(good.contains(from), "{good}");
+        load(&good.replace(from, to))
+    };
+    let (mass, inertia) = ("mass value=\"3\"", "<inertia ixx=\"0.05\" iyy=\"0.05\" izz=\"0.05\"/>");
+    let drawn = "<origin xyz=\"0 0 -0.5\"/><geometry>";
+    for (from, to, words) in [
+        (inertia, "", "with a mass but no <inertia>, and so a point mass: a; give its moments"),
+        (mass, "mass value=\"0.001\"", "with an inertia that needs a part far beyond the robot's size: a; "),
+        ("izz=\"0.05\"", "izz=\"0.2\"", "with an inertia that no body has, one moment being more than"),
+        (drawn, "<origin rpy=\"0 90 0\"/><geometry>", "the rpy of a, \"0 90 0\", is more than a turn: angles are"),
+    ] {
+        let robot = replaced(from, to);
+        assert!(only_caution(&robot).starts_with(words), "{}", only_caution(&robot));
+    }
+    let massless = |moment: f64| {
+        let links = [link("a", 1.0, [0.0; 2], 1.0, ""), link("b", 0.0, [0.0; 2], moment, "")];
+        load(&urdf::robot(&[links.concat(), joint("j", HINGE, ["a", "b"], [0.0, -1.0], "")]))
+    };
+    let words = "with an inertia but no mass: b; give the mass in kg, or leave out the <inertia>";
+    assert_eq!(only_caution(&massless(1.0)), words);
+    assert_eq!(massless(0.0).reading.cautions, [""; 0]);
+    // A whole turn, the moment of a planar model, a point mass that is meant, nothing at all.
+    for (from, to) in [
+        (drawn, "<origin xyz=\"0 0 -0.5\" rpy=\"0 6.2832 0\"/><geometry>"),
+        (inertia, "<inertia ixx=\"0\" iyy=\"0.05\" izz=\"0\"/>"),
+        (inertia, "<inertia ixx=\"0\" iyy=\"0\" izz=\"0\"/>"),
+        (inertia, inertia),
+    ] {
+        assert_eq!(replaced(from, to).reading.cautions, [""; 0], "{to}");
+    }
+}
+
+#[test]
 fn lengths_that_look_like_millimeters_are_noted() {
     let box_of = |size: &str| {
         let shape = urdf::collision([0.0; 2], &format!("box size=\"0.1 0.1 {size}\""));
