@@ -40,8 +40,14 @@ pub(super) fn only_document(input: &InputFile) -> crate::Result<Document<'_>> {
             let reason = Reason::Inconsistent("one state is expected, and here a second one begins".into());
             Err(second.locate(Error::new(reason)).in_file(name).hint("give the states one by one"))
         }
-        _ => Err(Error::new(Reason::Missing("a state".into())).in_file(name).hint("the input is empty")),
+        _ => Err(nothing("state", text).in_file(name)),
     }
+}
+
+/// The refusal of a text that holds no `what`: it is empty, or an empty list.
+fn nothing(what: &str, text: &str) -> Error {
+    let hint = if text.trim().is_empty() { "the input is empty" } else { "the list is empty" };
+    Error::new(Reason::Missing(format!("a {what}"))).hint(hint)
 }
 
 /// Answers every object of the file at `path`, each of them a `what`; `several` is the answer to more than one.
@@ -60,7 +66,7 @@ pub(super) fn answer_all(
     let name = &input.name;
     let whole = input.text().map_err(|error| error.in_file(name))?;
     if documents(whole).next().is_none() {
-        return Err(Error::new(Reason::Missing(format!("a {what}"))).in_file(name).hint("the input is empty").into());
+        return Err(nothing(what, whole).in_file(name).into());
     }
     if documents(whole).nth(1).is_some() {
         several?;

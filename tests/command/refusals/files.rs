@@ -34,6 +34,7 @@ fn what_cannot_be_read_is_refused() {
         (&["impact", RAMONE, "/dev/null"], b"", "/dev/null", state),
         (IMPACT, b"", "<stdin>", state),
         (&["solve", "-"], b" \n", "<stdin>", problem),
+        (IMPACT, b" [ ]\n", "<stdin>", "a state is missing\nhint: the list is empty\n"),
     ] {
         let stderr = heelstrike_reads(arguments, stdin).refusal(1);
         assert_eq!(stderr, format!("error: {place}: {reason}"), "{arguments:?}");
