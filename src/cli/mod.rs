@@ -37,6 +37,7 @@ pub use robot::{BASES, PLANES};
 use crate::error::excerpt::Excerpt;
 use crate::error::visible;
 use anstream::ColorChoice;
+use clap::error::{ContextKind, ContextValue};
 use clap::{Parser, Subcommand};
 use diagnostic::{report, report_with};
 use options::choice;
@@ -121,7 +122,7 @@ enum Answered {
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let exit = match Cli::try_parse_from(arguments) {
         Ok(cli) => run(cli),
-        Err(message) => usage(&message),
+        Err(message) => usage(&with_tip(message)),
     };
     match io::stdout().flush() {
         Err(error) if exit == 0 => status(Failure::Output(error)),
@@ -150,6 +151,21 @@ fn run(cli: Cli) -> u8 {
         Ok(Answered::NotAll) => 1,
         Err(failure) => status(failure),
     }
+}
+
+/// clap's message with what was probably meant, where the files show it.
+fn with_tip(mut message: clap::Error) -> clap::Error {
+    let given = |kind| if let Some(ContextValue::String(given)) = message.get(kind) { given } else { "" };
+    let (command, argument) = (given(ContextKind::InvalidSubcommand), given(ContextKind::InvalidArg));
+    let tip = if command.ends_with(".urdf") {
+        format!("name a command first: heelstrike impact {command} STATE.json")
+    } else if argument.ends_with(".json") && message.render().to_string().contains(" inspect ") {
+        format!("a state is an option here: --state {argument} --plot pose.svg")
+    } else {
+        return message;
+    };
+    message.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
+    message
 }
 
 /// Writes clap's message, such as the version or an error about an option, and returns the exit status.

@@ -44,7 +44,7 @@ impl OutputOptions {
 
     /// Refuses an output whose ending means a format that is not written here, unless the form is said.
     pub fn check_ending(&self) -> Result<(), Failure> {
-        let written = "a result is written as .json, .ndjson or .txt";
+        let written = "a result is written as .json, .ndjson or .txt, and tables by `batch`";
         if self.format.is_some() { Ok(()) } else { check_ending(self.path(), &[], written, "--format") }
     }
 

@@ -18,8 +18,9 @@ const MOST_NAMESPACES: usize = 1000;
 
 /// The remedy for what is something else altogether.
 const NO_URDF: &str = "give the text of a URDF file, which begins with <robot";
-/// The remedy for files in the wrong order.
+/// The remedies for files in the wrong order.
 const JSON: &str = "this is JSON, as states are: the robot's URDF file comes first";
+const TABLE: &str = "this is a table, as of states: the robot's URDF file comes first";
 
 /// Why a text has no XML tree; with the prefix that is not declared, if declaring it may help.
 pub(super) struct Unparsed {
@@ -70,8 +71,9 @@ fn refusal(text: &str, error: &roxmltree::Error) -> Error {
             located.hint("remove one of the hyphens, or the comment")
         }
         _ if text.trim_start().starts_with(['{', '[']) => syntax().hint(JSON),
-        _ if !text.trim_start().starts_with('<') => syntax().hint(NO_URDF),
-        _ => syntax(),
+        _ if text.trim_start().starts_with('<') => syntax(),
+        _ if text.lines().next().is_some_and(|head| head.contains([',', '\t'])) => syntax().hint(TABLE),
+        _ => syntax().hint(NO_URDF),
     }
 }
 

@@ -216,3 +216,20 @@ fn a_border_at_zero_has_no_digits_of_rounding() {
     assert!(text.contains(" .. ~0 ") && text.contains("  at ~0: the normal impulse of block"), "{text}");
     assert!(!text.contains("e-17"), "{text}");
 }
+
+#[test]
+fn misplaced_files_are_refused_with_a_next_step() {
+    let state = "examples/ramone.json";
+    for (arguments, tip) in [
+        (&[RAMONE, state][..], "name a command first: heelstrike impact urdf/ramone.urdf STATE.json"),
+        (&["inspect", RAMONE, state], "a state is an option here: --state examples/ramone.json --plot pose.svg"),
+        (&["impact", RAMONE, state, "-o", "a.csv"], "and tables by `batch`"),
+    ] {
+        let refusal = heelstrike(arguments).refusal(2);
+        assert!(refusal.contains(tip), "{refusal}");
+    }
+    for arguments in [&["impct", RAMONE][..], &["impact", RAMONE, state, state]] {
+        let refusal = heelstrike(arguments).refusal(2);
+        assert!(!refusal.contains("STATE.json\n") && !refusal.contains("--plot"), "{refusal}");
+    }
+}

@@ -247,7 +247,9 @@ impl<'n> Node<'n> {
             return error.hint(format!("this is a field of {whose}; {fields}"));
         }
         let error = error.hint(if object == "Base" { format!("{fields}; {SPATIAL}") } else { fields });
-        error.did_you_mean(self.key(), known.iter().map(String::as_str))
+        // The symbol of the formulas.
+        let key = if self.key() == "mu" { "friction" } else { self.key() };
+        error.did_you_mean(key, known.iter().map(String::as_str))
     }
 
     /// Refuses the value for `reason`, with its place, line and column.

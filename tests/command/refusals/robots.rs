@@ -57,6 +57,7 @@ const FILES: &str = r#"
 <robot><link name="a">\n</lnik></robot>
 <robot>\n<link name="a">\n </lnik></robot>
 {"friction": 1}
+time,q_base_x\n0,1
 <sdf/>
 <sdf version="1.7"/>
 <roboter/>

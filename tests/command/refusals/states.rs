@@ -96,6 +96,7 @@ id,q_base_x,v_base_x
 {"position": {"base": {"yaw": 0}}}
 {"delassus": [[1]]}
 {"parameters": {}}
+{"mu": 1}
 "#;
 
 #[test]
