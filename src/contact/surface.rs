@@ -9,7 +9,7 @@ use super::plane::HalfPlane;
 use super::point::{Point, Touch};
 use super::profile::{self, Closeness};
 use super::terrain::Terrain;
-use crate::error::{Error, Reason};
+use crate::error::{Error, Reason, shortest_within};
 use crate::planar::Vector;
 use crate::state::Ground;
 
@@ -87,8 +87,10 @@ impl Surface {
             }
         };
         touching.map_err(|depth| {
+            // What is left of the depth, or missing from it, is within the tolerance.
+            let enough = shortest_within(depth, 0.5 * close.tolerance);
             let remedy =
-                format!("{how} by {depth:?} m, correct the pose, or accept it by a greater `contact_tolerance`");
+                format!("{how} by {enough:?} m, correct the pose, or accept it by a greater `contact_tolerance`");
             Sunk { depth, remedy }
         })
     }

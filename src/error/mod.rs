@@ -57,8 +57,10 @@ pub enum Reason {
     /// A shape of a URDF link that is deeper in the ground than the tolerance, both in m, and how its lowest point
     /// moves, `[tangential, normal]` in m/s, if that is known.
     #[error(
-        "link \"{}\" is {depth:.3e} m deep in the ground, more than the contact tolerance of {tolerance:.3e} m{}",
+        "link \"{}\" is {} m deep in the ground, more than the contact tolerance of {} m{}",
         short(.link),
+        rounded(*.depth),
+        rounded(*.tolerance),
         velocity.map_or(String::new(), |velocity| format!(", and {}", along_normal(velocity)))
     )]
     Penetration { link: String, depth: f64, tolerance: f64, velocity: Option<[f64; 2]> },
@@ -244,7 +246,19 @@ pub(crate) fn along_normal([_, normal]: [f64; 2]) -> String {
     if normal == 0.0 {
         return "does not move toward it".to_owned();
     }
-    format!("moves {} it at {:.3e} m/s", if normal < 0.0 { "toward" } else { "away from" }, normal.abs())
+    format!("moves {} it at {} m/s", if normal < 0.0 { "toward" } else { "away from" }, rounded(normal.abs()))
+}
+
+/// The number in four digits, as 0.87 and 9.6e-5: with an exponent below 1e-3 and from 1e4 on.
+pub(crate) fn rounded(value: f64) -> String {
+    let rounded = format!("{value:.3e}").parse().unwrap_or(value);
+    if rounded == 0.0 || (1e-3..1e4).contains(&rounded.abs()) { rounded.to_string() } else { format!("{rounded:e}") }
+}
+
+/// The number with the fewest digits that is within `tolerance` of `value`.
+pub(crate) fn shortest_within(value: f64, tolerance: f64) -> f64 {
+    let with_digits = |digits| format!("{value:.digits$e}").parse().ok();
+    (0..17).filter_map(with_digits).find(|short: &f64| (short - value).abs() <= tolerance).unwrap_or(value)
 }
 
 /// The number in the shorter of its two forms: 0.5 and 1e-300.
@@ -276,6 +290,18 @@ mod tests {
         let error = Error::new(reason).at(format!("position.joints.{name}")).did_you_mean(&name, [name.as_str()]);
         assert!(error.to_string().len() < 700, "{error}");
         assert_eq!(error.remedy(), None);
+    }
+
+    #[test]
+    fn ordinary_numbers_have_no_exponent() {
+        let written = [0.0, 0.87, 1.0, 9999.0, 9999.9, -1e-3, 9.600292e-5, f64::INFINITY].map(rounded);
+        assert_eq!(written, ["0", "0.87", "1", "9999", "1e4", "-0.001", "9.6e-5", "inf"]);
+    }
+
+    #[test]
+    fn advice_has_the_digits_that_it_needs() {
+        let short = [1.0, 1e-6, 0.0].map(|tolerance| shortest_within(0.870_000_000_000_000_1, tolerance));
+        assert_eq!(short, [0.9, 0.87, 0.870_000_000_000_000_1]);
     }
 
     #[test]

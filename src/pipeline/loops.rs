@@ -8,7 +8,7 @@ use crate::dynamics::{
     Arm, Constraints, ContactPoint, Loop, Reach, follow_exactly, independent_rows, kinetic_energy, point_velocity,
     spent_energy,
 };
-use crate::error::{Error, Reason, Result};
+use crate::error::{Error, Reason, Result, rounded};
 use crate::robot::Robot;
 use crate::scalar::{Ball, Certified, Real};
 use crate::state::NamedLoop;
@@ -186,7 +186,7 @@ impl Pipeline<'_> {
             let gap = own.gap(&self.assembly.plan, &self.assembly.workspace).length();
             if gap.is_nan() || gap > OPEN * size {
                 let name = named.name(index, self.robot);
-                let reason = format!("the pose leaves {name} open: its points are {gap:.4e} m apart");
+                let reason = format!("the pose leaves {name} open: its points are {} m apart", rounded(gap));
                 let hint =
                     format!("the position must close every loop to {OPEN} of the robot's size ({:.1e} m)", OPEN * size);
                 return Err(Error::new(Reason::Inconsistent(reason)).at(format!("loops[{index}]")).hint(hint));
@@ -198,7 +198,7 @@ impl Pipeline<'_> {
 }
 
 fn moves_apart(own: &NamedLoop, index: usize, opening: f64, robot: &Robot) -> Error {
-    let reason = format!("the velocities open {} at {opening:.3e} m/s", own.name(index, robot));
+    let reason = format!("the velocities open {} at {} m/s", own.name(index, robot), rounded(opening));
     Error::new(Reason::Inconsistent(reason))
         .at(format!("loops[{index}]"))
         .hint("give rates of all joints of the loop, such that both points move alike")

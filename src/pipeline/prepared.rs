@@ -13,7 +13,7 @@ use super::{Aspect, CONTACT_TOLERANCE, Impact, Pipeline};
 use crate::contact::{Contact, Footing, Level, Merged, Placement, Surface, level};
 use crate::dynamics::plan::{Plan, PlanBody};
 use crate::dynamics::{Arm, Constraints, Workspace, has_balance, kinetic_energy, mass_diagonal};
-use crate::error::{Error, Reason, Result, along_normal, finite};
+use crate::error::{Error, Reason, Result, along_normal, finite, rounded};
 use crate::impact::problem::check_matrix_size;
 use crate::impact::{ContactProblem, Errors};
 use crate::planar::{Pair, Vector};
@@ -448,7 +448,10 @@ impl Pipeline<'_> {
     fn sunk_besides(&self, NearestFoot { link, height, .. }: NearestFoot) -> Option<String> {
         let name = &self.robot.links[link].name;
         (height < -NEAR_MISS * self.feet.size()).then(|| {
-            format!("{name} is {:.1e} m deep in the ground, and is not among the contacts: it takes no part", -height)
+            format!(
+                "{name} is {} m deep in the ground, and is not among the contacts: it takes no part",
+                rounded(-height)
+            )
         })
     }
 
@@ -466,23 +469,23 @@ impl Pipeline<'_> {
         }
         let name = &self.robot.links[link].name;
         let moving = along_normal(velocity);
-        // A little more than the height, in two digits, next to three of the height.
+        // A little more than the height, in two digits, next to four of the height.
         let enough = 1.1 * height;
-        let height = format!("{height:.2e}").parse().unwrap_or(height);
+        let height = rounded(height);
         notes.push(match (contacts.is_empty(), is_near) {
             (true, true) => format!(
-                "nothing touches the ground: the lowest foot, {name}, is {height:?} m above it and {moving}; to let \
+                "nothing touches the ground: the lowest foot, {name}, is {height} m above it and {moving}; to let \
                  it touch, put it there by `place: lowest`, or give `contact_tolerance: {enough:.1e}`"
             ),
             (true, false) => format!(
-                "nothing touches the ground: the lowest foot, {name}, is {height:?} m above it and {moving}; \
+                "nothing touches the ground: the lowest foot, {name}, is {height} m above it and {moving}; \
                  `place: lowest` puts it there"
             ),
             (false, _) => {
                 let touches = contacts.iter().any(|contact| contact.link == link);
                 let which = if touches { "another point of " } else { "" };
                 format!(
-                    "{which}{name} nearly touches, {height:?} m above the ground: to let it touch, give \
+                    "{which}{name} nearly touches, {height} m above the ground: to let it touch, give \
                      `contact_tolerance: {enough:.1e}`, or correct the pose"
                 )
             }

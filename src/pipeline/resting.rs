@@ -13,7 +13,7 @@ use super::Pipeline;
 use crate::contact::Contact;
 use crate::dynamics::plan::JointMotion;
 use crate::dynamics::point_velocity;
-use crate::error::{Error, Reason, Result};
+use crate::error::{Error, Reason, Result, rounded};
 use crate::planar::{Pair, Vector};
 use crate::state::State;
 use std::cmp::Ordering;
@@ -130,7 +130,7 @@ impl Pipeline<'_> {
             let [tangential, normal] = self.assembly.workspace.contact_velocity[index];
             if normal < 0.0 {
                 let reason =
-                    format!("{} approaches the ground at {:.3e} m/s: that is an impact", contact.name, -normal);
+                    format!("{} approaches the ground at {} m/s: that is an impact", contact.name, rounded(-normal));
                 return Err(Error::new(Reason::Inconsistent(reason)).at("velocity").hint(
                     "ask `impact` what it does, and continue from a velocity after it; or take slow contacts as resting by \
                      a greater `resting_speed`",

@@ -140,7 +140,7 @@ fn a_foot_deep_in_the_ground_besides_named_contacts_is_noted() {
         let options = Options { brief, ..Options::default() };
         try_impact(&pendulum(1.0), options, place.replace("PLACE", &z.to_string())).unwrap().notes
     };
-    let expected = "leg is 5.0e-2 m deep in the ground, and is not among the contacts: it takes no part";
+    let expected = "leg is 0.05 m deep in the ground, and is not among the contacts: it takes no part";
     assert_eq!(notes(0.95, false), [expected]);
     assert_eq!([notes(0.95, true), notes(0.999, false), notes(1.05, false)], [const { Vec::<String>::new() }; 3]);
 }

@@ -80,7 +80,7 @@ fn nearest_over_a_profile_is_found_at_its_edge() {
 fn foot_in_the_air_is_named_with_a_remedy() {
     let impact = impact(&two_feet(0.5), striking(1e-3, json!({})));
     let expected = "nothing touches the ground: the lowest foot, body, is 0.001 m above it and moves toward it at \
-                    6.000e-1 m/s; to let it touch, put it there by `place: lowest`, or give `contact_tolerance: 1.1e-3`";
+                    0.6 m/s; to let it touch, put it there by `place: lowest`, or give `contact_tolerance: 1.1e-3`";
     assert_eq!(impact.notes, [expected]);
 }
 
