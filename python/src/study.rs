@@ -140,9 +140,10 @@ fn found(
         columns: None,
         keyframes: false,
     };
-    let (thresholds, dropped) = (recording.thresholds(robot, feet)?, Mutex::default());
+    let (thresholds, dropped, lowest) =
+        (recording.thresholds(robot, feet)?, Mutex::default(), Mutex::new(f64::INFINITY));
     let rows = states.samples(&header, robot, &defaults).take_while(|_| !interrupted());
-    let rows = recording.chosen(Box::new(rows), &header, (robot, feet), thresholds, &dropped)?;
+    let rows = recording.chosen(Box::new(rows), &header, (robot, feet), thresholds, (&dropped, &lowest))?;
     let (mut source, mut batch, mut lines) = (Recording::new(rows), Batch::new(&question), Vec::new());
     let mut summary = Summary::default();
     while let Some(states) = source.next()? {
@@ -156,7 +157,7 @@ fn found(
     drop(source);
     let dropped = dropped.into_inner().unwrap_or_default();
     let of_table = notes::missing(&header).into_iter().chain(notes::left_out(&header, &dropped));
-    let nothing = (summary.states == 0).then(|| recording.nothing_found(thresholds));
+    let nothing = (summary.states == 0).then(|| recording.nothing_found(thresholds, &lowest));
     let notes = of_table.chain(notes::own_friction(summary.own_friction, "state")).chain(nothing).collect();
     let lines: Vec<&[u8]> = lines.trim_ascii_end().split(|&byte| byte == b'\n').collect();
     Ok(([b"[", &*lines.join(&b','), b"]"].concat(), notes))

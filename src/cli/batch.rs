@@ -147,8 +147,8 @@ pub(super) fn run(args: &Args) -> Completion {
         sink.columns = format.writer(columns)?;
     }
 
-    let dropped = Mutex::new(Dropped::default());
-    let done = args.answer(&question, states, answered, (thresholds, &dropped), &mut sink);
+    let (dropped, lowest) = (Mutex::new(Dropped::default()), Mutex::new(f64::INFINITY));
+    let done = args.answer(&question, states, answered, (thresholds, &dropped, &lowest), &mut sink);
     done.map_err(in_input).inspect_err(|_| note_part(&sink.output))?;
     #[cfg(feature = "columnar")]
     if let Some(columns) = sink.columns.take() {
@@ -163,7 +163,7 @@ pub(super) fn run(args: &Args) -> Completion {
     if let (Some(header), Ok(dropped)) = (&header, dropped.lock()) {
         note_all(notes::left_out(header, &dropped));
     }
-    args.report(&question, &counts, answered, thresholds)?;
+    args.report(&question, &counts, answered, (thresholds, &lowest))?;
     if args.plot.path().is_some() {
         let page = |rendered| Ok(gait.page(&robot.name, rendered));
         args.plot.draw_or_page(&gait.picture(&robot.name), "no state was answered", page)?;
@@ -294,7 +294,7 @@ impl Args {
         question: &Question<'_>,
         states: States,
         answered: usize,
-        (thresholds, dropped): (Thresholds, &Mutex<Dropped>),
+        (thresholds, dropped, lowest): (Thresholds, &Mutex<Dropped>, &Mutex<f64>),
         sink: &mut OutputSink<'_>,
     ) -> crate::Result<()> {
         let threads = self.threads.count();
@@ -321,7 +321,7 @@ impl Args {
         };
         let samples = states.samples(header, robot, defaults);
         let known = (robot, &question.options.feet[..]);
-        let samples = self.recording.chosen(samples, header, known, thresholds, dropped)?.skip(answered);
+        let samples = self.recording.chosen(samples, header, known, thresholds, (dropped, lowest))?.skip(answered);
         let answerer = || {
             let mut batch = Batch::new(question);
             move |samples| batch.samples(samples)
@@ -335,7 +335,7 @@ impl Args {
         question: &Question<'_>,
         counts: &Summary,
         answered: usize,
-        thresholds: Thresholds,
+        (thresholds, lowest): (Thresholds, &Mutex<f64>),
     ) -> io::Result<()> {
         note_all(notes::own_friction(counts.own_friction, "state"));
         if let Some(least) = question.total.as_ref().and_then(TotalBudget::least) {
@@ -351,7 +351,7 @@ impl Args {
         let _ = match counts.states {
             _ if is_quiet() => Ok(()),
             0 if self.recording.touchdowns => {
-                writeln!(io::stderr(), "{}", with_flags(&self.recording.nothing_found(thresholds)))
+                writeln!(io::stderr(), "{}", with_flags(&self.recording.nothing_found(thresholds, lowest)))
             }
             0 | 1 if self.summary.is_none() => Ok(()),
             _ => write!(io::stderr(), "{}", with_flags(&counts.to_string())),

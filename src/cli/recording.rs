@@ -92,7 +92,8 @@ impl RecordingOptions {
         Ok(Thresholds { drop, ground, ..usual })
     }
 
-    /// The samples to be answered; what a projection of the base leaves out is added to `dropped`.
+    /// The samples to be answered; what a projection of the base leaves out is added to `dropped`, and of touchdowns
+    /// `lowest` becomes the least height of a foot \[m\].
     ///
     /// # Errors
     /// As above.
@@ -102,7 +103,7 @@ impl RecordingOptions {
         header: &Header,
         (robot, feet): (&'a Robot, &[NamedContact]),
         thresholds: Thresholds,
-        dropped: &'a Mutex<Dropped>,
+        (dropped, lowest): (&'a Mutex<Dropped>, &'a Mutex<f64>),
     ) -> Result<Samples<'a>> {
         if header.is_spatial() {
             samples = Box::new(gait::sagittal(samples, dropped));
@@ -112,15 +113,16 @@ impl RecordingOptions {
         }
         if self.touchdowns {
             let found = gait::find(samples, robot, feet, self.at, self.touching)?;
-            samples = Box::new(found.with(thresholds).meaning(self.heights()));
+            samples = Box::new(found.with(thresholds).meaning(self.heights()).noting(lowest));
         }
         Ok(samples)
     }
 
     /// What to say if there are no touchdowns.
-    pub fn nothing_found(&self, thresholds: Thresholds) -> String {
+    pub fn nothing_found(&self, thresholds: Thresholds, lowest: &Mutex<f64>) -> String {
+        let lowest = lowest.lock().map_or(f64::INFINITY, |lowest| *lowest);
         let settings = if self.simulated { "`drop`" } else { "`drop`, `ground_height`" };
-        format!("{} (see {settings})", thresholds.nothing_found(self.heights()))
+        format!("{} (see {settings})", thresholds.nothing_found(self.heights(), lowest))
     }
 
     fn heights(&self) -> Heights {

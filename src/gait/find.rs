@@ -14,6 +14,7 @@ use crate::robot::Robot;
 use crate::state::NamedContact;
 use crate::{Error, Reason, Result};
 use std::collections::VecDeque;
+use std::sync::Mutex;
 
 /// Heights have no noise that is a greater part of [`Thresholds::above`].
 const EXACT: f64 = 1e-3;
@@ -44,6 +45,7 @@ pub fn find<'r, S: Clone, I: Iterator<Item = Sampled<S>>>(
         touching,
         heights: Heights::default(),
         level: CONTACT_TOLERANCE * Feet::new(robot, feet).size(),
+        lowest: None,
         clock: Clock::default(),
         counted: 0,
         window: Window { frames: VecDeque::new(), last: None },
@@ -63,6 +65,8 @@ pub struct Touchdowns<'r, S, I> {
     heights: Heights,
     /// A point that stops no higher is on the ground, where heights are true \[m\].
     level: f64,
+    /// Becomes the least height of a point \[m\].
+    lowest: Option<&'r Mutex<f64>>,
     clock: Clock,
     /// Samples so far, refused ones too.
     counted: usize,
@@ -107,7 +111,7 @@ impl<S: Clone, I: Iterator<Item = Sampled<S>>> Iterator for Touchdowns<'_, S, I>
     }
 }
 
-impl<S, I> Touchdowns<'_, S, I> {
+impl<'r, S, I> Touchdowns<'r, S, I> {
     /// The touchdowns by other thresholds than those of the robot's size.
     pub fn with(self, thresholds: Thresholds) -> Self {
         Self { thresholds, ..self }
@@ -117,11 +121,19 @@ impl<S, I> Touchdowns<'_, S, I> {
     pub fn meaning(self, heights: Heights) -> Self {
         Self { heights, ..self }
     }
+
+    /// The same touchdowns; `lowest` becomes the least height of a foot \[m\].
+    pub fn noting(self, lowest: &'r Mutex<f64>) -> Self {
+        Self { lowest: Some(lowest), ..self }
+    }
 }
 
 impl<S: Clone, I> Touchdowns<'_, S, I> {
     fn take(&mut self, sample: Sample<S>) {
         let places = self.points.at(&sample.state.position);
+        if let Some(Ok(mut lowest)) = self.lowest.map(Mutex::lock) {
+            *lowest = places.iter().fold(*lowest, |least, place| least.min(place.z));
+        }
         let step = self.clock.step(sample.time);
         match step {
             ClockStep::NewClip => {

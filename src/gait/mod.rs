@@ -86,6 +86,7 @@ pub use rates::{Difference, rates};
 pub use spatial::{Dropped, sagittal};
 
 use crate::contact::Feet;
+use crate::error::rounded;
 use crate::state::{NamedContact, State};
 use crate::{Error, Reason, Robot};
 use std::fmt;
@@ -117,10 +118,12 @@ impl Thresholds {
         Self { drop: 0.012 * part, slow: 0.05 * part, ground: 0.02 * part, above: 0.002 * part, together: 1e-6 * part }
     }
 
-    /// What to say of a recording without a touchdown.
-    pub fn nothing_found(&self, heights: Heights) -> String {
+    /// What to say of a recording without a touchdown, in which no foot is lower than `lowest` \[m\].
+    pub fn nothing_found(&self, heights: Heights, lowest: f64) -> String {
         let Self { drop, slow, ground, .. } = self;
-        let descended = format!("no touchdown found: a foot must descend {drop:.4} m or more");
+        let reached = format!("the lowest foot comes to z = {} m; ", rounded(lowest));
+        let reached = if lowest.is_finite() { &*reached } else { "" };
+        let descended = format!("no touchdown found: {reached}a foot must descend {drop:.4} m or more");
         match heights {
             Heights::True => format!("{descended} and cross z = 0"),
             Heights::Recorded => {

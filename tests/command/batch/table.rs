@@ -120,13 +120,13 @@ fn velocities_are_the_same_for_any_threads() {
 #[test]
 fn the_note_of_no_touchdown_says_what_would_count() {
     let still =
-        "time,q_base_x,q_base_z,q_base_pitch,v_base_x,v_base_z,v_base_pitch\n0,0,0.5,0,0,0,0\n0.1,0,0.5,0,0,0,0\n";
+        "time,q_base_x,q_base_z,q_base_pitch,v_base_x,v_base_z,v_base_pitch\n0,0,0.57,0,0,0,0\n0.1,0,0.6,0,0,0,0\n";
     let note = |options: &[&str]| {
         let always = ["-", "--input-format", "csv", "--friction", "1", "--touchdowns"];
         batch(&[&always, options].concat(), still).refusal(0)
     };
-    let expected = "no touchdown found: a foot must descend 0.0120 m or more, faster than 0.0500 m/s, to at most 0.0200 m above \
-                    the ground (see --drop, --ground-height)\n";
+    let expected = "no touchdown found: the lowest foot comes to z = 0.07 m; a foot must descend 0.0120 m or more, \
+                    faster than 0.0500 m/s, to at most 0.0200 m above the ground (see --drop, --ground-height)\n";
     assert_eq!(note(&[]), expected);
     let expected = expected.replace("0.0200", "0.0300").replace("0.0120", "0.0250");
     assert_eq!(note(&["--drop", "0.025", "--ground-height", "0.03"]), expected);
