@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 
-from ._core import Robot
+from ._core import Answers, Robot
 from ._values import Result
 
 
@@ -39,4 +39,5 @@ def plot(result: Result | Robot) -> Plot:
             raise ValueError("the result was copied or comes from another process: ask its robot again to draw it")
         robot, kind, question, friction = result._drawn
         return Plot(*robot._picture(kind, question, friction))
-    raise TypeError(f"a {type(result).__name__} has no picture: give a Robot, or the result of one state or of a sweep")
+    what = "Answers have" if isinstance(result, Answers) else f"a {type(result).__name__} has"
+    raise TypeError(f"{what} no picture: give a Robot, or the result of one state or of a sweep")

@@ -329,7 +329,10 @@ impl Answers {
         let verdicts: Vec<String> = verdicts.map(|(count, name)| format!("{count} {name}")).collect();
         let list = |names: &[String]| if names.is_empty() { "none".to_owned() } else { names.join(", ") };
         let contacts = list(self.table.columns.contacts());
-        Ok(format!("Answers({} states: {}; contacts {contacts})", self.states, list(&verdicts)))
+        let mut errors = self.error(py)?.try_iter()?.filter_map(Result::ok);
+        let first =
+            errors.find(|error| !error.is_none()).map_or(String::new(), |error| format!("; first refusal: {error}"));
+        Ok(format!("Answers({} states: {}; contacts {contacts}{first})", self.states, list(&verdicts)))
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {

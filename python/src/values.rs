@@ -18,13 +18,14 @@ create_exception!(
 pub fn refused(error: Error) -> PyErr {
     let short = ErrorObject::new(&error);
     let shown = match error.remedy() {
-        Some(remedy) => format!("{error}; {remedy}"),
+        Some(remedy) => format!("{error}; {}", as_keywords(remedy)),
         None => error.to_string(),
     };
+    let hint = short.hint.as_deref().map(as_keywords);
     let refused = Refused::new_err(shown);
     Python::attach(|py| {
         let value = refused.value(py);
-        let _ = value.setattr("place", short.place).and_then(|()| value.setattr("hint", short.hint));
+        let _ = value.setattr("place", short.place).and_then(|()| value.setattr("hint", hint));
     });
     refused
 }
@@ -35,10 +36,21 @@ pub fn choice<T: Copy>(what: &str, choices: Choices<T>, name: Option<&str>) -> P
     name.map(|name| named(choices, name).map_err(|known| unknown(name, known))).transpose()
 }
 
+/// The text with settings such as `velocity: central` in backticks written as keywords: `velocity="central"`.
+fn as_keywords(text: &str) -> String {
+    let pieces = text.split('`').enumerate().map(|(at, piece)| match piece.split_once(": ") {
+        Some((name, value)) if at % 2 == 1 && value.bytes().all(|letter| letter.is_ascii_lowercase()) => {
+            format!("{name}=\"{value}\"")
+        }
+        _ => piece.to_owned(),
+    });
+    pieces.collect::<Vec<_>>().join("`")
+}
+
 /// Warns with each of these notes.
 pub fn warn(py: Python<'_>, notes: impl IntoIterator<Item = String>) -> PyResult<()> {
     let warnings = py.import("warnings")?;
-    notes.into_iter().try_for_each(|note| warnings.call_method1("warn", (note,)).map(drop))
+    notes.into_iter().try_for_each(|note| warnings.call_method1("warn", (as_keywords(&note),)).map(drop))
 }
 
 /// A JSON text of a value, in which NumPy's numbers and arrays count as Python's.

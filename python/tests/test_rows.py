@@ -106,7 +106,8 @@ def test_refused_row_is_a_value(ramone, walk):
     assert np.diff(answers.offsets)[[1, 2, 3, 4]].tolist() == [0, 0, 0, 0]
     deep = ramone.impacts(np.zeros((1, 7)), np.zeros((1, 7)), friction=1)
     assert "deep in the ground" in deep.error[0]
-    assert "friction" in ramone.impacts(q[:1], v[:1], place="lowest").error[0]
+    silent = ramone.impacts(q[:1], v[:1], place="lowest")
+    assert "friction" in silent.error[0] and f"first refusal: {silent.error[0]}" in repr(silent)
 
 
 def test_other_arrays_are_converted(ramone, walk):

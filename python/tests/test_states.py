@@ -198,3 +198,5 @@ def test_pictures_are_those_of_the_command(ramone, tmp_path):
         assert (tmp_path / "own.svg").read_text() == file.read_text()
     with pytest.raises(TypeError, match="has no picture"):
         heelstrike.plot({})
+    with pytest.raises(TypeError, match="Answers have no picture"):
+        heelstrike.plot(ramone.impacts(np.zeros((1, 7)), np.zeros((1, 7))))
