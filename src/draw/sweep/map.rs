@@ -1,7 +1,7 @@
 //! Two parameters: areas of equal outcomes with their letters, and the borders between them.
 
 use super::fills_of_map;
-use super::place::{around, clear_of, freest};
+use super::place::{ENOUGH, around, clear_of, encloses, freest};
 use crate::draw::plot::{
     Color, LegendEntry, LegendKey, Panel, Picture, Pixel, PlotAxis, PlotPoint, PlotShape, Stroke, TextBox,
 };
@@ -18,8 +18,10 @@ const BORDER: Stroke = Stroke::solid(Color::Black, 1.0);
 const LEADER: Stroke = Stroke::solid(Color::Black, 0.7);
 /// The least distance of a letter from borders \[px\].
 const CLEAR: f64 = 1.0;
+/// How far from the frame the search for a letter's place begins at least \[px\].
+const INWARD: f64 = 2.0;
 /// A letter of a small area stands at one of these distances \[px\], in one of so many directions.
-const AWAY: [f64; 4] = [26.0, 38.0, 52.0, 70.0];
+const AWAY: [f64; 6] = [26.0, 38.0, 52.0, 70.0, 95.0, 130.0];
 const DIRECTIONS: usize = 24;
 
 pub fn picture([x, y]: [PlotAxis; 2], question: Aspect, map: &Map) -> Picture {
@@ -44,43 +46,79 @@ fn letters(x: &PlotAxis, y: &PlotAxis, map: &Map) -> Vec<PlotShape> {
     let (Some(x), Some(y)) = (x.range, y.range) else { return Vec::new() };
     let pixel = |[a, b]: [f64; 2]| (SIZE.0 * (a - x.0) / (x.1 - x.0), SIZE.1 * (b - y.0) / (y.1 - y.0));
     let point = |(a, b): Pixel| -> PlotPoint { (x.0 + (x.1 - x.0) * a / SIZE.0, y.0 + (y.1 - y.0) * b / SIZE.1) };
-    let pixels = |points: &Vec<[f64; 2]>| points.iter().copied().map(pixel).collect();
-    let mut taken: Vec<Vec<Pixel>> = map.curves.iter().map(|curve| pixels(&curve.points)).collect();
+    let pixels = |points: &Vec<[f64; 2]>| -> Vec<Pixel> { points.iter().copied().map(pixel).collect() };
+    let half = (0.5 * SIZE.0, 0.5 * SIZE.1);
+    let frame = outline(&TextBox { middle: half, half });
+    let mut taken: Vec<Vec<Pixel>> = map.curves.iter().map(|curve| pixels(&curve.points)).chain([frame]).collect();
+    let loops: Vec<Vec<Pixel>> = map.areas.iter().flat_map(|area| &area.loops).map(pixels).collect();
+    // Two points are in the same part of an area if the same loops enclose both.
+    let part = |at: Pixel| -> Vec<bool> { loops.iter().map(|corners| encloses(corners, at)).collect() };
+    let is_in =
+        |area: &Area, at: Pixel| area.loops.iter().filter(|corners| encloses(&pixels(corners), at)).count() % 2 == 1;
+    // On the frame itself no way leads inward.
+    let inward = |(a, b): Pixel| (a.clamp(INWARD, SIZE.0 - INWARD), b.clamp(INWARD, SIZE.1 - INWARD));
     let text = |index: usize, middle: Pixel| TextBox { middle, half: TextBox::half_of(&letter(index), LETTERS) };
     let label =
         |index: usize, text: &TextBox| PlotShape::Text { at: point(text.middle), text: letter(index), size: LETTERS };
-    let fits = |text: &TextBox, taken: &[Vec<Pixel>], room: f64| text.is_within(SIZE) && clear_of(text, taken) >= room;
-    let mut shapes = Vec::new();
+    let (mut shapes, mut texts, mut lettered) = (Vec::new(), Vec::new(), Vec::new());
     let mut small: Vec<(usize, &Area)> = Vec::new();
     for (index, area) in map.areas.iter().enumerate() {
         let half = text(index, SIZE).half;
-        let middles = area.middles.iter().map(|(middle, _)| text(index, freest(pixel(*middle), half, &taken)));
-        let fitting: Vec<TextBox> = middles.filter(|text| fits(text, &taken, CLEAR)).collect();
+        let middles = area.middles.iter();
+        let middles = middles.map(|(middle, _)| text(index, freest(inward(pixel(*middle)), half, &taken)));
+        let fitting: Vec<(TextBox, f64)> = middles
+            .map(|text| (text, clear_of(&text, &taken)))
+            .filter(|(text, room)| *room >= CLEAR && is_in(area, text.middle))
+            .collect();
         if fitting.is_empty() {
             small.push((index, area));
         }
-        for text in fitting {
-            taken.push(outline(&text));
+        for (text, room) in fitting {
+            lettered.push((part(text.middle), room));
             shapes.push(label(index, &text));
+            taken.push(outline(&text));
+            texts.push(text);
         }
     }
     for (index, area) in small {
-        // An area between the lines of the grid has no middle: then a point on its edge.
-        let deepest = area.middles.iter().max_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(middle, _)| middle);
-        let Some(from) = deepest.or_else(|| area.loops.first()?.first()) else { continue };
-        let from = pixel(*from);
+        let deepest = area.middles.iter().max_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(middle, _)| pixel(*middle));
+        // An area between the lines of the grid has no middle.
+        let inner = || area.loops.iter().filter_map(|corners| inner(&pixels(corners)));
+        let roomiest = || inner().max_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, at)| at);
+        let Some(from) = deepest.or_else(roomiest) else { continue };
         let places = AWAY.into_iter().flat_map(|distance| around(from, distance, DIRECTIONS));
-        let free = places.map(|at| text(index, at)).find(|text| fits(text, &taken, CLEAR + 2.0));
-        if let Some(text) = free {
+        let is_free = |text: &TextBox| {
+            let leader = [vec![from, text.middle]];
+            clear_of(text, &taken) >= CLEAR + 2.0 && texts.iter().all(|other| clear_of(other, &leader) > 0.0)
+        };
+        let free: Vec<TextBox> = places.map(|at| text(index, at)).filter(is_free).collect();
+        // It stands on a part that has a letter of its own, if possible on a wide one.
+        let is_beside = |text: &&TextBox, least: f64| {
+            let own = part(text.middle);
+            lettered.iter().any(|(part, room)| *room >= least && *part == own)
+        };
+        let place = [ENOUGH, CLEAR].into_iter().find_map(|least| free.iter().find(|text| is_beside(text, least)));
+        if let Some(&text) = place {
             let (dx, dy) = (from.0 - text.middle.0, from.1 - text.middle.1);
             let share = 0.5 * f64::from(LETTERS) / libm::hypot(dx, dy);
             let to = (text.middle.0 + share * dx, text.middle.1 + share * dy);
             shapes.push(PlotShape::Line { points: vec![point(from), point(to)], stroke: LEADER });
             shapes.push(label(index, &text));
             taken.extend([outline(&text), vec![from, to]]);
+            texts.push(text);
         }
     }
     shapes
+}
+
+/// A point well inside a loop, and how far from it: the middle between opposite corners; of a line a point of it.
+fn inner(corners: &[Pixel]) -> Option<(f64, Pixel)> {
+    let opposite = corners.iter().zip(corners.iter().skip(corners.len() / 2));
+    let middles = opposite.map(|(a, b)| (0.5 * (a.0 + b.0), 0.5 * (a.1 + b.1)));
+    let room = |at: Pixel| clear_of(&TextBox { middle: at, half: (0.0, 0.0) }, &[corners.to_vec()]);
+    let inside = middles.filter(|at| encloses(corners, *at)).map(|at| (room(at), at));
+    let deepest = inside.max_by(|(a, _), (b, _)| a.total_cmp(b));
+    deepest.or_else(|| Some((0.0, *corners.get(corners.len() / 4)?)))
 }
 
 fn outline(TextBox { middle: (x, y), half: (across, up) }: &TextBox) -> Vec<Pixel> {
@@ -113,23 +151,56 @@ mod tests {
         Map { areas, curves, dependent: false }
     }
 
-    #[test]
-    fn a_letter_without_room_has_a_line_to_its_area() {
+    /// The letters of strips and their leaders, in px.
+    fn placed(widths: &[f64]) -> (Vec<(String, TextBox)>, Vec<Vec<Pixel>>) {
         let axis = PlotAxis { range: Some((0.0, 1.0)), ..PlotAxis::default() };
-        let (mut names, mut places, mut leaders) = (Vec::new(), Vec::new(), Vec::new());
-        for shape in letters(&axis, &axis, &strips(&[0.5, 0.01, 0.49])) {
+        let pixel = |(x, y): PlotPoint| (SIZE.0 * x, SIZE.1 * y);
+        let (mut texts, mut leaders) = (Vec::new(), Vec::new());
+        for shape in letters(&axis, &axis, &strips(widths)) {
             match shape {
                 PlotShape::Text { at, text, .. } => {
-                    names.push(text);
-                    places.push(at.0);
+                    let half = TextBox::half_of(&text, LETTERS);
+                    texts.push((text, TextBox { middle: pixel(at), half }));
                 }
-                PlotShape::Line { points, .. } => leaders.push(points[0].0),
+                PlotShape::Line { points, .. } => leaders.push(points.into_iter().map(pixel).collect()),
                 _ => {}
             }
         }
+        (texts, leaders)
+    }
+
+    #[test]
+    fn a_letter_without_room_has_a_line_to_its_area() {
+        let (texts, leaders) = placed(&[0.5, 0.01, 0.49]);
+        let names: Vec<&str> = texts.iter().map(|(name, _)| &**name).collect();
         assert_eq!(names, ["A", "C", "B"]);
+        let places: Vec<f64> = texts.iter().map(|(_, text)| text.middle.0 / SIZE.0).collect();
         assert!((0.0..0.5).contains(&places[0]) && (0.51..1.0).contains(&places[1]));
-        let [leader] = leaders[..] else { panic!("one small area") };
-        assert!((leader - 0.505).abs() < 0.006, "{leader}");
+        let [leader] = &leaders[..] else { panic!("one small area") };
+        assert!((leader[0].0 / SIZE.0 - 0.505).abs() < 0.006, "{leader:?}");
+    }
+
+    #[test]
+    fn letters_of_thin_areas_stand_on_a_wide_one() {
+        // The first one has room for its letter alone, next to the frame.
+        let (texts, leaders) = placed(&[0.05, 0.02, 0.01, 0.92]);
+        let names: Vec<&str> = texts.iter().map(|(name, _)| &**name).collect();
+        assert_eq!((names, leaders.len()), (vec!["A", "D", "B", "C"], 2));
+        for (at, (name, text)) in texts.iter().enumerate() {
+            let (from, to) = if at == 0 { (0.0, 0.05) } else { (0.08, 1.0) };
+            assert!(from * SIZE.0 < text.middle.0 - text.half.0 && text.middle.0 + text.half.0 < to * SIZE.0, "{name}");
+            // A leader ends at its own letter.
+            let others = leaders.iter().enumerate().filter(|(leader, _)| leader + 2 != at);
+            assert!(
+                others.map(|(_, line)| clear_of(text, std::slice::from_ref(line))).all(|room| room > 0.0),
+                "{name}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_thin_loop_has_a_point_inside() {
+        let sliver = [(0.0, 0.0), (50.0, 30.0), (100.0, 60.0), (100.0, 64.0), (50.0, 34.0), (0.0, 4.0)];
+        assert!(inner(&sliver).is_some_and(|(_, at)| encloses(&sliver, at)));
     }
 }

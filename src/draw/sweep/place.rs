@@ -26,6 +26,14 @@ pub fn clear_of(text: &TextBox, curves: &[Vec<Pixel>]) -> f64 {
     least
 }
 
+/// Whether a point is inside a loop.
+pub fn encloses(corners: &[Pixel], (x, y): Pixel) -> bool {
+    let edges = corners.iter().zip(corners.iter().cycle().skip(1));
+    let crosses =
+        |&(a, b): &(&Pixel, &Pixel)| (a.1 > y) != (b.1 > y) && x < a.0 + (b.0 - a.0) * (y - a.1) / (b.1 - a.1);
+    edges.filter(crosses).count() % 2 == 1
+}
+
 /// Points at this distance, in so many directions \[px\].
 pub fn around((x, y): Pixel, distance: f64, directions: usize) -> impl Iterator<Item = Pixel> {
     let angle = move |direction: usize| direction as f64 * TAU / directions as f64;
@@ -33,7 +41,7 @@ pub fn around((x, y): Pixel, distance: f64, directions: usize) -> impl Iterator<
 }
 
 /// A text with so much room on all sides is well placed \[px\].
-const ENOUGH: f64 = 12.0;
+pub const ENOUGH: f64 = 12.0;
 /// A text is moved so often at most, by this distance at most \[px\], in one of so many directions.
 const MOVES: usize = 60;
 const STEP: f64 = 4.0;
