@@ -239,6 +239,32 @@ fn a_velocity_along_an_impulse_stands_aside() {
     assert!((contact - end).abs() < 0.01, "nothing lies along it: {end}, {contact}");
 }
 
+#[test]
+fn contacts_at_one_place_are_told_apart() {
+    let feet = ["FL", "FR", "RL", "RR"];
+    let joints =
+        feet.map(|leg| [(format!("{leg}_thigh_joint"), json!(0.8)), (format!("{leg}_calf_joint"), json!(-1.6))]);
+    let joints: serde_json::Map<_, _> = joints.into_iter().flatten().collect();
+    // The leg's speed differs, not its place.
+    let drawn = |left: f64| {
+        let velocity = json!({"base": {"x": 0.5, "z": -0.6}, "joints": {"FL_calf_joint": left}});
+        let position = json!({"joints": joints});
+        let state = json!({"friction": 0.7, "place": "lowest", "position": position, "velocity": velocity});
+        let state = file("side.json", state.to_string());
+        svg(&["impact", "tests/data/robots/a1/a1.urdf", &state], "side")
+    };
+    let count = |svg: &str, text: &str| svg.matches(&format!(">{text}<")).count();
+    let alike = drawn(0.0);
+    assert_eq!(
+        ["FR_foot, FL_foot", "RR_foot, RL_foot", "2 \u{d7}"].map(|text| count(&alike, text)),
+        [1, 1, 2],
+        "{alike}"
+    );
+    // At its place, and at the tips of the arrows that differ.
+    let apart = drawn(10.0);
+    assert_eq!(["FL_foot", "FR_foot", "2 \u{d7}"].map(|text| count(&apart, text)), [2, 1, 1], "{apart}");
+}
+
 /// A1 with four feet and four points of its calves on the ground.
 #[test]
 fn curves_of_eight_contacts_fit_on_a_page() {

@@ -153,8 +153,10 @@ const GAP: f64 = 8.0;
 /// From one ring of places to the next \[px\].
 const RING: f64 = 13.0;
 const RINGS: i32 = 8;
+/// More between a name and the next one \[px\].
+const NEXT: f64 = 4.0;
 /// A name farther from its point has a line to it \[px\].
-const FAR: f64 = 20.0;
+const FAR: f64 = 22.0;
 
 /// Draws a name next to its point, rather above or rather `below` it, clear of what is `taken`.
 fn draw_name(
@@ -170,7 +172,7 @@ fn draw_name(
     let is_free = |place: &TextBox| place.is_within(area.size()) && clear(place, &taken.marks);
     let free = places().find(|place| is_free(place) && clear(place, &taken.thin)).or_else(|| places().find(is_free));
     let Some(place) = free.or_else(|| places().next()) else { return };
-    taken.marks.push(place);
+    taken.marks.push(TextBox { half: (place.half.0 + NEXT, place.half.1), ..place });
     let (left, right) = (place.middle.0 - place.half.0, place.middle.0 + place.half.0);
     let near = (at.0.clamp(left, right), place.middle.1);
     if libm::hypot(near.0 - at.0, near.1 - at.1) > FAR {
@@ -187,7 +189,8 @@ fn places((x, y): Pixel, width: f64, below: bool) -> impl Iterator<Item = TextBo
     (nearest..=RINGS).flat_map(move |ring| {
         let reach = f64::from(ring) * RING;
         let middles = [level, down, -down].map(|way| y + way * reach);
-        let lefts = [x + GAP, x - GAP - width, x + GAP + reach, x - GAP - reach - width];
+        let across = if below { x - 0.5 * width } else { x + GAP };
+        let lefts = [x + GAP, x - GAP - width, across, x + GAP + reach, x - GAP - reach - width];
         middles.into_iter().flat_map(move |middle| {
             let half = (0.5 * width, 0.5 * RING - 0.5);
             lefts.into_iter().map(move |left| TextBox { middle: (left + half.0, middle), half })
@@ -213,9 +216,14 @@ mod tests {
         names.draw(&area, &mut taken, &mut PlotLayer::default());
         let Taken { marks, thin } = taken;
         assert_eq!(marks.len(), 13);
+        // A name keeps the next ones at a distance, and not itself from the mark.
+        let own = |at: usize, TextBox { middle, half }| match at {
+            0 => TextBox { middle, half },
+            _ => TextBox { middle, half: (half.0 - NEXT, half.1) },
+        };
         for (at, place) in marks.iter().enumerate() {
-            let others = marks[..at].iter().chain(&thin);
-            assert!(place.is_within(area.size()) && others.clone().all(|other| !other.meets(place)), "{place:?}");
+            let (others, place) = (marks[..at].iter().chain(&thin), own(at, *place));
+            assert!(place.is_within(area.size()) && others.clone().all(|other| !other.meets(&place)), "{place:?}");
         }
     }
 }

@@ -48,6 +48,8 @@ const LIGHT: f64 = 2.5;
 const HEAVY: f64 = 8.0;
 /// A velocity after whose arrow is shorter than this share of the robot's size is written as a number.
 const SEEN: f64 = 0.04;
+/// What is nearer than this share of the robot's size is at one place.
+const HAIR: f64 = 1e-3;
 /// Names are drawn for at most so many bodies.
 const NAMED: usize = 60;
 
@@ -102,7 +104,9 @@ pub fn posed(robot: &Robot, feet: &[NamedContact], placement: &Placement, forwar
     let mut shapes = DrawnScene::new(&drawing).robot(JOINT);
     let axes = Vector::axes().map(tip);
     shapes.extend(axes.map(|tip| PlotShape::Arrow { from: point(root.origin), to: point(tip), stroke: ROOT }));
-    let mut names: Vec<(PlotPoint, String)> = axes.map(point).into_iter().zip(["x", "z"].map(str::to_owned)).collect();
+    // Names of axes stand next to them, before whatever may be at their tips.
+    let beside = Vector::axes().map(|axis| point(tip(axis * 0.85)));
+    let mut names: Vec<(PlotPoint, String)> = beside.into_iter().zip(["x", "z"].map(str::to_owned)).collect();
     if robot.bodies.len() <= NAMED {
         // The root's name stands between its axes.
         let places = iter::once(tip(Vector::new(0.2, 0.2))).chain(drawing.bodies[1..].iter().map(DrawnBody::middle));
@@ -317,16 +321,67 @@ impl<'d> DrawnScene<'d> {
             let (from, to) = (point(from), point(from + reach));
             PlotShape::Arrow { from, to, stroke }
         }));
-        let name = |(at, contact): (usize, &DrawnContact)| {
-            let small = outcome.and_then(|(outcome, drawn)| self.small(outcome, drawn, at));
-            (point(contact.point), contact.name.clone() + &small.unwrap_or_default())
+        let small = |at: usize| outcome.and_then(|(outcome, drawn)| self.small(outcome, drawn, at));
+        let name = |(small, alike): (Option<String>, Vec<usize>)| {
+            (point(contacts[alike[0]].point), self.joined(&alike) + &small.unwrap_or_default())
         };
-        let names = contacts.iter().enumerate().map(name).collect();
+        let alike = |place: Vec<usize>| words::grouped(place.into_iter().map(|at| (small(at), at)));
+        let mut names: Vec<_> = self.places().into_iter().flat_map(alike).collect();
+        // The long ones find room near their points first.
+        names.sort_by_key(|(small, _)| small.is_none());
+        let names = names.into_iter().map(name).collect();
         shapes.push(PlotShape::Names { names, below: true, color: Color::Black });
+        shapes.extend(outcome.into_iter().flat_map(|(_, drawn)| self.shared(drawn)));
         let pushed = outcome.into_iter().flat_map(|(_, drawn)| self.drawing.loops.iter().zip(&drawn.loop_impulse));
         let names = pushed.map(|(at, (link, vector))| (point(*at + *vector * self.impulse_scale), link.clone()));
         shapes.push(PlotShape::Names { names: names.collect(), below: false, color: IN_LOOP.color });
         shapes
+    }
+
+    /// The contacts by the place where they are: left and right feet may be at one.
+    fn places(&self) -> Vec<Vec<usize>> {
+        let contacts = &self.drawing.contacts;
+        self.together(0..contacts.len(), |at| contacts[at].point)
+    }
+
+    /// Numbers whose points are at one place.
+    fn together(&self, numbers: impl Iterator<Item = usize>, at: impl Fn(usize) -> Vector<f64>) -> Vec<Vec<usize>> {
+        let mut places: Vec<Vec<usize>> = Vec::new();
+        for number in numbers {
+            match places.iter_mut().find(|place| (at(place[0]) - at(number)).length() < HAIR * self.size) {
+                Some(place) => place.push(number),
+                None => places.push(vec![number]),
+            }
+        }
+        places
+    }
+
+    /// The names of contacts in one line.
+    fn joined(&self, contacts: &[usize]) -> String {
+        contacts.iter().map(|&at| &*self.drawing.contacts[at].name).collect::<Vec<_>>().join(", ")
+    }
+
+    /// At the tips of the arrows of contacts at one place: how many impulses coincide, or whose arrow it is.
+    fn shared(&self, drawn: &DrawnOutcome) -> [PlotShape; 2] {
+        let kinds = [(&drawn.impulse, self.impulse_scale, IMPULSE), (&drawn.velocity_after, self.after_scale, AFTER)];
+        kinds.map(|(vectors, scale, stroke)| {
+            let reach = |at: usize| vectors.get(at).map_or(Vector::zero(), |vector| *vector * scale);
+            let mut names = Vec::new();
+            for place in self.places() {
+                for alike in self.together(place.iter().copied(), reach) {
+                    let (reach, count) = (reach(alike[0]), alike.len());
+                    let name = match count == place.len() {
+                        false => self.joined(&alike),
+                        true if count > 1 && stroke == IMPULSE => format!("{count} \u{d7}"),
+                        true => continue,
+                    };
+                    if reach.length() >= SEEN * self.size {
+                        names.push((point(self.drawing.contacts[place[0]].point + reach), name));
+                    }
+                }
+            }
+            PlotShape::Names { names, below: false, color: stroke.color }
+        })
     }
 
     /// The velocity after of a contact that moves, if it is too small for an arrow.
@@ -352,6 +407,7 @@ impl<'d> DrawnScene<'d> {
         let DrawnNames { given, taken, moving, .. } = Wording::of(self.drawing.aspect).drawn;
         let is_small = |reach: Vector<f64>| reach != Vector::zero() && reach.length() < SEEN * self.size;
         let small = arrows.iter().any(|(_, reach, stroke)| *stroke == AFTER && is_small(*reach));
+        let shared = self.places().iter().any(|place| place.len() > 1);
         let kinds = [
             (IMPULSE, self.impulse_scale, given.1, format!("{} of the ground", given.0)),
             (APPLIED, self.impulse_scale, given.1, format!("applied {}", given.0)),
@@ -363,9 +419,12 @@ impl<'d> DrawnScene<'d> {
         let entries = drawn.filter_map(|(stroke, scale, unit, what)| {
             let round = round(KEY * self.size / scale)?;
             let key = LegendKey::Arrow { stroke, length: round * scale };
-            let is_written = small && stroke == AFTER;
-            let arrowless = if is_written { "\n(\u{2190} \u{2192} \u{2191}: too small for an arrow)" } else { "" };
-            Some(LegendEntry::new(format!("{what}: {round} {unit}{arrowless}"), key))
+            let remark = match stroke {
+                AFTER if small => "\n(\u{2190} \u{2192} \u{2191}: too small for an arrow)",
+                IMPULSE if shared => "\n(2 \u{d7}: on each of 2 contacts at one place)",
+                _ => "",
+            };
+            Some(LegendEntry::new(format!("{what}: {round} {unit}{remark}"), key))
         });
         let contacts = !self.drawing.contacts.is_empty();
         let signs = [
