@@ -102,8 +102,8 @@ pub(super) struct PageScale {
 
 /// The view stays fixed if all states lie within this multiple of the largest robot's size.
 const FIXED: f64 = 1.5;
-/// So many of a hundred states have no arrow longer than the usual one.
-const USUAL: usize = 90;
+/// Arrows that are no longer than the usual one make up this share of the lengths of all.
+const USUAL: f64 = 0.9;
 
 impl PageScale {
     pub fn of(states: &[PageState]) -> Self {
@@ -132,11 +132,17 @@ impl PageScale {
     }
 }
 
-/// The value that most of the positive ones do not exceed.
+/// The value that most of the positive ones do not exceed, each counted by its size: many that are nearly zero, as of
+/// feet at rest, do not hide the others.
 fn usual(values: impl Iterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.filter(|value| *value > 0.0).collect();
     values.sort_unstable_by(f64::total_cmp);
-    let usual = values.get((values.len() * USUAL / 100).min(values.len().saturating_sub(1)));
+    let share = USUAL * values.iter().sum::<f64>();
+    let mut sum = 0.0;
+    let usual = values.iter().find(|value| {
+        sum += **value;
+        sum >= share
+    });
     significant(usual.copied().unwrap_or(0.0), 5)
 }
 
@@ -257,6 +263,14 @@ fn place(point: Vector<f64>, unit: f64) -> Vector<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn many_values_near_zero_do_not_set_the_scale() {
+        let feet_at_rest = std::iter::repeat_n(5e-7, 600);
+        assert_eq!(usual(feet_at_rest.chain([4.0, 4.4, 4.2])), 4.4);
+        // One that is far greater does not, either, among many.
+        assert_eq!(usual(std::iter::repeat_n(2.0, 600).chain([40.0])), 2.0);
+    }
 
     #[test]
     fn numbers_have_the_digits_of_a_screen() {
