@@ -239,8 +239,8 @@ impl Args {
             options: Options {
                 aspect: if self.forces { Aspect::Forces } else { Aspect::Impact },
                 next: self.next.next,
-                // For the summary, if it is shown.
-                friction_needed: self.summary.is_some() || !is_quiet(),
+                // For the summary, if it is shown, and the picture.
+                friction_needed: self.summary.is_some() || self.plot.path().is_some() || !is_quiet(),
                 ..pipeline_options(
                     &self.scene.contacts,
                     feet,

@@ -41,6 +41,8 @@ pub struct KeyframeAnswer {
     /// Whether the list of outcomes is proven to be complete and right.
     pub proven: bool,
     pub outcomes: Vec<Outcome>,
+    /// The friction with which no contact would have to slide ([`Impact::friction_needed`]).
+    pub friction_needed: Option<f64>,
     /// How much is open, if the verdict is undecided.
     pub open: Option<OpenCombinations>,
 }
@@ -63,6 +65,7 @@ impl Keyframe {
             verdict: analysis.verdict,
             proven: analysis.proven,
             outcomes: analysis.outcomes.clone(),
+            friction_needed: impact.friction_needed,
             open: analysis.open,
         });
         let drawing = Some(Drawing::of_impact(robot, feet, state, impact));

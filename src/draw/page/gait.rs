@@ -98,6 +98,7 @@ impl Gait {
             |mu: f64| marks.iter().filter_map(|mark| mark.friction).any(|own| own.is_finite() && mu < FAR * own);
         let given_friction = self.friction().filter(|&mu| is_near(mu));
         if let (Some(mu), Some(needed)) = (given_friction, panels.last_mut()) {
+            needed.y.range = None;
             needed.shapes.insert(0, PlotShape::Line { points: vec![(range.0, mu), (range.1, mu)], stroke: GIVEN });
         }
         if panels.is_empty() {
@@ -166,7 +167,9 @@ impl Gait {
                     let foot = known.unwrap_or(feet.len());
                     feet.extend(known.is_none().then_some(link));
                     let place = order[number] + beside * (at as f64 - middle);
-                    let friction = outcome.friction_needed.get(at).copied().flatten();
+                    // A contact that slides needs that with which none would.
+                    let friction = outcome.friction_needed.get(at).copied().flatten().or(answer.friction_needed);
+                    let friction = friction.filter(|_| mode != Mode::Separate);
                     marks.push(GaitMark { foot, mode, at: place, margin: outcome.margin, friction });
                 }
             }
@@ -252,6 +255,8 @@ const WIDTH: f64 = 640.0;
 const BESIDE: f64 = 9.0;
 /// Values whose largest is so many times their least need a logarithmic axis.
 const DECADES: f64 = 50.0;
+/// Values that hardly differ have this share of them as room on their axis on either side.
+const FLAT: f64 = 0.1;
 
 /// The colors of feet, in turn.
 const FEET: [Color; 6] = [Color::Blue, Color::Vermilion, Color::Green, Color::Purple, Color::Black, Color::Orange];
@@ -285,7 +290,10 @@ fn panel(label: &str, x: PlotAxis, marks: &[GaitMark], size: f64, value: MarkVal
         PlotShape::Marks { points, mark, color: FEET[foot % FEET.len()], size }
     };
     let shapes = words::grouped(points).into_iter().map(shape).collect();
-    let y = PlotAxis { logarithmic: zero.is_some(), ..PlotAxis::new(label) };
+    let (low, _) = plot::range(marks.iter().filter_map(finite))?;
+    let room = FLAT * most.abs();
+    let range = (zero.is_none() && most - low < 0.1 * room).then_some((low - room, most + room));
+    let y = PlotAxis { logarithmic: zero.is_some(), range, ..PlotAxis::new(label) };
     let title = if has_zero { "\nthe lowest marks are zero".to_owned() } else { String::new() };
     Some(Panel { title, size: (WIDTH, 180.0), shapes, ..Panel::new(x, y) })
 }
