@@ -86,7 +86,9 @@ impl Happening<'_> {
     /// Its outcomes, one a line.
     pub fn lines(&self) -> Vec<String> {
         if let Some(error) = &self.error {
-            return vec![format!("refused: {}", error.message)];
+            // The depth is that of one of its states.
+            let example = if error.message.contains(" m deep") { ", for example" } else { "" };
+            return vec![format!("refused{example}: {}", error.message)];
         }
         let Some(outcomes) = self.outcomes else { return vec!["refused".to_owned()] };
         let mut lines: Vec<String> = match outcomes {
