@@ -160,7 +160,7 @@ def test_touchdowns_are_those_of_the_command(ramone, tmp_path):
             own = ramone.touchdowns(source, friction=0.8, **{field: value})
         lines = command("batch", URDF, source, "--touchdowns", "--friction", 0.8, flag, value).splitlines()
         assert bool(own) == any_found and own == [json.loads(line) for line in lines], (field, value)
-    with pytest.warns(UserWarning, match="no touchdown found: a foot must descend"):
+    with pytest.warns(UserWarning, match="no touchdown found: the lowest foot comes to z = 0 m; a foot must descend"):
         assert ramone.touchdowns(frame[:3], friction=0.8) == []
     with pytest.raises(TypeError, match="a table is a path.*not a list"):
         ramone.touchdowns([[0.0]])

@@ -86,7 +86,6 @@ pub use rates::{Difference, rates};
 pub use spatial::{Dropped, sagittal};
 
 use crate::contact::Feet;
-use crate::error::rounded;
 use crate::state::{NamedContact, State};
 use crate::{Error, Reason, Robot};
 use std::fmt;
@@ -121,7 +120,9 @@ impl Thresholds {
     /// What to say of a recording without a touchdown, in which no foot is lower than `lowest` \[m\].
     pub fn nothing_found(&self, heights: Heights, lowest: f64) -> String {
         let Self { drop, slow, ground, .. } = self;
-        let reached = format!("the lowest foot comes to z = {} m; ", rounded(lowest));
+        // To 0.1 mm, and 0 in place of -0.
+        let lowest = (1e4 * lowest).round() / 1e4 + 0.0;
+        let reached = format!("the lowest foot comes to z = {lowest} m; ");
         let reached = if lowest.is_finite() { &*reached } else { "" };
         let descended = format!("no touchdown found: {reached}a foot must descend {drop:.4} m or more");
         match heights {
