@@ -42,6 +42,7 @@ fn as_keywords(text: &str) -> String {
         Some((name, value)) if at % 2 == 1 && value.bytes().all(|letter| letter.is_ascii_lowercase()) => {
             format!("{name}=\"{value}\"")
         }
+        Some((name, value)) if at % 2 == 1 && value.parse::<f64>().is_ok() => format!("{name}={value}"),
         _ => piece.to_owned(),
     });
     pieces.collect::<Vec<_>>().join("`")

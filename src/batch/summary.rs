@@ -49,7 +49,7 @@ pub struct Summary {
     /// States with a joint outside its limits or turned by more than a turn.
     #[serde(skip_serializing_if = "OddJoints::is_empty")]
     pub odd_joints: OddJoints,
-    /// Touchdowns of feet without noise that were taken before they reach the ground.
+    /// Touchdowns that were taken above the ground, of feet whose heights have no noise.
     #[serde(skip_serializing_if = "is_zero")]
     pub early: u64,
     /// Columns of coordinates that the table of states does not have, which are 0 in all of them.
@@ -311,16 +311,13 @@ impl fmt::Display for Summary {
         if let OddJoints { states, first: Some(OddJoint { state, what }) } = &self.odd_joints {
             writeln!(
                 f,
-                "joints outside their limits or beyond a turn: {states}, the first in {state}: {}",
+                "states with joints outside their limits or beyond a turn: {states}, the first {state}: {}",
                 visible(what)
             )?;
         }
         if self.early > 0 {
-            let early = self.early;
-            writeln!(
-                f,
-                "feet without noise are taken 2 mm above the ground: {early}; of a simulation see `simulated`"
-            )?;
+            let what = "touchdowns taken above the ground, from heights without noise";
+            writeln!(f, "{what}: {}; if they are of a simulation, give `simulated`", self.early)?;
         }
         let mut lists: Vec<&ModeCount> = self.modes.iter().filter(|list| !list.modes.is_empty()).collect();
         lists.sort_by_key(|list| std::cmp::Reverse(list.outcomes));

@@ -30,6 +30,8 @@ const FLAGS: &[(&str, &str)] = &[
     ("format", "--format"),
     ("budget", "--budget"),
     ("budget_total", "--budget-total"),
+    ("brief", "--brief"),
+    ("simulated", "--simulated"),
 ];
 
 /// The text with settings such as `base: floating` in backticks written as options: --base floating.

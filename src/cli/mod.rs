@@ -164,6 +164,7 @@ fn with_tip(mut message: clap::Error) -> clap::Error {
     } else {
         return message;
     };
+    message.remove(ContextKind::SuggestedSubcommand);
     message.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
     message
 }

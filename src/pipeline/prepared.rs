@@ -29,8 +29,9 @@ pub struct Unsolved {
     pub problem: ContactProblem,
     /// How far each foot is from the ground \[m\]; empty if the state names its contacts.
     pub clearance: Vec<f64>,
-    /// At which corner of its link's feet each contact is, counted through them; empty as well.
-    pub corners: Vec<usize>,
+    /// At which corner of its link's feet each contact is, counted through them, or `None` if it is at none, as on a
+    /// corner of the ground; empty as well.
+    pub corners: Vec<Option<usize>>,
 }
 
 /// A foot that does not touch.
@@ -126,11 +127,9 @@ impl Pipeline<'_> {
         }
         let surface = Surface::new(&state.scene.ground);
         let clearance = self.feet.iter().map(|foot| surface.clearance(foot, &placement)).collect();
-        // Of an ellipse the corner is the nearest to what touches.
         let corner = |contact: &Contact| {
             let own = self.feet.iter().filter(|foot| foot.link == contact.link);
-            let away = own.flat_map(|foot| foot.outline.corners()).map(|&corner| (corner - contact.center).length());
-            away.enumerate().min_by(|(_, a), (_, b)| a.total_cmp(b)).map_or(0, |(at, _)| at)
+            own.flat_map(|foot| foot.outline.corners()).position(|corner| *corner == contact.center)
         };
         let corners = contacts.iter().map(corner).collect();
         Ok(Unsolved { contacts, problem, clearance, corners })

@@ -154,7 +154,7 @@ pub(super) fn about_inertias<'l>(links: impl Iterator<Item = &'l UrdfLink>, (who
         let kind = match inertia {
             None if *mass > 0.0 => 0,
             Some(_) if *mass == 0.0 && largest > 0.0 => 1,
-            Some(_) if size > 0.0 && largest > size * size * (WIDEST * WIDEST * mass).max(SLIGHT * whole) => 2,
+            Some(_) if largest > size * size * (WIDEST * WIDEST * mass).max(SLIGHT * whole) => 2,
             Some(inertia) if !is_planar && !is_physical(inertia) => 3,
             _ => continue,
         };

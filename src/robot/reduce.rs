@@ -116,7 +116,10 @@ impl Robot {
             (body.mass, body.com, body.moment) = composite(parts);
         }
         robot.left_out.extend(left_out::passed_over(description));
-        let size = robot.size(robot.links.iter().flat_map(|link| link.shapes.iter().map(|shape| (link.body, shape))));
+        let mut shapes =
+            robot.links.iter().flat_map(|link| link.shapes.iter().map(|shape| (link.body, shape))).peekable();
+        // Without shapes the robot may be any size.
+        let size = if shapes.peek().is_some() { robot.size(shapes) } else { f64::INFINITY };
         let moving = description.links.iter().zip(&tree.places);
         let moving = moving.filter(|(_, place)| place.as_ref().is_some_and(|place| robot.moves(place.body)));
         let cautions = caution::about_inertias(moving.map(|(link, _)| link), (robot.mass(), size));

@@ -175,8 +175,11 @@ impl<W: FnMut(f64) -> Option<Arc<Watched>>> Search<'_, W> {
             self.found.extend(&places[1..NODES - 1]);
             return;
         };
-        for (at, ends) in places.windows(2).zip(nodes.windows(2)) {
-            self.rolls([(at[0], &ends[0]), (at[1], &ends[1])]);
+        // Its halves have nothing to add.
+        if halvings == HALVINGS {
+            for (at, ends) in places.windows(2).zip(nodes.windows(2)) {
+                self.rolls([(at[0], &ends[0]), (at[1], &ends[1])]);
+            }
         }
         let mut followed = followed(&nodes);
         followed.retain(|(quantity, values)| {
@@ -213,6 +216,10 @@ impl<W: FnMut(f64) -> Option<Arc<Watched>>> Search<'_, W> {
     fn rolls(&mut self, [(mut a, first), (mut b, last)]: [(f64, &Arc<Watched>); 2]) {
         while first.corners != last.corners && b - a > self.resolution && !is_spent() {
             let middle = 0.5 * (a + b);
+            // Numbers far from zero may be farther apart than the resolution.
+            if middle <= a || middle >= b {
+                return;
+            }
             match (self.watch)(middle).filter(|watched| same_combinations(watched, first)) {
                 Some(watched) if watched.corners == first.corners => a = middle,
                 Some(watched) if watched.corners == last.corners => b = middle,
@@ -456,6 +463,17 @@ mod tests {
         let powers = [0.5, -a * b * c, (a * b + b * c + c * a) / 2.0, -(a + b + c) / 3.0, 0.25];
         let turns = Quartic(powers).turns();
         assert!(turns.len() == 3 && turns.iter().zip([a, b, c]).all(|(x, y)| (x - y).abs() < 1e-8), "{turns:?}");
+    }
+
+    #[test]
+    fn a_roll_far_from_zero_is_bisected_to_neighboring_numbers() {
+        let start = 1.7e9;
+        let mut watch = |x: f64| {
+            let corners = vec![Some(usize::from(x > start + 0.3))];
+            let inequalities = Inequalities::default();
+            Some(Arc::new(Watched { contacts: vec!["foot".into()], inequalities, clearance: Vec::new(), corners }))
+        };
+        assert!(suspects(&mut watch, start, start + 1.0, 1e-12).is_empty());
     }
 
     #[test]

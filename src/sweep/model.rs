@@ -53,8 +53,8 @@ pub struct Watched {
     pub inequalities: Inequalities,
     /// How far each foot is above the contact tolerance \[m\].
     pub clearance: Vec<f64>,
-    /// At which corner of its link's feet each contact is: one that is alone on its link has the same name at all.
-    pub corners: Vec<usize>,
+    /// At which corner of its link's feet each contact is, by whose name alone they do not differ; empty for a map.
+    pub corners: Vec<Option<usize>>,
 }
 
 /// Properties of a region, found at a point in it.
@@ -181,7 +181,8 @@ impl<'a> Solver<'a> {
             },
             contacts: contacts.into_iter().map(|contact| contact.name.to_string()).collect(),
             clearance: clearance.into_iter().map(|height| height - tolerance).collect(),
-            corners,
+            // In a map a foot stands on both corners in a band thinner than curves are drawn.
+            corners: if self.model.study.parameters().len() == 1 { corners } else { Vec::new() },
         })
     }
 }

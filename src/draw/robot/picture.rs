@@ -407,7 +407,10 @@ impl<'d> DrawnScene<'d> {
         let DrawnNames { given, taken, moving, .. } = Wording::of(self.drawing.aspect).drawn;
         let is_small = |reach: Vector<f64>| reach != Vector::zero() && reach.length() < SEEN * self.size;
         let small = arrows.iter().any(|(_, reach, stroke)| *stroke == AFTER && is_small(*reach));
-        let shared = self.places().iter().any(|place| place.len() > 1);
+        let is_count = |(_, name): &(_, String)| name.ends_with('\u{d7}');
+        let counts =
+            |drawn| matches!(self.shared(drawn), [PlotShape::Names { names, .. }, _] if names.iter().any(is_count));
+        let shared = self.drawing.outcomes.iter().any(counts);
         let kinds = [
             (IMPULSE, self.impulse_scale, given.1, format!("{} of the ground", given.0)),
             (APPLIED, self.impulse_scale, given.1, format!("applied {}", given.0)),
@@ -421,7 +424,7 @@ impl<'d> DrawnScene<'d> {
             let key = LegendKey::Arrow { stroke, length: round * scale };
             let remark = match stroke {
                 AFTER if small => "\n(\u{2190} \u{2192} \u{2191}: too small for an arrow)",
-                IMPULSE if shared => "\n(2 \u{d7}: on each of 2 contacts at one place)",
+                IMPULSE if shared => "\n(2 \u{d7}: on each of so many contacts at one place)",
                 _ => "",
             };
             Some(LegendEntry::new(format!("{what}: {round} {unit}{remark}"), key))

@@ -2,7 +2,7 @@
 
 use super::support::urdf;
 use super::{RAMONE, Run, WALKER, file, heelstrike, heelstrike_reads, parsed, place, read};
-use serde_json::json;
+use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Read, Write};
 use std::process::{Child, ChildStdin, Command, Stdio};
 

@@ -64,8 +64,27 @@ fn odd_joints_are_counted_and_the_first_is_named() {
     let what = "pitch = 90 rad is more than a turn; degrees?";
     let expected = json!({"states": 2, "first": {"line": 2, "what": what}});
     assert_eq!(parsed(&read(&path))["odd_joints"], expected);
-    let line = format!("joints outside their limits or beyond a turn: 2, the first in line 2: {what}\n");
+    let line = format!("states with joints outside their limits or beyond a turn: 2, the first line 2: {what}\n");
     assert!(run.stderr.contains(&line), "{}", run.stderr);
+}
+
+/// The disc slows down to the ground at 10 m/s^2.
+#[test]
+fn early_touchdowns_are_counted_unless_heights_are_true() {
+    let path = place("early.json");
+    let row = |row: u8| {
+        let time = f64::from(row) * 1e-3;
+        format!("{time},{}\n", 0.5 + 5.0 * (0.08_f64 - time).max(0.0).powi(2))
+    };
+    let table = format!("time,q_base_z\n{}", (0..100).map(row).collect::<String>());
+    let asked = ["-", "--input-format", "csv", "--touchdowns", "--velocity", "central", "--friction", "1", "--summary"];
+    let line = "touchdowns taken above the ground, from heights without noise: 1; if they are of a simulation, give --simulated\n";
+    for (more, early) in [(&[][..], json!(1)), (&["--simulated"], Value::Null)] {
+        let run = batch(&[&asked[..], &[&path], more].concat(), table.clone());
+        let summary = parsed(&read(&path));
+        assert_eq!((&summary["states"], &summary["early"]), (&json!(1), &early), "{}", run.stderr);
+        assert_eq!(run.stderr.contains(line), early == 1, "{}", run.stderr);
+    }
 }
 
 #[test]
