@@ -9,7 +9,7 @@
 use super::assembly::{Assembly, Elimination};
 use super::exact::{Asked, ExactState};
 use super::resting::Standing;
-use super::{Aspect, CONTACT_TOLERANCE, Impact, Pipeline};
+use super::{CONTACT_TOLERANCE, Impact, Pipeline};
 use crate::contact::{Contact, Footing, Level, Merged, Placement, Surface, level};
 use crate::dynamics::plan::{Plan, PlanBody};
 use crate::dynamics::{Arm, Constraints, Workspace, has_balance, kinetic_energy, mass_diagonal};
@@ -21,18 +21,6 @@ use crate::robot::Robot;
 use crate::scalar::Residue;
 use crate::state::{NamedLoop, Scene, State, check_length};
 use std::mem::take;
-
-/// A state's contact problem, not yet analyzed.
-#[derive(Debug, Clone)]
-pub struct Unsolved {
-    pub contacts: Vec<Contact>,
-    pub problem: ContactProblem,
-    /// How far each foot is from the ground \[m\]; empty if the state names its contacts.
-    pub clearance: Vec<f64>,
-    /// At which corner of its link's feet each contact is, counted through them, or `None` if it is at none, as on a
-    /// corner of the ground; empty as well.
-    pub corners: Vec<Option<usize>>,
-}
 
 /// A foot that does not touch.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -109,30 +97,6 @@ impl Pipeline<'_> {
     #[cfg(feature = "accuracy")]
     pub(crate) fn exact<'a>(&'a self, state: &'a State, prepared: &'a Prepared) -> ExactState<'a> {
         prepared.exact(self.robot, state, &self.assembly, Errors::UNKNOWN)
-    }
-
-    /// The contact problem of a state as f64 has it, without its analysis: of its impact or of forces, as
-    /// [`Options::aspect`](super::Options::aspect) says.
-    ///
-    /// # Errors
-    /// As [`Pipeline::answer`].
-    pub fn unsolved(&mut self, state: &State) -> Result<Unsolved> {
-        let prepared = match self.options.aspect {
-            Aspect::Impact => self.prepare(state)?,
-            Aspect::Forces => self.prepare_forces(state)?,
-        };
-        let Impact { placement, contacts, problem, .. } = *prepared.impact;
-        if state.scene.contacts.is_some() {
-            return Ok(Unsolved { contacts, problem, clearance: Vec::new(), corners: Vec::new() });
-        }
-        let surface = Surface::new(&state.scene.ground);
-        let clearance = self.feet.iter().map(|foot| surface.clearance(foot, &placement)).collect();
-        let corner = |contact: &Contact| {
-            let own = self.feet.iter().filter(|foot| foot.link == contact.link);
-            own.flat_map(|foot| foot.outline.corners()).position(|corner| *corner == contact.center)
-        };
-        let corners = contacts.iter().map(corner).collect();
-        Ok(Unsolved { contacts, problem, clearance, corners })
     }
 
     /// Everything up to the contact problem.
