@@ -324,14 +324,18 @@ impl Answers {
         let mut counts = [0; Arrays::REFUSED as usize + 1];
         let verdicts = self.verdict(py)?.bind(py).cast::<PyArrayDyn<u8>>()?.to_vec()?;
         verdicts.into_iter().for_each(|verdict| counts[usize::from(verdict)] += 1);
+        let refused = counts[Arrays::REFUSED as usize];
         let names = Verdict::ALL.map(Verdict::name).into_iter().chain(["refused"]);
         let verdicts = counts.into_iter().zip(names).filter(|(count, _)| *count > 0);
         let verdicts: Vec<String> = verdicts.map(|(count, name)| format!("{count} {name}")).collect();
         let list = |names: &[String]| if names.is_empty() { "none".to_owned() } else { names.join(", ") };
         let contacts = list(self.table.columns.contacts());
-        let mut errors = self.error(py)?.try_iter()?.filter_map(Result::ok);
-        let first =
-            errors.find(|error| !error.is_none()).map_or(String::new(), |error| format!("; first refusal: {error}"));
+        let mut first = String::new();
+        // The list of errors is as long as that of states.
+        if refused > 0 {
+            let mut errors = self.error(py)?.try_iter()?.filter_map(Result::ok).filter(|error| !error.is_none());
+            first = errors.next().map_or(first, |error| format!("; first refusal: {error}"));
+        }
         Ok(format!("Answers({} states: {}; contacts {contacts}{first})", self.states, list(&verdicts)))
     }
 

@@ -267,9 +267,7 @@ impl Answerer<'_> {
             Keyframe::of_impact(robot, &self.question.options.feet, state, impact)
         });
         block.summary.early += u64::from(around.landing.is_some_and(|landing| landing.is_early));
-        if self.question.options.friction_needed
-            && let Some(what) = state.odd_joints(robot).next()
-        {
+        if let Some(what) = state.odd_joints(robot).next() {
             let state = StateRef { id: state.id.clone().map(short_id), line: around.line };
             let first = Some(OddJoint { state, what });
             block.summary.odd_joints.add(OddJoints { states: 1, first });

@@ -157,9 +157,10 @@ fn run(cli: Cli) -> u8 {
 fn with_tip(mut message: clap::Error) -> clap::Error {
     let given = |kind| if let Some(ContextValue::String(given)) = message.get(kind) { given } else { "" };
     let (command, argument) = (given(ContextKind::InvalidSubcommand), given(ContextKind::InvalidArg));
+    let usage = message.get(ContextKind::Usage).map_or(String::new(), ContextValue::to_string);
     let tip = if command.ends_with(".urdf") {
         format!("name a command first: heelstrike impact {command} STATE.json")
-    } else if argument.ends_with(".json") && message.render().to_string().contains(" inspect ") {
+    } else if argument.ends_with(".json") && usage.contains(" inspect ") {
         format!("a state is an option here: --state {argument} --plot pose.svg")
     } else {
         return message;

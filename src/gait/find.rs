@@ -268,7 +268,8 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
             let (window, heights, level) = (&self.window, self.heights, self.level);
             let mut sample = Arrival { window, points: &mut self.points, at, heights, level }.sample(&first);
             let (shift_z, striking) = self.points.touch(&mut sample.state, first.point, &also, touching, together);
-            let is_clean = self.window.deviation(first.point) <= EXACT * self.thresholds.above;
+            let noise = self.window.measured(first.point);
+            let is_clean = noise.is_some_and(|noise| noise <= EXACT * self.thresholds.above);
             let is_early = heights == Heights::Recorded && first.is_soft() && is_clean;
             let row = self.window.frames[first.row].row;
             sample.landing = Some(Landing { row, striking, shift_z, at, touching, is_early });

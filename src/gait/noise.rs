@@ -27,13 +27,18 @@ impl<S> Window<S> {
 
     /// The standard deviation of a point's noise \[m\]: by its median, so that impacts do not count.
     pub fn deviation(&self, point: usize) -> f64 {
+        self.measured(point).unwrap_or(0.0)
+    }
+
+    /// The same; `None` if too few rows measure it.
+    pub fn measured(&self, point: usize) -> Option<f64> {
         let noise = self.frames.iter().rev().filter_map(|frame| frame.noise.get(point)).take(MEASURED);
         let mut noise: Vec<f64> = noise.copied().collect();
         if noise.len() < FEWEST {
-            return 0.0;
+            return None;
         }
         let middle = noise.len() / 2;
-        *noise.select_nth_unstable_by(middle, f64::total_cmp).1 / MEDIAN
+        Some(*noise.select_nth_unstable_by(middle, f64::total_cmp).1 / MEDIAN)
     }
 
     /// How many rows, each `passed` \[s\] after the one before, show the rate of a point: two, or if their noise is

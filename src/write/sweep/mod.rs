@@ -18,7 +18,7 @@ use crate::sweep::{
     Area, BorderCurve, CELLS, Findings, Map, Parameter, Regime, Region, RegionBorder, Study, Survey, WATCHED_CONTACTS,
     letter,
 };
-use crate::{Error, Mode, Verdict};
+use crate::{Error, Mode, Reason, Verdict};
 use serde::Serialize;
 
 /// The record of a study of one parameter, without its samples.
@@ -90,6 +90,9 @@ pub struct Happening<'a> {
     /// Why the states in it are refused, as at its middle.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<ErrorObject>,
+    /// Whether the error has a depth, which is that of one of its states.
+    #[serde(skip)]
+    pub has_depth: bool,
 }
 
 /// A region as it lies beside a border.
@@ -236,7 +239,8 @@ impl<'a> Happening<'a> {
             _ => None,
         };
         let (contacts, outcomes) = (regime.outcomes().map(|_| regime.contacts()), regime.outcomes());
-        Self { question, contacts, verdict, outcomes, undecided, error: refused.map(ErrorObject::new) }
+        let has_depth = refused.is_some_and(|error| matches!(error.reason(), Reason::Penetration { .. }));
+        Self { question, contacts, verdict, outcomes, undecided, error: refused.map(ErrorObject::new), has_depth }
     }
 }
 

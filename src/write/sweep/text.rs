@@ -86,8 +86,7 @@ impl Happening<'_> {
     /// Its outcomes, one a line.
     pub fn lines(&self) -> Vec<String> {
         if let Some(error) = &self.error {
-            // The depth is that of one of its states.
-            let example = if error.message.contains(" m deep") { ", for example" } else { "" };
+            let example = if self.has_depth { ", for example" } else { "" };
             return vec![format!("refused{example}: {}", error.message)];
         }
         let Some(outcomes) = self.outcomes else { return vec!["refused".to_owned()] };

@@ -93,6 +93,10 @@ fn a_foot_that_slows_down_touches_above_its_level() {
     let touchdowns = lifted(&[&high[..], &rows].concat(), At::Crossing, Touching::Strike);
     let [touchdown @ Sample { state, time, .. }] = &touchdowns[..] else { panic!("{touchdowns:?}") };
     assert!(landing(touchdown).is_early);
+    // Too few rows show no noise, and no lack of it.
+    let few: Vec<[f64; 3]> = high.into_iter().chain(rows.into_iter().step_by(8)).collect();
+    let short = lifted(&few, At::Crossing, Touching::Strike);
+    assert!(short.iter().all(|touchdown| !landing(touchdown).is_early) && short.len() == 1, "{short:?}");
     let level = 5.0 * 0.005_f64.powi(2) + above();
     assert_near(state.position[3], level + 0.003, 1e-12);
     // Between rows a line is a parabola to 1.25 um, here at 0.2 m/s; backward differences are half a row late.
