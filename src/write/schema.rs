@@ -189,27 +189,37 @@ fn without_null(property: &mut Value) {
 
 /// The schema of one document, with the definitions that it refers to.
 fn input(document: &str) -> Value {
-    let mut all: Value = serde_json::from_str(FORMAT).unwrap_or_default();
-    let mut definitions = Map::new();
-    let mut schema = all["$defs"][document].take();
-    refer(&schema, &all["$defs"], &mut definitions);
-    schema["$schema"] = all["$schema"].take();
+    let all: Value = serde_json::from_str(FORMAT).unwrap_or_default();
+    let (mut schema, mut definitions) = (all["$defs"][document].clone(), Map::new());
+    write_out(&mut schema, &all, &mut definitions);
+    schema["$schema"] = all["$schema"].clone();
     schema["title"] = document.into();
     schema["$defs"] = definitions.into();
     schema
 }
 
-/// Takes over every definition that a schema refers to.
-fn refer(schema: &Value, all: &Value, definitions: &mut Map<String, Value>) {
+/// Closes the objects of a schema, puts shapes in place of the references to them, and takes over every definition that
+/// it refers to.
+fn write_out(schema: &mut Value, all: &Value, definitions: &mut Map<String, Value>) {
     match schema {
-        Value::Array(entries) => entries.iter().for_each(|entry| refer(entry, all, definitions)),
+        Value::Array(entries) => entries.iter_mut().for_each(|entry| write_out(entry, all, definitions)),
         Value::Object(object) => {
-            let name = object.get("$ref").and_then(Value::as_str).and_then(|path| path.strip_prefix("#/$defs/"));
-            if let Some(name) = name.filter(|name| !definitions.contains_key(*name)) {
-                definitions.insert(name.to_owned(), all[name].clone());
-                refer(&all[name], all, definitions);
+            let reference = object.get("$ref").and_then(Value::as_str).unwrap_or_default().to_owned();
+            if let Some(Value::Object(shape)) = reference.strip_prefix("#/shapes/").map(|name| &all["shapes"][name]) {
+                object.remove("$ref");
+                object.extend(shape.clone());
             }
-            object.values().for_each(|value| refer(value, all, definitions));
+            if let Some(name) = reference.strip_prefix("#/$defs/").filter(|name| !definitions.contains_key(*name)) {
+                let mut definition = all["$defs"][name].clone();
+                // It may refer to itself.
+                definitions.insert(name.to_owned(), Value::Null);
+                write_out(&mut definition, all, definitions);
+                definitions.insert(name.to_owned(), definition);
+            }
+            if object.contains_key("properties") {
+                object.entry("additionalProperties").or_insert(false.into());
+            }
+            object.values_mut().for_each(|value| write_out(value, all, definitions));
         }
         _ => {}
     }
