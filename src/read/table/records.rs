@@ -7,6 +7,7 @@
 //! ```
 
 use super::flat;
+use crate::read::json::line_and_column;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
@@ -175,21 +176,15 @@ impl Record<'_> {
         if self.form == Form::Ndjson {
             return (0, flat::column_of(self.bytes, name));
         }
-        let mut quotes = self.form.quotes();
-        let (mut field, mut lines, mut column) = (0, 0, 1);
-        for &byte in self.bytes {
-            if field == index {
-                break;
-            }
+        let (mut quotes, mut field) = (self.form.quotes(), 0);
+        let is_before = |&&byte: &&u8| {
+            let is_before = field < index;
             field += usize::from(quotes.step(byte));
-            if byte == b'\n' {
-                (lines, column) = (lines + 1, 1);
-            } else {
-                // Bytes that continue a character do not count.
-                column += usize::from(byte & 0xC0 != 0x80);
-            }
-        }
-        (lines, column)
+            is_before
+        };
+        let start = self.bytes.iter().take_while(is_before).count();
+        let (line, column) = line_and_column(self.bytes, start);
+        (line - 1, column)
     }
 }
 
