@@ -9,7 +9,7 @@
 //! these are read. Every other line is read as a whole, and so is one with a value in an unusual form.
 
 use super::documents::utf8;
-use super::json::{Node, Value, offset_in};
+use super::json::{Node, Value, value_of};
 use super::state::{BASE, read};
 use crate::law::Friction;
 use crate::state::{Defaults, State};
@@ -99,12 +99,11 @@ impl<'r> StateLines<'r> {
                 "position" => Entry::Position,
                 "velocity" => Entry::Velocity,
                 "id" => {
-                    let start = value_of(line, key)?;
-                    self.values.push((start..start + id_length(&line.as_bytes()[start..])?, Entry::Id));
+                    self.values.push((place_of(line, key, id_length)?, Entry::Id));
                     continue;
                 }
                 "friction" if matches!(value, Value::Number(_)) => {
-                    self.values.push((number_at(line, value_of(line, key)?)?, Entry::Friction));
+                    self.values.push((place_of(line, key, number_length)?, Entry::Friction));
                     continue;
                 }
                 _ => continue,
@@ -115,7 +114,7 @@ impl<'r> StateLines<'r> {
                         "base" => BASE.iter().position(|known| known == name)?,
                         _ => self.robot.base_dofs() + self.robot.joint(name)?,
                     };
-                    self.values.push((number_at(line, value_of(line, name)?)?, entry(coordinate)));
+                    self.values.push((place_of(line, name, number_length)?, entry(coordinate)));
                 }
             }
         }
@@ -123,12 +122,11 @@ impl<'r> StateLines<'r> {
     }
 }
 
-/// Where the value of a key begins; `None` if the key is a copy, because it has escapes.
-fn value_of(line: &str, key: &str) -> Option<usize> {
-    // The offset is that of the quotation mark before the key.
-    let behind = line.get(offset_in(line, key)? + key.len() + 2..)?;
-    let value = behind.trim_ascii_start().strip_prefix(':')?.trim_ascii_start();
-    Some(line.len() - value.len())
+/// Where the value of a key is, with its `length` in the text that begins with it.
+fn place_of(line: &str, key: &str, length: impl Fn(&[u8]) -> Option<usize>) -> Option<Range<usize>> {
+    let value = value_of(line, key)?;
+    let start = line.len() - value.len();
+    Some(start..start + length(value.as_bytes())?)
 }
 
 /// The length of an id of plain characters or digits.
@@ -153,10 +151,8 @@ fn take_id(id: &str, into: &mut Option<serde_json::Value>) -> Option<()> {
     Some(())
 }
 
-/// Where the number that begins at `start` is.
-fn number_at(line: &str, start: usize) -> Option<Range<usize>> {
-    let (_, length) = number(&line.as_bytes()[start..])?;
-    Some(start..start + length)
+fn number_length(text: &[u8]) -> Option<usize> {
+    number(text).map(|(_, length)| length)
 }
 
 /// The nearest f64 of the number at the beginning of a text, and its length; `None` beyond the range of f64, and for what

@@ -214,8 +214,7 @@ impl<'n> Node<'n> {
         let PathStep::Field { parent: Node { way: PathStep::Root { text, .. }, .. }, key } = self.way else {
             return None;
         };
-        let behind = text.get(offset_in(text, key)? + key.len() + 2..)?;
-        Some(behind.trim_start().strip_prefix(':')?.trim_start())
+        value_of(text, key)
     }
 
     /// Refuses a value of the wrong kind.
@@ -324,8 +323,15 @@ fn fields_of(object: &str) -> Vec<String> {
     }
 }
 
+/// The text of an object from the value of a key on; `None` if the key is a copy, because it has escapes.
+pub(super) fn value_of<'t>(text: &'t str, key: &str) -> Option<&'t str> {
+    // The offset is that of the quotation mark before the key.
+    let behind = text.get(offset_in(text, key)? + key.len() + 2..)?;
+    Some(behind.trim_ascii_start().strip_prefix(':')?.trim_ascii_start())
+}
+
 /// Where `part` begins in `text`, if it is a piece of it and not a copy; the quotation mark before it belongs to it.
-pub(super) fn offset_in(text: &str, part: &str) -> Option<usize> {
+fn offset_in(text: &str, part: &str) -> Option<usize> {
     let offset = (part.as_ptr() as usize).checked_sub(text.as_ptr() as usize)?;
     // An empty piece has an address of no meaning.
     (!part.is_empty() && offset + part.len() <= text.len()).then(|| offset.saturating_sub(1))
