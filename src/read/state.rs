@@ -92,12 +92,8 @@ fn coordinates(field: Node, robot: &Robot, into: &mut [f64], number: impl Fn(Nod
     let (base, joints) = into.split_at_mut(robot.base_dofs());
     for part in field.fields("field")? {
         match part.key() {
-            "base" if robot.base == Base::Fixed => {
-                let reason =
-                    Reason::Inconsistent("the robot is bolted to the world, its base has no coordinates".into());
-                return Err(part.refuse(reason).hint("leave it out, or give `base: floating`"));
-            }
             "base" => {
+                refuse_bolted(part, robot, "its base has no coordinates")?;
                 for entry in part.fields("base entry")? {
                     match BASE.iter().position(|name| *name == entry.key()) {
                         Some(at) => base[at] = number(entry)?,
