@@ -138,10 +138,9 @@ impl<'t> Study<'t> {
 
     /// Parameters that no expression of the state or the robot uses.
     pub fn unused(&self) -> Vec<&str> {
-        let mut texts = Vec::new();
-        ["state", "robot"].iter().filter_map(|name| self.tree.get(name)).for_each(|part| texts_in(part, &mut texts));
+        let parts = ["state", "robot"].iter().filter_map(|name| self.tree.get(name));
         let names = self.parameters.iter().map(|parameter| parameter.name.as_str());
-        names.filter(|name| !texts.iter().any(|text| names_in(text).any(|used| used == *name))).collect()
+        names.filter(|name| !parts.clone().any(|part| uses(part, name))).collect()
     }
 
     /// Whether the robot itself is varied.
@@ -267,13 +266,13 @@ fn name(entry: Node) -> Result<String> {
     Err(entry.refuse_name(name, Reason::Inconsistent(reason)).hint("take letters, digits and _, no digit first"))
 }
 
-/// All strings in a value that are no keys.
-fn texts_in<'v>(value: &'v Value, texts: &mut Vec<&'v str>) {
+/// Whether a string in a value that is no key has that name.
+fn uses(value: &Value, name: &str) -> bool {
     match value {
-        Value::Text(text) => texts.push(text),
-        Value::List(entries) => entries.iter().for_each(|entry| texts_in(entry, texts)),
-        Value::Object(fields) => fields.iter().for_each(|(_, value)| texts_in(value, texts)),
-        Value::Null | Value::Bool | Value::Number(_) => {}
+        Value::Text(text) => names_in(text).any(|used| used == name),
+        Value::List(entries) => entries.iter().any(|entry| uses(entry, name)),
+        Value::Object(fields) => fields.iter().any(|(_, value)| uses(value, name)),
+        Value::Null | Value::Bool | Value::Number(_) => false,
     }
 }
 
