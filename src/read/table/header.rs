@@ -13,11 +13,6 @@ const BASE: [&str; 3] = ["base_x", "base_z", "base_pitch"];
 const QUATERNION: [&str; 4] = ["base_qw", "base_qx", "base_qy", "base_qz"];
 /// Its lateral position.
 const SIDEWAYS: &str = "base_y";
-/// Why velocities of a base in three dimensions are refused: engines give them in the world's axes or the body's.
-const SPATIAL_VELOCITY: &str = "velocities of a robot whose base is in three dimensions are not read";
-/// The remedy.
-const WITHOUT_VELOCITY: &str =
-    "leave out the columns v_..., and give `velocity: central` to take velocities from the time";
 
 /// Where the velocities of a table come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -147,7 +142,7 @@ impl Header {
         };
         header.spatial = header.spatial(record, robot)?;
         header.missing = header.absent(robot, rates);
-        header.check_foreign(record, foreign)?;
+        header.check_foreign(record)?;
         header.check(record, robot, rates)?;
         if header.stance.is_some() {
             let placed = ["q_base_x", "q_base_z", "v_base_x", "v_base_z"];
@@ -175,10 +170,10 @@ impl Header {
     }
 
     /// Refuses a column that is carried through and resembles one that is missing, unless it is said to be foreign.
-    fn check_foreign(&self, record: Record, foreign: &[String]) -> Result<()> {
+    fn check_foreign(&self, record: Record) -> Result<()> {
         let others = OTHERS.iter().map(|(name, _)| *name).filter(|name| !self.names.iter().any(|given| given == name));
         let missing: Vec<&str> = self.missing.iter().map(String::as_str).chain(others).collect();
-        let carried = self.places(TableColumn::Carried).filter(|&at| !foreign.contains(&self.names[at]));
+        let carried = self.places(TableColumn::Carried).filter(|&at| !self.is_foreign(&self.names[at]));
         let resembling = carried.filter_map(|at| {
             let name = &self.names[at];
             let near: Vec<&str> = missing.iter().copied().filter(|missing| resembles(name, missing)).collect();
@@ -200,15 +195,10 @@ impl Header {
         self.columns.len()
     }
 
-    /// Whether there is a column `time`.
-    pub fn has_time(&self) -> bool {
-        self.time.is_some()
-    }
-
     /// The same, refused if there is no column `time`; without a line.
     pub fn with_time(self) -> Result<Self> {
         let missing = || Error::new(Reason::Missing("a column \"time\"".into()));
-        if self.has_time() { Ok(self) } else { Err(missing().hint("touchdowns need the time of each row")) }
+        if self.time.is_some() { Ok(self) } else { Err(missing().hint("touchdowns need the time of each row")) }
     }
 
     /// The same, refused if the base floats and no column says where it is, as touchdowns need; without a line.
@@ -288,7 +278,7 @@ impl Header {
             let example = robot.coordinates().next().map_or("base_x".to_owned(), |name| prefixed(robot, name));
             Err(in_table(Reason::Missing(format!("a column of {what}, such as {prefix}{example},")), hint))
         };
-        let has_time = self.has_time();
+        let has_time = self.time.is_some();
         match (rates, velocity) {
             (_, None) if position.is_none() => {
                 let known = few(self.missing.clone());
@@ -331,8 +321,11 @@ fn in_table(reason: Reason, hint: &str) -> Error {
     Error::new(reason).on(1, 1).hint(hint)
 }
 
+/// The refusal of velocities of a base in three dimensions: engines give them in the world's axes or the body's.
 fn spatial_velocity() -> Error {
-    Error::new(Reason::Unsupported(SPATIAL_VELOCITY.into())).hint(WITHOUT_VELOCITY)
+    let reason = "velocities of a robot whose base is in three dimensions are not read".to_owned();
+    let hint = "leave out the columns v_..., and give `velocity: central` to take velocities from the time";
+    Error::new(Reason::Unsupported(reason)).hint(hint)
 }
 
 /// The names in the first record, without the space around them.
