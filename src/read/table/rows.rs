@@ -5,6 +5,7 @@ use super::header::{Header, SpatialColumns, TableColumn, short};
 use super::records::{Cell, Form, Record};
 #[cfg(feature = "columnar")]
 use super::typed::Typed;
+use crate::error::finite;
 use crate::gait::spatial::{Spatial, project};
 use crate::law::Friction;
 use crate::read::json::{id_in, id_of};
@@ -420,10 +421,7 @@ impl Row<'_> {
                 if text.contains(',') { error.hint("write decimals with a point") } else { error }
             })?,
         };
-        if value.is_finite() {
-            return Ok(value);
-        }
-        Err(self.refuse(at, Reason::NotFinite { what: "a cell".into(), value }))
+        finite(value, || "a cell".into()).map_err(|error| self.place(error, at))
     }
 
     /// Whether a cell is not empty.
