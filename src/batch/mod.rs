@@ -32,7 +32,7 @@ use crate::read::table::{Carried, Header, Row, Rows};
 #[cfg(feature = "columnar")]
 use crate::read::table::{Form, Part};
 use crate::state::{Defaults, State};
-use crate::write::{self, CarriedFields, Columns, Detail, Refused, Report, Touchdown, short_id};
+use crate::write::{self, Columns, Detail, Refused, Report, Touchdown, short_id};
 use crate::{Error, Reason, Result, Robot};
 use serde_json::Value;
 
@@ -259,24 +259,21 @@ impl Answerer<'_> {
             let fields = header.zip(around.carried).into_iter().flat_map(|(header, carried)| {
                 carried.by_name(header).filter(|(name, _)| !detail.brief || header.is_foreign(name))
             });
-            let fields: Vec<_> = fields.map(|(name, value)| (name.into(), value)).collect();
-            report.carried = (!fields.is_empty()).then_some(CarriedFields(fields));
+            let mut fields = fields.map(|(name, value)| (name.to_owned(), value)).peekable();
+            report.carried = fields.peek().is_some().then(|| fields.collect());
             report.append_json(detail, &mut block.out);
         }
         self.keep(state.id.as_ref(), around, block, || {
             Keyframe::of_impact(robot, &self.question.options.feet, state, impact)
         });
         block.summary.early += u64::from(around.landing.is_some_and(|landing| landing.is_early));
+        let place = || StateRef { id: state.id.clone().map(short_id), line: around.line };
         if let Some(what) = state.odd_joints(robot).next() {
-            let state = StateRef { id: state.id.clone().map(short_id), line: around.line };
-            let first = Some(OddJoint { state, what });
+            let first = Some(OddJoint { state: place(), what });
             block.summary.odd_joints.add(OddJoints { states: 1, first });
         }
         match impact.analyzed() {
-            Ok(analysis) => {
-                let place = || StateRef { id: state.id.clone().map(short_id), line: around.line };
-                block.summary.count(place, impact, analysis);
-            }
+            Ok(analysis) => block.summary.count(place, impact, analysis),
             // The result contains it next to the matrices.
             Err(error) => block.refuse(error, around),
         }

@@ -1,11 +1,12 @@
 //! The result of a state in sustained contact: a [`Report`] with forces and accelerations under their own names.
 
-use super::result::{CarriedFields, ContactRecord, ErrorObject, LeftOutRecord, NearestRecord, Rejected, Report};
+use super::result::{ContactRecord, ErrorObject, LeftOutRecord, NearestRecord, Rejected, Report};
 use crate::Mode;
 use crate::impact::outcome::Range;
 use crate::impact::{Border, Family, OpenCombinations, Outcome, Verdict};
 use crate::pipeline::{SpringForce, Unrealized};
 use crate::planar::{Pair, Vector};
+use crate::read::table::CarriedValue;
 use crate::state::Named;
 use serde::Serialize;
 use serde_json::Value;
@@ -130,7 +131,7 @@ pub struct ForcesRecord<'a> {
     /// Fields of the table that the state comes from and that mean nothing here, as they stand there.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<std::collections::BTreeMap<String, String>>"))]
-    pub carried: Option<&'a CarriedFields<'a>>,
+    pub carried: Option<&'a Named<CarriedValue<'a>>>,
     /// Why there are no outcomes although the matrices are known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<&'a ErrorObject>,

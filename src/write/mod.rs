@@ -42,8 +42,8 @@ pub use forces::{ForceOutcome, ForcesRecord, RejectedForces, SustainedContact};
 pub use inspection::Inspection;
 pub(crate) use result::short_id;
 pub use result::{
-    Brief, CarriedFields, ContactInBrief, ContactRecord, ErrorObject, LeftOutRecord, NearestRecord, OutcomeInBrief,
-    Refused, Rejected, Report, Touchdown,
+    Brief, ContactInBrief, ContactRecord, ErrorObject, LeftOutRecord, NearestRecord, OutcomeInBrief, Refused, Rejected,
+    Report, Touchdown,
 };
 pub use state::{CounterexampleRecord, HoldsRecord};
 pub use text::{Subject, text};

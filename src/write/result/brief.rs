@@ -3,10 +3,12 @@
 use super::Report;
 #[cfg(feature = "schema")]
 use super::id::Id;
-use super::recorded::{CarriedFields, Touchdown};
+use super::recorded::Touchdown;
 use super::refused::ErrorObject;
 use crate::Mode;
 use crate::impact::{Family, Next, OpenCombinations, Outcome, Verdict};
+use crate::read::table::CarriedValue;
+use crate::state::Named;
 use crate::write::state::HoldsRecord;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -75,7 +77,7 @@ pub struct Brief<'a> {
     /// Fields of the table that are named as foreign.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<std::collections::BTreeMap<String, Value>>"))]
-    pub carried: Option<CarriedFields<'a>>,
+    pub carried: Option<Named<CarriedValue<'a>>>,
     /// Why there are no outcomes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<ErrorObject>,

@@ -16,7 +16,7 @@ pub use contact::{ContactRecord, NearestRecord};
 pub(super) use id::Id;
 pub(crate) use id::short_id;
 pub use left_out::LeftOutRecord;
-pub use recorded::{CarriedFields, Touchdown};
+pub use recorded::Touchdown;
 pub use refused::{ErrorObject, Refused};
 
 use super::Detail;
@@ -25,7 +25,8 @@ use crate::impact::{Analysis, Explanation, Family, OpenCombinations, Outcome, Re
 use crate::pipeline::{Aspect, Impact, NearestFoot, Sustained};
 use crate::planar::Pair;
 use crate::read::Problem;
-use crate::state::State;
+use crate::read::table::CarriedValue;
+use crate::state::{Named, State};
 use crate::{Mode, Robot};
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
@@ -134,7 +135,7 @@ pub struct Report<'a> {
     /// Fields of the table that the state comes from and that mean nothing here, as they stand there: as text, from JSON and columns with types as values.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<std::collections::BTreeMap<String, Value>>"))]
-    pub carried: Option<CarriedFields<'a>>,
+    pub carried: Option<Named<CarriedValue<'a>>>,
     /// Why there are no outcomes although the matrices are known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<ErrorObject>,

@@ -2,12 +2,11 @@
 
 use crate::Robot;
 use crate::gait::Landing;
-use crate::read::table::CarriedValue;
-use crate::state::{Named, State};
+use crate::state::State;
 #[cfg(feature = "schema")]
 use crate::write::state::any_object;
 use crate::write::state::raw_state;
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 use std::borrow::Cow;
 
@@ -48,22 +47,5 @@ impl<'a> Touchdown<'a> {
             state: raw_state(robot, state)?,
             coordinates: [&state.position[..], &state.velocity].concat(),
         })
-    }
-}
-
-/// Fields of a table that are carried through, written as an object.
-#[derive(Debug, Clone)]
-pub struct CarriedFields<'a>(pub Vec<(Cow<'a, str>, CarriedValue<'a>)>);
-
-impl Serialize for CarriedFields<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(self.0.iter().map(|(name, value)| (name, value)))
-    }
-}
-
-impl<'de> Deserialize<'de> for CarriedFields<'_> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let fields = Named::<CarriedValue>::deserialize(deserializer)?;
-        Ok(Self(fields.iter().map(|(name, value)| (name.to_owned().into(), value.clone())).collect()))
     }
 }
