@@ -37,10 +37,7 @@ pub enum ColumnarFormat {
 
 /// Rows of results in the making.
 #[derive(Debug)]
-pub struct ColumnBlock {
-    columns: Vec<Column>,
-    rows: usize,
-}
+pub struct ColumnBlock(Vec<Column>);
 
 #[derive(Debug)]
 enum Column {
@@ -66,7 +63,7 @@ impl ColumnBlock {
             Kind::Boolean => Column::Boolean(BooleanBuilder::new()),
             Kind::Carried(which) => Column::Carried { which, sources: Vec::new(), at: Vec::new() },
         };
-        Self { columns: columns.kinds().iter().map(column).collect(), rows: 0 }
+        Self(columns.kinds().iter().map(column).collect())
     }
 
     fn finish(self, schema: &SchemaRef) -> Result<RecordBatch> {
@@ -84,15 +81,14 @@ impl ColumnBlock {
                 }
             })
         };
-        let arrays = self.columns.into_iter().zip(schema.fields()).map(array).collect::<Result<_>>()?;
+        let arrays = self.0.into_iter().zip(schema.fields()).map(array).collect::<Result<_>>()?;
         RecordBatch::try_new(Arc::clone(schema), arrays).map_err(unwritable)
     }
 }
 
 impl RowSink for ColumnBlock {
     fn row(&mut self, _: &Columns, cells: &[Cell]) {
-        self.rows += 1;
-        for (column, cell) in self.columns.iter_mut().zip(cells) {
+        for (column, cell) in self.0.iter_mut().zip(cells) {
             match (column, cell) {
                 (Column::Text(texts), Cell::Text(text)) => texts.append_value(text),
                 (Column::Text(texts), Cell::Carried(carried, which)) => {
@@ -195,8 +191,9 @@ impl ColumnWriter {
     /// # Errors
     /// As [`Self::new`].
     pub fn write(&mut self, block: ColumnBlock) -> Result<Vec<u8>> {
-        self.rows += block.rows;
-        self.waiting.push(block.finish(&self.schema)?);
+        let batch = block.finish(&self.schema)?;
+        self.rows += batch.num_rows();
+        self.waiting.push(batch);
         if self.rows < TOGETHER { Ok(Vec::new()) } else { self.flush() }
     }
 
