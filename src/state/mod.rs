@@ -7,6 +7,7 @@ mod limits;
 
 pub use ground::{Ground, Profile};
 pub use limits::OutsideLimits;
+pub(crate) use named::Entries;
 pub use named::Named;
 pub use scene::{
     AppliedImpulse, ByLink, LinkPoint, NamedContact, NamedLoop, Scene, SpringEnd, SpringLaw, VirtualSpring,

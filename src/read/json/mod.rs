@@ -10,7 +10,7 @@
 
 mod value;
 
-pub(crate) use value::{RawFields, Value, id_in, id_of};
+pub(crate) use value::{Value, id_in, id_of, raw_fields};
 
 use crate::read::expression::{FUNCTIONS, Fault, Names};
 use crate::{Error, Reason, Result};

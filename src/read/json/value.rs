@@ -1,8 +1,10 @@
 //! From text to [`Value`] through serde_json, and its errors with place and hint.
 
 use super::line_and_column;
+use crate::state::Entries;
 use crate::{Error, Reason};
 use serde::Deserialize;
+use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error as _, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde_json::Number;
 use serde_json::value::RawValue;
@@ -101,46 +103,17 @@ impl<'de> Visitor<'de> for AnyValue {
         Ok(Value::List(entries))
     }
     fn visit_map<A: MapAccess<'de>>(self, object: A) -> Result<Self::Value, A::Error> {
-        entries(object).map(Value::Object)
+        Entries::deserialize(MapAccessDeserializer::new(object)).map(|entries| Value::Object(fields(entries)))
     }
 }
 
-/// Keys and values in their order, no key left out that stands twice.
-fn entries<'de, V: Deserialize<'de>, A: MapAccess<'de>>(mut object: A) -> Result<Vec<(Cow<'de, str>, V)>, A::Error> {
-    let mut entries = Vec::new();
-    while let Some((Key(key), value)) = object.next_entry()? {
-        entries.push((key, value));
-    }
-    Ok(entries)
+/// The fields of the one object of `text`, with their values as they are written.
+pub(crate) fn raw_fields(text: &str) -> crate::Result<Vec<(Cow<'_, str>, &RawValue)>> {
+    serde_json::from_str(text).map(fields).map_err(|error| refusal(text, &error))
 }
 
-/// The fields of an object, with their values as they are written.
-pub(crate) struct RawFields<'t>(pub Vec<(Cow<'t, str>, &'t RawValue)>);
-
-impl<'t> RawFields<'t> {
-    /// Reads the one object of `text`.
-    pub(crate) fn parse(text: &'t str) -> crate::Result<Self> {
-        serde_json::from_str(text).map_err(|error| refusal(text, &error))
-    }
-}
-
-impl<'de> Deserialize<'de> for RawFields<'de> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_map(RawFieldsVisitor)
-    }
-}
-
-struct RawFieldsVisitor;
-
-impl<'de> Visitor<'de> for RawFieldsVisitor {
-    type Value = RawFields<'de>;
-
-    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str("an object")
-    }
-    fn visit_map<A: MapAccess<'de>>(self, object: A) -> Result<Self::Value, A::Error> {
-        entries(object).map(RawFields)
-    }
+fn fields<'t, V>(Entries(entries): Entries<Key<'t>, V>) -> Vec<(Cow<'t, str>, V)> {
+    entries.into_iter().map(|(Key(key), value)| (key, value)).collect()
 }
 
 /// The `id` of an object that may be malformed after it; `None` if none can be read.

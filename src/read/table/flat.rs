@@ -7,9 +7,11 @@
 //! The first line that can be read names the columns. A key that a later line lacks, and null, are an empty cell.
 
 use crate::read::documents::utf8;
-use crate::read::json::{RawFields, line_and_column};
+use crate::read::json::{line_and_column, raw_fields};
 use crate::{Error, Reason, Result};
 use csv::ByteRecord;
+use serde_json::value::RawValue;
+use std::borrow::Cow;
 
 /// Whether a line of JSON is a flat state; `None` if it is blank, or broken and looks like one.
 pub fn is_flat(line: &[u8]) -> Option<bool> {
@@ -17,7 +19,7 @@ pub fn is_flat(line: &[u8]) -> Option<bool> {
     match fields(line) {
         _ if line.trim_ascii().is_empty() => None,
         Ok(fields) => {
-            let any = |wanted: &dyn Fn(&str) -> bool| fields.0.iter().any(|(key, _)| wanted(key));
+            let any = |wanted: &dyn Fn(&str) -> bool| fields.iter().any(|(key, _)| wanted(key));
             Some(any(&is_coordinate) && !any(&|key| matches!(key, "position" | "velocity")))
         }
         Err(_) => {
@@ -29,7 +31,7 @@ pub fn is_flat(line: &[u8]) -> Option<bool> {
 
 /// The keys of a line.
 pub(super) fn keys(line: &[u8]) -> Result<Vec<String>> {
-    Ok(fields(line)?.0.into_iter().map(|(key, _)| key.into_owned()).collect())
+    Ok(fields(line)?.into_iter().map(|(key, _)| key.into_owned()).collect())
 }
 
 /// Reads the values of a line into the cells of the columns, as they are written there; nothing for null.
@@ -39,7 +41,7 @@ pub(super) fn read(line: &[u8], columns: &[String], cells: &mut ByteRecord) -> R
     let mut values = vec![None; columns.len()];
     // Most lines have the keys in the order of the first.
     let mut next = 0;
-    for (key, value) in &fields.0 {
+    for (key, value) in &fields {
         let is_next = columns.get(next).is_some_and(|column| column == key);
         let at = if is_next { Some(next) } else { columns.iter().position(|column| column == key) };
         let unknown = || refuse(key, Reason::Inconsistent("the first line has no such key".into()));
@@ -58,13 +60,13 @@ pub(super) fn read(line: &[u8], columns: &[String], cells: &mut ByteRecord) -> R
 
 /// The column at which the value of a key begins; 1 if there is none.
 pub(super) fn column_of(line: &[u8], name: &str) -> usize {
-    let place = |(_, value): &(_, &serde_json::value::RawValue)| {
+    let place = |(_, value): &(_, &RawValue)| {
         let offset = (value.get().as_ptr() as usize).checked_sub(line.as_ptr() as usize)?;
         Some(line_and_column(line, offset).1)
     };
-    fields(line).ok().and_then(|fields| fields.0.iter().rev().find(|(key, _)| key == name).and_then(place)).unwrap_or(1)
+    fields(line).ok().and_then(|fields| fields.iter().rev().find(|(key, _)| key == name).and_then(place)).unwrap_or(1)
 }
 
-fn fields(line: &[u8]) -> Result<RawFields<'_>> {
-    RawFields::parse(utf8(line)?)
+fn fields(line: &[u8]) -> Result<Vec<(Cow<'_, str>, &RawValue)>> {
+    raw_fields(utf8(line)?)
 }
