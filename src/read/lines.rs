@@ -94,6 +94,7 @@ impl<'r> StateLines<'r> {
 
     /// Lists the values of a `line` that was read; `None` if a key or a value is unusual.
     fn list(&mut self, tree: &Value, line: &str) -> Option<()> {
+        let number_length = |text: &[u8]| Some(number(text)?.1);
         for (key, value) in tree.fields() {
             let entry: fn(usize) -> Entry = match key.as_ref() {
                 "position" => Entry::Position,
@@ -149,10 +150,6 @@ fn take_id(id: &str, into: &mut Option<serde_json::Value>) -> Option<()> {
         (None, into) => *into = Some(id.parse::<u64>().ok()?.into()),
     }
     Some(())
-}
-
-fn number_length(text: &[u8]) -> Option<usize> {
-    number(text).map(|(_, length)| length)
 }
 
 /// The nearest f64 of the number at the beginning of a text, and its length; `None` beyond the range of f64, and for what
