@@ -198,8 +198,8 @@ fn input(document: &str) -> Value {
     schema
 }
 
-/// Closes the objects of a schema, puts shapes in place of the references to them, and takes over every definition that
-/// it refers to.
+/// Says of the objects of a schema that they are closed ones, puts shapes in place of the references to them, and takes
+/// over every definition that it refers to.
 fn write_out(schema: &mut Value, all: &Value, definitions: &mut Map<String, Value>) {
     match schema {
         Value::Array(entries) => entries.iter_mut().for_each(|entry| write_out(entry, all, definitions)),
@@ -217,6 +217,7 @@ fn write_out(schema: &mut Value, all: &Value, definitions: &mut Map<String, Valu
                 definitions.insert(name.to_owned(), definition);
             }
             if object.contains_key("properties") {
+                object.entry("type").or_insert("object".into());
                 object.entry("additionalProperties").or_insert(false.into());
             }
             object.values_mut().for_each(|value| write_out(value, all, definitions));
