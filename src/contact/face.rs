@@ -74,7 +74,7 @@ impl Face {
         }
         let along = self.tangent.dot(way);
         let room = if along > 0.0 { -self.past_end(point) } else { self.past_begin(point) };
-        descent * (room / along.abs()).min(distance(point, neighbor)) <= slack
+        descent * (room / along.abs()).min((neighbor - point).length()) <= slack
     }
 }
 
@@ -83,15 +83,10 @@ pub(super) fn upright(Vector { x, z }: Vector<f64>) -> Rotation<f64> {
     Rotation { cos: z, sin: x }
 }
 
-pub(super) fn distance(a: Vector<f64>, b: Vector<f64>) -> f64 {
-    let Vector { x, z } = a - b;
-    libm::hypot(x, z)
-}
-
 /// The vector of length one in this direction; it may be as short as it likes, but not zero.
 pub(super) fn unit(vector: Vector<f64>) -> Vector<f64> {
     let size = vector.x.abs().max(vector.z.abs());
-    let Vector { x, z } = vector.map(|entry| entry / size);
-    let length = libm::hypot(x, z);
-    Vector::new(x / length, z / length)
+    let scaled = vector.map(|entry| entry / size);
+    let length = scaled.length();
+    scaled.map(|entry| entry / length)
 }

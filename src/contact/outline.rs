@@ -5,7 +5,7 @@
 //!                                any other                                                  the corner's whose rim is nearest
 //! ```
 
-use super::face::{Face, distance, unit};
+use super::face::{Face, unit};
 use super::feet::Foot;
 use super::placement::Placement;
 use super::point::{Circle, Point, points};
@@ -119,7 +119,7 @@ impl<'p> Outline<'p> {
     /// which is the nearest one where the distance is nothing; and the distance that to the tangent there.
     pub fn beyond_rim(&self, corner: usize, point: Vector<f64>) -> Option<(Vector<f64>, f64)> {
         let way = point - self.corners[corner];
-        let far = distance(point, self.corners[corner]);
+        let far = way.length();
         if far == 0.0 {
             return None;
         }

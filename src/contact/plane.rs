@@ -9,7 +9,7 @@
 use super::feet::Foot;
 use super::placement::Placement;
 use super::point::{Circle, Point, Touch, point, points};
-use super::sole::{Reach, sole};
+use super::sole::sole;
 use crate::planar::{Rotation, Vector};
 
 /// Solid ground below a line through the world's origin.
@@ -66,11 +66,6 @@ impl HalfPlane {
         Touch { circle: self.circle(placement, point), ground: self.ground, gap: self.height(placement, point) }
     }
 
-    /// Whether a foot is so high that none of its points can be within `tolerance` \[m\] of the ground.
-    pub(super) fn is_out_of_reach(&self, foot: &Foot, placement: &Placement, tolerance: f64) -> bool {
-        self.least_gap(foot, placement) > tolerance
-    }
-
     /// A height \[m\] that no point of a foot is below.
     pub(super) fn least_gap(&self, foot: &Foot, placement: &Placement) -> f64 {
         let (center, radius) = foot.bounding_circle;
@@ -84,7 +79,7 @@ impl HalfPlane {
             let lowest = self.lowest(placement, point(foot, at));
             Vector::new(self.along(lowest), self.normal().dot(lowest))
         };
-        let ends = sole(foot.outline.corners().len(), place, Reach { highest, bumps: foot.bumps });
+        let ends = sole(foot.outline.corners().len(), place, highest, foot.bumps);
         let both = ends.map(|[rear, front]| [Some(rear), (front != rear).then_some(front)]);
         both.into_iter().flatten().flatten().map(|at| point(foot, at))
     }
@@ -98,7 +93,7 @@ impl HalfPlane {
         tolerance: f64,
         found: impl FnMut(Touch),
     ) -> Result<(), f64> {
-        if self.is_out_of_reach(foot, placement, tolerance) {
+        if self.least_gap(foot, placement) > tolerance {
             return Ok(());
         }
         let depth = -self.clearance(foot, placement);

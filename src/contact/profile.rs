@@ -11,12 +11,12 @@
 //! past, so that a spot touches once. What is within the tolerance touches; so a sole that lies flat on a tread touches
 //! with its corner and at the edge that it overhangs. At a small angle a side may go behind another by twice it.
 
-use super::face::{Face, PARALLEL, distance, unit, upright};
+use super::face::{Face, PARALLEL, unit, upright};
 use super::feet::Foot;
 use super::outline::Outline;
 use super::placement::Placement;
 use super::point::Touch;
-use super::sole::{Reach, sole};
+use super::sole::sole;
 use super::terrain::Terrain;
 use crate::planar::Vector;
 
@@ -52,7 +52,7 @@ pub(super) fn touching(
         };
         let places: Vec<Vector<f64>> = (0..outline.corners.len()).map(place_of).collect();
         let count = places.len();
-        let ends = sole(count, |at| places[at], Reach { highest: tolerance, bumps: foot.bumps });
+        let ends = sole(count, |at| places[at], tolerance, foot.bumps);
         let stands = |corner| {
             ends.is_some_and(|[rear, front]| (corner + count - rear) % count <= (front + count - rear) % count)
         };
@@ -190,7 +190,7 @@ fn on_segment(terrain: &Terrain, segment: usize, outline: &Outline, corner: usiz
     let [rear, front] = [segment - 1, segment].map(|end| terrain.is_convex(end));
     let reach = |convex: bool| if convex { 0.0 } else { close.tolerance };
     let above = face.past_begin(lowest) >= -reach(rear) && face.past_end(lowest) <= reach(front);
-    let at_corner = |end: Vector<f64>, convex: bool| convex && distance(lowest, end) <= close.rounding;
+    let at_corner = |end: Vector<f64>, convex: bool| convex && (lowest - end).length() <= close.rounding;
     if !above || at_corner(face.from, rear) || at_corner(face.to, front) {
         return None;
     }
@@ -223,7 +223,7 @@ fn corner_on_corner(terrain: &Terrain, corner: usize, outline: &Outline, close: 
         // A point that is at the corner, to rounding, is left to it by both segments.
         let past_both = || {
             let [rear, front] = [before, after].map(|face| outline.lowest(foot, face.normal));
-            let left = |past: bool, lowest| past || distance(lowest, at) <= close.rounding;
+            let left = |past: bool, lowest: Vector<f64>| past || (lowest - at).length() <= close.rounding;
             left(before.past_end(rear) > 0.0, rear) && left(after.past_begin(front) < 0.0, front)
         };
         let is_nearest_foot = outline.at_corner(foot).is_none_or(|[ending, beginning]| {

@@ -13,22 +13,10 @@ use crate::planar::Vector;
 /// The slope of a side of a mesh that is level but for the rounding of vertices.
 const LEVEL: f64 = 1e-3;
 
-/// What stands on the ground.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Reach {
-    /// Up to which height a corner is on the ground \[m\].
-    pub highest: f64,
-    /// How far above the lowest corner the rest of an almost level sole may be \[m\].
-    pub bumps: f64,
-}
-
 /// The rearmost and the foremost corner that stands, of an outline whose `count` corners are at the (t, n) `place` \[m\],
-/// counter-clockwise: those from one to the other stand. Sides of 45 degrees and more are no sole.
-pub(super) fn sole(
-    count: usize,
-    place: impl Fn(usize) -> Vector<f64>,
-    Reach { highest, bumps }: Reach,
-) -> Option<[usize; 2]> {
+/// counter-clockwise: those from one to the other stand. Sides of 45 degrees and more are no sole. A corner is on the
+/// ground up to the height `highest`; the rest of an almost level sole, up to `bumps` above the lowest corner \[m\].
+pub(super) fn sole(count: usize, place: impl Fn(usize) -> Vector<f64>, highest: f64, bumps: f64) -> Option<[usize; 2]> {
     let low = (0..count).map(|at| (at, place(at))).filter(|(_, place)| place.z <= highest);
     let (lowest, least) = low.min_by(|(_, a), (_, b)| a.z.total_cmp(&b.z))?;
     // Counter-clockwise from the lowest is forward.

@@ -1,7 +1,7 @@
 //! The ground as feet meet it.
 
 use super::Contact;
-use super::face::{PARALLEL, distance};
+use super::face::PARALLEL;
 use super::feet::Foot;
 use super::outline::Outline;
 use super::placement::Placement;
@@ -98,7 +98,7 @@ impl Surface {
     /// Whether a foot is so far away that no point of it can be within `tolerance` \[m\] of the ground.
     pub(super) fn is_out_of_reach(&self, foot: &Foot, placement: &Placement, tolerance: f64) -> bool {
         match self {
-            Self::HalfPlane(plane) => plane.is_out_of_reach(foot, placement, tolerance),
+            Self::HalfPlane(plane) => plane.least_gap(foot, placement) > tolerance,
             Self::Profile(terrain) => {
                 profile::within_reach(terrain, foot, &Outline::new(foot, placement), tolerance).is_empty()
             }
@@ -119,7 +119,7 @@ impl Surface {
         let same_place = match self {
             Self::HalfPlane(_) => a.center == b.center,
             Self::Profile(_) => {
-                distance(a.center, b.center) <= rounding && distance(a.normal(), b.normal()) <= PARALLEL
+                (a.center - b.center).length() <= rounding && (a.normal() - b.normal()).length() <= PARALLEL
             }
         };
         same_place && (a.link, a.body, a.radius) == (b.link, b.body, b.radius)

@@ -8,7 +8,7 @@
 //! push in, but are no ground themselves. A corner is convex where the ground falls away behind it, and concave in a
 //! notch. parry's polyline finds the segments near a foot and the nearest point, but not which side is inside.
 
-use super::face::{Face, distance, unit, upright};
+use super::face::{Face, unit, upright};
 use super::point::{Circle, Touch};
 use crate::planar::{Rotation, Vector};
 use crate::state::Profile;
@@ -30,7 +30,7 @@ impl Terrain {
         let mut faces: Vec<Face> = points.windows(2).map(|pair| Face::of_ground(pair[0], pair[1])).collect();
         if let (Some(&first), Some(&last)) = (faces.first(), faces.last()) {
             let below =
-                |Vector { x, z }: Vector<f64>, beside: Face| Vector::new(x, z - distance(beside.from, beside.to));
+                |Vector { x, z }: Vector<f64>, beside: Face| Vector::new(x, z - (beside.to - beside.from).length());
             let rear = Face {
                 from: below(first.from, first),
                 to: first.from,
@@ -88,7 +88,7 @@ impl Terrain {
         let (face, corner) = self.is_inside(point).then(|| self.nearest(point))?;
         let depth = match corner {
             None => -self.faces[face].height(point),
-            Some(corner) => distance(point, self.faces[corner].to),
+            Some(corner) => (point - self.faces[corner].to).length(),
         };
         Some((depth, self.faces[face].normal))
     }
@@ -132,7 +132,8 @@ impl Terrain {
         let (ground, height) = match inner {
             Some(corner) if !self.is_inside(center) => {
                 let at = self.faces[corner].to;
-                let (way, far) = (center - at, distance(center, at));
+                let way = center - at;
+                let far = way.length();
                 let meets = far == 0.0 || circle.radius == 0.0 && far <= tolerance;
                 let normal = if meets { self.middle_normal(corner) } else { unit(way) };
                 (upright(normal), normal.dot(way))
