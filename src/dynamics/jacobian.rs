@@ -141,28 +141,6 @@ pub(super) fn spin<T: Real>(plan: &Plan<T>, body: usize, velocity: &[T]) -> T {
     })
 }
 
-/// How a body moves, from how those before it do.
-fn motion<T: Real>(
-    plan: &Plan<T>,
-    index: usize,
-    velocity: &[T],
-    motions: &[Motion<T>],
-    workspace: &Workspace<T>,
-) -> Motion<T> {
-    let body = &plan.bodies[index];
-    let Some(parent) = body.parent else {
-        let still = (T::zero(), Vector::zero());
-        return if plan.floating { (velocity[2], Vector { x: velocity[0], z: velocity[1] }) } else { still };
-    };
-    let (spin, origin) = motions[parent];
-    let carried = origin + workspace.arm[index].perpendicular() * spin;
-    match body.motion {
-        JointMotion::Root | JointMotion::Fixed => (spin, carried),
-        JointMotion::Revolute { rate, .. } => (spin + rate * velocity[body.coordinate], carried),
-        JointMotion::Prismatic { .. } => (spin, carried + workspace.direction[index] * velocity[body.coordinate]),
-    }
-}
-
 /// Kinetic energy \[J\] for `velocity` (dq/dt, braked joints included): body by body, independent of the mass matrix.
 ///
 /// ```text
@@ -179,7 +157,19 @@ pub fn kinetic_energy<T: Real>(
     let mut twice = T::zero();
     motions.clear();
     for (index, body) in plan.bodies.iter().enumerate() {
-        let (rate, origin) = motion(plan, index, velocity, motions, workspace);
+        let (mut rate, mut origin) = match body.parent {
+            Some(parent) => motions[parent],
+            None if plan.floating => (velocity[2], Vector { x: velocity[0], z: velocity[1] }),
+            None => (T::zero(), Vector::zero()),
+        };
+        if body.parent.is_some() {
+            origin += workspace.arm[index].perpendicular() * rate;
+        }
+        match body.motion {
+            JointMotion::Root | JointMotion::Fixed => {}
+            JointMotion::Revolute { rate: own, .. } => rate = rate + own * velocity[body.coordinate],
+            JointMotion::Prismatic { .. } => origin += workspace.direction[index] * velocity[body.coordinate],
+        }
         motions.push((rate, origin));
         let first = workspace.rotation[index].apply(body.inertia.first);
         let cross = rate * origin.dot(first.perpendicular());
