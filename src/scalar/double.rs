@@ -19,7 +19,7 @@ pub struct DoubleDouble {
 
 /// `a + b` and its rounding error, exactly (Knuth).
 #[inline]
-pub(super) fn two_sum(a: f64, b: f64) -> (f64, f64) {
+pub(crate) fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     let part = sum - a;
     (sum, (a - (sum - part)) + (b - part))

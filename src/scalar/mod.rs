@@ -56,6 +56,7 @@ pub use affine::Affine;
 pub use ball::Ball;
 pub use certified::Certified;
 pub use double::DoubleDouble;
+pub(crate) use double::two_sum;
 pub use interval::Interval;
 pub use magnitude::{Magnitude, UNDERFLOW};
 pub use residue::Residue;

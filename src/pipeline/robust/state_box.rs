@@ -4,7 +4,7 @@ use crate::dynamics::plan::{Configuration, JointMotion, Plan};
 use crate::law::Friction;
 use crate::planar::Rotation;
 use crate::robot::{Base, ParentJoint, Robot};
-use crate::scalar::{Affine, Real};
+use crate::scalar::{Affine, Real, two_sum};
 use crate::state::{State, Uncertainty};
 
 /// An uncertain number of a state.
@@ -190,10 +190,7 @@ impl StateBox {
 
 /// The two f64 around `value` + `shift`, the farther from `value` first; equal if the sum is one itself.
 fn around(value: f64, shift: f64) -> (f64, f64) {
-    let sum = value + shift;
-    // Knuth's two-sum: what the rounded sum misses.
-    let part = sum - value;
-    let missing = (value - (sum - part)) + (shift - part);
+    let (sum, missing) = two_sum(value, shift);
     let onward = |number: f64| if shift > 0.0 { number.next_up() } else { number.next_down() };
     let back = |number: f64| if shift > 0.0 { number.next_down() } else { number.next_up() };
     match missing * shift.signum() {
