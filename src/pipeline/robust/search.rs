@@ -74,7 +74,7 @@ fn search<const N: usize>(kept: &mut KeptContacts<'_, '_>, whole: StateBox, expe
             let Some(rest) = effort.checked_sub(open.len()) else { return Robustness::Unknown };
             effort = rest;
         }
-        let Examined { open, split } = search.examine(&own, open);
+        let (open, split) = search.examine(&own, open);
         if open.is_empty() {
             continue;
         }
@@ -88,14 +88,6 @@ fn search<const N: usize>(kept: &mut KeptContacts<'_, '_>, whole: StateBox, expe
     Robustness::Everywhere
 }
 
-/// What is left of a box.
-struct Examined {
-    /// The combinations that are not decided.
-    open: Vec<Vec<Mode>>,
-    /// The quantity to halve; `None` if nothing is known to matter.
-    split: Option<usize>,
-}
-
 struct BoxSearch<'a, 'k, 'r, const N: usize> {
     kept: &'a mut KeptContacts<'k, 'r>,
     expected: &'a [Vec<Mode>],
@@ -107,7 +99,8 @@ struct BoxSearch<'a, 'k, 'r, const N: usize> {
 }
 
 impl<const N: usize> BoxSearch<'_, '_, '_, N> {
-    fn examine(&mut self, own: &StateBox, mut open: Vec<Vec<Mode>>) -> Examined {
+    /// The combinations that are not decided on a box, and the quantity to halve; `None` if nothing is known to matter.
+    fn examine(&mut self, own: &StateBox, mut open: Vec<Vec<Mode>>) -> (Vec<Vec<Mode>>, Option<usize>) {
         let problem = self.kept.problem::<N>(own);
         let mut influence = vec![0.0; own.ends.len()];
         self.ways.clear();
@@ -129,7 +122,7 @@ impl<const N: usize> BoxSearch<'_, '_, '_, N> {
             influence = own.spreads();
         }
         let most = influence.iter().copied().fold(0.0, f64::max);
-        Examined { open, split: influence.iter().position(|&own| own == most && most > 0.0) }
+        (open, influence.iter().position(|&own| own == most && most > 0.0))
     }
 
     /// A state of the box whose outcomes are not the expected ones, in its center or a corner; `random` more corners
