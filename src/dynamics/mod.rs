@@ -164,11 +164,16 @@ mod tests {
             self.places.iter().map(point).collect()
         }
 
-        /// Everything up to the Delassus matrix.
-        fn computed<T: Trigonometry>(&self, plan: &Plan<T>, points: &[ContactPoint<T>]) -> Workspace<T> {
+        fn placed<T: Trigonometry>(&self, plan: &Plan<T>) -> Workspace<T> {
             let (mut configuration, mut workspace) = (Configuration::default(), Workspace::default());
             configuration.set(plan, &self.position);
             kinematics(plan, &configuration, &mut workspace);
+            workspace
+        }
+
+        /// Everything up to the Delassus matrix.
+        fn computed<T: Trigonometry>(&self, plan: &Plan<T>, points: &[ContactPoint<T>]) -> Workspace<T> {
+            let mut workspace = self.placed(plan);
             mass_matrix(plan, &mut workspace);
             factorize(plan, &mut workspace);
             let velocity: Vec<T> = self.velocity.iter().map(|&entry| T::from_f64(entry)).collect();
@@ -179,9 +184,7 @@ mod tests {
 
         /// The Delassus matrix by articulated bodies.
         fn by_bodies<T: Trigonometry>(&self, plan: &Plan<T>, points: &[ContactPoint<T>]) -> Workspace<T> {
-            let (mut configuration, mut workspace) = (Configuration::default(), Workspace::default());
-            configuration.set(plan, &self.position);
-            kinematics(plan, &configuration, &mut workspace);
+            let mut workspace = self.placed(plan);
             articulated_inertias(plan, &mut workspace);
             articulated_delassus(plan, points, &mut workspace);
             workspace
@@ -252,7 +255,7 @@ mod tests {
 
     /// v by column of the plan.
     fn by_column(plan: &Plan, v: &[f64]) -> DVector<f64> {
-        DVector::from_iterator(plan.columns(), plan.coordinates().iter().map(|&coordinate| v[coordinate]))
+        DVector::from_iterator(plan.columns(), plan.coordinates.iter().map(|&coordinate| v[coordinate]))
     }
 
     proptest! {
@@ -434,13 +437,8 @@ mod tests {
             type Exact = Ball<DoubleDouble>;
             let [stiffness, damping, target, constant] = law;
             let laws = [SpringLaw { stiffness, damping, target, constant }; 3];
-            let contacts = case.points(0.0, Rotation::identity());
-            let (mut bounds, mut configuration) = (RoundingBounds::default(), Configuration::default());
-            let plan = Plan::new(&case.robot, &[], &[]);
-            configuration.set(&plan, &case.position);
-            let arm = |own: &ContactPoint| Arm { body: own.body, length: own.center.x.abs() + own.center.z.abs() };
-            bounds.stretch(&plan, &configuration, contacts.iter().map(arm));
-
+            let (plan, contacts) = (Plan::new(&case.robot, &[], &[]), case.points(0.0, Rotation::identity()));
+            let mut bounds = case.bounds(&plan, &contacts);
             let workspace = case.computed(&plan, &contacts);
             bounds.delassus(&plan, &workspace);
             prop_assume!(bounds.delassus.is_finite());
@@ -460,7 +458,7 @@ mod tests {
             let points: Vec<_> = bounds.stretched_points().collect();
             let (loads, _, whole) =
                 case.accelerated(&stretched_plan, &points, stretched, (ends, laws, still), |column, _| {
-                    for (entry, &coordinate) in column.iter_mut().zip(plan.coordinates()) {
+                    for (entry, &coordinate) in column.iter_mut().zip(&plan.coordinates) {
                         *entry = Magnitude::from_f64(acceleration[coordinate]);
                     }
                 });

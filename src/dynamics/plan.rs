@@ -31,6 +31,7 @@ pub struct Plan<T = f64> {
     pub(crate) bodies: Vec<PlanBody<T>>,
     /// Parent of each column in the elimination tree of M; without mimic joints the nearest moving joint below it.
     pub(crate) parents: Vec<Option<usize>>,
+    /// The coordinate (index into q) of each column, from the root outward.
     pub(crate) coordinates: Vec<usize>,
     /// Entries of a [`Configuration`]: coordinates and mimic joints.
     pub(crate) places: usize,
@@ -323,10 +324,5 @@ impl<T: Real> Plan<T> {
     /// Number of columns: the coordinates whose joints are not braked.
     pub fn columns(&self) -> usize {
         self.coordinates.len()
-    }
-
-    /// The coordinate (index into q) of each column, from the root outward.
-    pub fn coordinates(&self) -> &[usize] {
-        &self.coordinates
     }
 }

@@ -1,5 +1,6 @@
 //! One state's contact problem in numbers of any kind: what its f64 numbers were rounded from.
 
+use super::Impact;
 use super::assembly::{Assembly, Elimination, Loads};
 use crate::contact::{Contact, Level};
 use crate::dynamics::plan::{Configuration, Plan};
@@ -9,7 +10,7 @@ use crate::law::Law;
 use crate::planar::{Pair, Vector};
 use crate::robot::Robot;
 use crate::scalar::{Ordered, Real, Trigonometry};
-use crate::state::Scene;
+use crate::state::{Scene, State};
 use std::cmp::Ordering;
 
 /// What is asked about a state.
@@ -66,7 +67,34 @@ pub struct Contacts<T> {
     pub free: Vec<Pair<T>>,
 }
 
-impl ExactState<'_> {
+impl<'a> ExactState<'a> {
+    /// The `state` whose contacts are those of an impact, none of them level with another, and of which the foot of the
+    /// stance stands.
+    pub fn of(
+        robot: &'a Robot,
+        state: &'a State,
+        (impact, foot): (&'a Impact, Option<&'a Contact>),
+        constraints: Constraints<'a>,
+    ) -> Self {
+        Self {
+            robot,
+            scene: &state.scene,
+            position: &state.position,
+            velocity: &state.velocity,
+            foot,
+            stance: impact.stance,
+            contacts: &impact.contacts,
+            levels: &[],
+            resting: &impact.resting,
+            constraints,
+            is_rank_certain: true,
+            laws: impact.problem.laws(),
+            restitution: impact.problem.restitution(),
+            errors: Errors::UNKNOWN,
+            asked: Asked::Impact,
+        }
+    }
+
     pub fn plan<T: Real>(&self) -> Plan<T> {
         let braked = if self.constraints.kept.is_empty() { &self.scene.braked[..] } else { &[] };
         Plan::new(self.robot, braked, &self.scene.rotor_inertia)

@@ -450,13 +450,13 @@ impl<'r> Pipeline<'r> {
         let (nv, rows) = (plan.columns(), 2 * workspace.contact_velocity.len());
         // Columns of the plan run outward from the root, the user's coordinates in the file's order.
         let mut order: Vec<usize> = (0..nv).collect();
-        order.sort_by_key(|&column| plan.coordinates()[column]);
+        order.sort_by_key(|&column| plan.coordinates[column]);
         let names: Vec<&str> = self.robot.coordinates().collect();
         let mass = |i: usize, j: usize| workspace.mass_matrix[i.max(j) * nv + i.min(j)];
         let entry = |row: usize, column: usize| workspace.contact_jacobian[row / 2 * nv + column][row % 2];
         let jacobian = |row: usize| order.iter().map(|&column| entry(row, column)).collect();
         Matrices {
-            coordinates: order.iter().map(|&column| names[plan.coordinates()[column]].to_owned()).collect(),
+            coordinates: order.iter().map(|&column| names[plan.coordinates[column]].to_owned()).collect(),
             mass_matrix: order.iter().map(|&i| order.iter().map(|&j| mass(i, j)).collect()).collect(),
             contact_jacobian: (0..rows).map(jacobian).collect(),
             delassus: (0..rows).map(|row| workspace.delassus[row * rows..(row + 1) * rows].to_vec()).collect(),

@@ -7,7 +7,7 @@
 //! ```
 
 use super::assembly::{Assembly, Elimination};
-use super::exact::{Asked, ExactState};
+use super::exact::ExactState;
 use super::resting::Standing;
 use super::{CONTACT_TOLERANCE, Impact, Pipeline};
 use crate::contact::{Contact, Footing, Level, Merged, Placement, Surface, level};
@@ -55,13 +55,6 @@ pub struct Prepared {
     pub impact: Box<Impact>,
 }
 
-/// What touches the ground.
-struct Detected {
-    contacts: Vec<Contact>,
-    merged: Vec<Merged>,
-    out_of_reach: usize,
-}
-
 impl Prepared {
     /// The `state` that was prepared in this `assembly`, for numbers of any kind.
     pub fn exact<'a>(
@@ -71,23 +64,13 @@ impl Prepared {
         assembly: &'a Assembly,
         errors: Errors<'a>,
     ) -> ExactState<'a> {
-        let Impact { stance, contacts, resting, problem, .. } = &*self.impact;
+        let constraints = Constraints { kept: &assembly.kept, rows: &assembly.rows };
         ExactState {
-            robot,
-            scene: &state.scene,
-            position: &state.position,
             velocity: &self.velocity,
-            foot: self.foot.as_ref(),
-            stance: *stance,
-            contacts,
             levels: &self.levels,
-            resting,
-            constraints: Constraints { kept: &assembly.kept, rows: &assembly.rows },
             is_rank_certain: assembly.is_rank_certain,
-            laws: problem.laws(),
-            restitution: problem.restitution(),
             errors,
-            asked: Asked::Impact,
+            ..ExactState::of(robot, state, (&self.impact, self.foot.as_ref()), constraints)
         }
     }
 }
@@ -142,10 +125,9 @@ impl Pipeline<'_> {
         (*placement, *foot) = self.stand(state, &surface, velocity, take(placement))?;
         self.close_loops(&scene.loops, &state.position, foot.as_ref(), velocity, notes)?;
         let footing = self.footing(scene, placement, &surface);
-        let detected = self
+        (*contacts, *merged, *out_of_reach) = self
             .contacts(&footing, foot.as_ref(), take(contacts), notes)
             .map_err(|error| self.sunk(error, state, self.open_foot(&footing, &[], velocity)))?;
-        (*contacts, *merged, *out_of_reach) = (detected.contacts, detected.merged, detected.out_of_reach);
         *nearest = if self.options.brief { None } else { self.open_foot(&footing, contacts, velocity) };
         match scene.contacts {
             _ if self.options.brief => {}
@@ -265,7 +247,7 @@ impl Pipeline<'_> {
             // Each of up to nv eliminations loses at most a few units in the last place of the whole.
             finite(whole, || "the mass matrix".into())?;
             if rest.is_nan() || rest <= 4.0 * nv as f64 * f64::EPSILON * whole {
-                let coordinate = self.assembly.plan.coordinates()[column];
+                let coordinate = self.assembly.plan.coordinates[column];
                 let name = self.robot.coordinates().nth(coordinate).unwrap_or_default().to_owned();
                 let is_joint = coordinate >= self.robot.base_dofs();
                 let what = if is_joint { format!("joint \"{name}\"") } else { format!("the base along {name}") };
@@ -356,14 +338,15 @@ impl Pipeline<'_> {
         Footing { robot: self.robot, feet: &self.feet, scene, placement, surface }
     }
 
-    /// The closed contacts; `memory` is that of others.
+    /// The closed contacts, those for which others act, and how many shapes are out of reach; `memory` is that of other
+    /// contacts.
     fn contacts(
         &self,
         footing: &Footing,
         standing: Option<&Contact>,
         memory: Vec<Contact>,
         notes: &mut Vec<String>,
-    ) -> Result<Detected> {
+    ) -> Result<(Vec<Contact>, Vec<Merged>, usize)> {
         let tolerance = self.tolerance();
         let (contacts, merged) = footing.contacts(tolerance, self.options.reductions.merge, standing, memory)?;
         let is_named = footing.scene.contacts.is_some();
@@ -377,7 +360,7 @@ impl Pipeline<'_> {
                 format!("{link} reaches beyond the end of the ground's profile at x = {end:?} m: there is no ground")
             }));
         }
-        Ok(Detected { contacts, merged, out_of_reach })
+        Ok((contacts, merged, out_of_reach))
     }
 
     /// The lowest foot that does not touch, and how it moves.

@@ -1,6 +1,6 @@
 //! A state whose numbers vary in a box while its contacts are kept.
 
-use super::super::exact::{Asked, Contacts, ExactState, Inputs};
+use super::super::exact::{Contacts, ExactState, Inputs};
 use super::super::{Answer, Impact, Pipeline};
 use super::Counterexample;
 use super::combination::UncertainProblem;
@@ -95,24 +95,8 @@ impl KeptContacts<'_, '_> {
     pub fn problem<const N: usize>(&self, whole: &StateBox) -> UncertainProblem<Affine<N>> {
         let Answer { impact, foot, rows } = self.answer;
         let (robot, scene) = (self.pipeline.robot, &self.state.scene);
-        let exact = ExactState {
-            robot,
-            scene,
-            position: &self.state.position,
-            velocity: &self.state.velocity,
-            foot: foot.as_ref(),
-            stance: impact.stance,
-            contacts: &impact.contacts,
-            // Where angles vary a sole is not level.
-            levels: &[],
-            resting: &impact.resting,
-            constraints: Constraints { kept: &[], rows },
-            is_rank_certain: true,
-            laws: &[],
-            restitution: &[],
-            errors: crate::impact::Errors::UNKNOWN,
-            asked: Asked::Impact,
-        };
+        // Where angles vary a sole is not level.
+        let exact = ExactState::of(robot, self.state, (impact, foot.as_ref()), Constraints { kept: &[], rows });
         let plan = whole.plan::<N>(robot, &scene.braked, &scene.rotor_inertia);
         let Contacts { delassus, before, free } = exact.contacts(Inputs {
             configuration: whole.configuration(&plan, &self.state.position),
