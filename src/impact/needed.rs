@@ -61,8 +61,7 @@ fn least_ratio<T: Ordered>(
     let mut start = vec![T::zero(); n.coefficients.len()];
     if settled(n.constant)?.is_le() {
         // As n may grow without bound, it grows by one at most.
-        let limit =
-            LinearFunction { constant: T::one(), coefficients: n.coefficients.iter().map(|&own| -own).collect() };
+        let limit = LinearFunction { constant: -T::one(), ..n.clone() }.opposite();
         let bounded: Vec<LinearFunction<T>> = functions.iter().cloned().chain([limit]).collect();
         start = maximize(&bounded, &n.coefficients)?.ok_or(Unsettled)?;
     }
@@ -82,12 +81,8 @@ fn least_ratio<T: Ordered>(
         coefficients: n.coefficients.iter().map(|&slope| -slope / pressed).collect(),
     });
     let ratio = in_ratios(t);
-    let side = if settled(ratio.constant)?.is_lt() { -T::one() } else { T::one() };
-    let size = LinearFunction {
-        constant: side * ratio.constant,
-        coefficients: ratio.coefficients.iter().map(|&slope| side * slope).collect(),
-    };
-    let down: Vec<T> = size.coefficients.iter().map(|&slope| -slope).collect();
+    let size = if settled(ratio.constant)?.is_lt() { ratio.opposite() } else { ratio };
+    let down = size.clone().opposite().coefficients;
     bounds.push(size.clone());
     let best = maximize(&bounds, &down)?.ok_or(Unsettled)?;
     Ok(Some(size.at(&best)))
