@@ -44,7 +44,7 @@ pub fn index<T: Ordered>(problem: &ContactProblem<T>, modes: &[Mode]) -> Result<
         .collect();
     let mut open: Vec<usize> = (0..stuck.len()).collect();
     // Where every diagonal entry left is zero, so is the whole rest: G_SS is positive semidefinite.
-    while let Some(pivot) = regular(&open, |&index| whole[index][index])? {
+    while let Some(pivot) = pivot(&open, &whole)? {
         let place = open.swap_remove(pivot);
         let inverse = T::one() / whole[place][place];
         let pivot_row = whole[place].clone();
@@ -59,11 +59,12 @@ pub fn index<T: Ordered>(problem: &ContactProblem<T>, modes: &[Mode]) -> Result<
     lowest_coefficient(&schur)
 }
 
-/// The place of the entry that is farthest from zero among those shown not to be zero; `None` if all are zero.
-fn regular<T: Ordered, I>(candidates: &[I], number: impl Fn(&I) -> T) -> Result<Option<usize>, Unsettled> {
+/// The place in `open` of the diagonal entry that is farthest from zero among those shown not to be zero; `None` if all
+/// are zero.
+fn pivot<T: Ordered>(open: &[usize], matrix: &[Vec<T>]) -> Result<Option<usize>, Unsettled> {
     let mut best: Option<(usize, f64)> = None;
-    for (place, candidate) in candidates.iter().enumerate() {
-        let number = number(candidate);
+    for (place, &index) in open.iter().enumerate() {
+        let number = matrix[index][index];
         if settled(number)?.is_ne() && best.is_none_or(|(_, size)| number.to_f64().abs() > size) {
             best = Some((place, number.to_f64().abs()));
         }

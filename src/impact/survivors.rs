@@ -98,9 +98,7 @@ impl<'a> Search<'a> {
             self.modes.pop();
         }
     }
-}
 
-impl Search<'_> {
     fn begins_listed(&self) -> bool {
         self.listed.iter().any(|own| own.len() == self.laws.len() && own.starts_with(&self.modes))
     }
