@@ -17,7 +17,7 @@ use super::families::FamiliesPass;
 use super::outcome::{Analysis, OpenCombinations, Outcome, Verdict};
 use super::passes::{F64Pass, UndecidedPass};
 use super::problem::{ContactProblem, Precision, PrecisionTask, Remembered, Source, escalate};
-use super::rank::{rank_and_condition, shows_regular};
+use super::rank::rank_and_condition;
 use super::relaxation::Relaxation;
 use super::slack::Scale;
 use super::survivors::{SEARCHED, Search, combinations};
@@ -176,7 +176,7 @@ impl Scratch {
         let is_shown =
             contacts < SEARCHED && problem.laws().iter().all(|law| law.impulse(Mode::Stick) == Impulse::Free);
         if is_asked && !is_shown {
-            regular = regular || shows_regular(&mut self.tableau);
+            regular = regular || self.tableau.stick_all().is_known();
         }
         if !undecided.is_empty() {
             let first = Precision::first(regular || is_searched && self.relaxation.is_regular, problem);

@@ -1,17 +1,11 @@
 //! Rank and condition of the Delassus matrix.
 
-use super::enumerate::Tableau;
 use super::linear::solve;
 use super::problem::{ContactProblem, Precision, PrecisionTask, Source, escalate};
 use super::slack::Scale;
 use crate::reductions::Reductions;
-use crate::scalar::{Ordered, Rounded};
+use crate::scalar::Ordered;
 use nalgebra::DMatrix;
-
-/// Whether f64 shows that G is regular: for problems none of whose combinations solves for all impulses.
-pub fn shows_regular(tableau: &mut Tableau<Rounded>) -> bool {
-    tableau.stick_all().is_known()
-}
 
 /// Rank of G and, if it is regular, the condition number of G scaled to a unit diagonal.
 pub fn rank_and_condition<S: Source>(
