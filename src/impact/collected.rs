@@ -5,7 +5,7 @@ use super::digits::Numbers;
 use super::outcome::{AtZero, Border, Effort, Family, Motion, Outcome, Rejection};
 use super::problem::ContactProblem;
 use super::reading::CombinationReading;
-use super::singular::{SingularCase, SingularOutcome};
+use super::singular::SingularOutcome;
 use super::slack::Scale;
 use crate::law::{Inequality, Law, Mode};
 use crate::reductions::Reductions;
@@ -187,14 +187,12 @@ impl<'a> Collected<'a> {
             Solved::Regular { reading, index, numbers } => {
                 self.add_regular(number, modes.clone(), reading, index, numbers);
             }
-            Solved::Rejected(rejection) | Solved::Singular(SingularCase::Rejected(rejection)) => {
-                self.reject(number, modes, || rejection);
-            }
-            Solved::Singular(SingularCase::Valid(own)) => {
+            Solved::Rejected(rejection) => self.reject(number, modes, || rejection),
+            Solved::Singular(own) => {
                 let outcome = self.singular_outcome(own);
                 self.push(number, outcome);
             }
-            Solved::Singular(SingularCase::Family(())) => self.pending_families.push(pending.clone()),
+            Solved::Family => self.pending_families.push(pending.clone()),
         }
     }
 

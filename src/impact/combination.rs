@@ -6,7 +6,7 @@ use super::linear::Unsettled;
 use super::outcome::{Motion, Rejection};
 use super::problem::ContactProblem;
 use super::reading::{CombinationReading, motion, read};
-use super::singular::{Equations, SingularCase};
+use super::singular::{Equations, SingularCase, SingularOutcome};
 use super::slack::{Scale, slacks};
 use crate::law::Mode;
 use crate::planar::Pair;
@@ -24,7 +24,20 @@ pub enum Solved {
         index: i8,
         numbers: Numbers,
     },
-    Singular(SingularCase),
+    /// Its equations are singular, and its velocity is the only one of these modes, an outcome.
+    Singular(SingularOutcome),
+    /// Its equations are singular, and its velocities form a set.
+    Family,
+}
+
+impl<T> From<SingularCase<T>> for Solved {
+    fn from(case: SingularCase<T>) -> Self {
+        match case {
+            SingularCase::Rejected(rejection) => Self::Rejected(rejection),
+            SingularCase::Valid(outcome) => Self::Singular(outcome),
+            SingularCase::Family(_) => Self::Family,
+        }
+    }
 }
 
 impl Solved {
@@ -32,19 +45,18 @@ impl Solved {
     pub fn is_sharp(&self) -> bool {
         match self {
             Self::Regular { numbers, .. } => numbers.are_sharp,
-            Self::Singular(SingularCase::Valid(own)) => own.numbers.are_sharp,
-            Self::Rejected(_) | Self::Singular(SingularCase::Family(()) | SingularCase::Rejected(_)) => true,
+            Self::Singular(own) => own.numbers.are_sharp,
+            Self::Rejected(_) | Self::Family => true,
         }
     }
 
     /// Whether some number of a rejected combination is not finite.
     pub fn is_vague(&self) -> bool {
         match self {
-            Self::Rejected(Rejection { margin, motion, .. })
-            | Self::Singular(SingularCase::Rejected(Rejection { margin, motion, .. })) => {
+            Self::Rejected(Rejection { margin, motion, .. }) => {
                 !(motion.as_ref().is_none_or(Motion::is_finite) && margin.is_none_or(f64::is_finite))
             }
-            Self::Regular { .. } | Self::Singular(_) => false,
+            Self::Regular { .. } | Self::Singular(_) | Self::Family => false,
         }
     }
 }
@@ -69,7 +81,7 @@ impl<'e, T: Ordered> CombinationSolver<'e, T> {
         T::freeing(|| {
             let equations = Equations::of(exact, scale, modes);
             if equations.are_shared() {
-                return equations.solve().map(Solved::Singular);
+                return equations.solve().map(Solved::from);
             }
             let mut index = 1;
             let ends = |pivot: T| {
@@ -79,7 +91,7 @@ impl<'e, T: Ordered> CombinationSolver<'e, T> {
             };
             let leaf = match tableau.leaf_unless(modes, ends) {
                 Ok(leaf) => leaf,
-                Err(Sign::Zero) => return equations.solve().map(Solved::Singular),
+                Err(Sign::Zero) => return equations.solve().map(Solved::from),
                 Err(_) => return Err(Unsettled),
             };
             let reading = read(&leaf, modes, exact.laws(), scale, Vec::new());
@@ -88,7 +100,7 @@ impl<'e, T: Ordered> CombinationSolver<'e, T> {
             }
             if reading.sign == Sign::Negative {
                 let after = |contact, xi| after(xi, contact, modes, exact).map(T::to_f64);
-                let motion = || motion(&leaf, T::to_f64, after, Motion::default());
+                let motion = || motion(&leaf, after, Motion::default());
                 return Ok(Solved::Rejected(Rejection::read(modes, reading, motion)));
             }
             let [impulse, velocity]: [Vec<Pair<T>>; 2] = [

@@ -95,7 +95,8 @@ impl Numbers {
         xi: &[Pair<T>],
     ) -> Self {
         let (laws, before) = (problem.laws(), problem.velocity_before());
-        let after = all_after(xi, modes, problem);
+        let after: Vec<Pair<T>> =
+            xi.iter().enumerate().map(|(contact, &xi)| after(xi, contact, modes, problem)).collect();
         let energy = energy_loss(before, impulse, &after);
         let motion = Motion { impulse: nearest(impulse), velocity_after: nearest(&after) };
         let nearest_before = nearest(before);
@@ -114,25 +115,7 @@ impl Numbers {
             motion,
         }
     }
-}
 
-impl Motion {
-    /// The nearest f64 of impulses and of velocities `[c_t, xi_n]`.
-    pub fn nearest<T: Ordered>(
-        problem: &ContactProblem<T>,
-        modes: &[Mode],
-        impulse: &[Pair<T>],
-        xi: &[Pair<T>],
-    ) -> Self {
-        Self { impulse: nearest(impulse), velocity_after: nearest(&all_after(xi, modes, problem)) }
-    }
-}
-
-fn nearest<T: Ordered>(list: &[Pair<T>]) -> Vec<Pair<f64>> {
-    list.iter().map(|pair| pair.map(T::to_f64)).collect()
-}
-
-impl Numbers {
     /// Takes over the friction that contacts need whose impulses are not unique, to so many `digits`.
     pub fn take_friction<T: Ordered>(&mut self, needed: &[Option<T>], laws: &[Law], digits: f64) {
         let known =
@@ -141,6 +124,10 @@ impl Numbers {
         let nearest = |(needed, law): (&Option<T>, &Law)| needed.map(|ratio| at_most(law, ratio.to_f64()));
         self.friction_needed = needed.iter().zip(laws).map(nearest).collect();
     }
+}
+
+fn nearest<T: Ordered>(list: &[Pair<T>]) -> Vec<Pair<f64>> {
+    list.iter().map(|pair| pair.map(T::to_f64)).collect()
 }
 
 impl Scale {
@@ -167,10 +154,6 @@ fn least_friction(law: &Law) -> f64 {
         Friction::Finite(mu) => mu.min(1.0),
         Friction::Infinite => 1.0,
     }
-}
-
-fn all_after<T: Real>(xi: &[Pair<T>], modes: &[Mode], problem: &ContactProblem<T>) -> Vec<Pair<T>> {
-    xi.iter().enumerate().map(|(contact, &xi)| after(xi, contact, modes, problem)).collect()
 }
 
 /// c+ of a contact with `[c_t, xi_n]`.

@@ -63,7 +63,7 @@ impl Visitor<Rounded> for F64Pass<'_, '_> {
             let number = modes.iter().fold(0, |number, &mode| 4 * number + mode as u64);
             let reading = read(leaf, modes, laws, scale, collected.at_zero());
             let after = |contact: usize, xi: Pair<Rounded>| after(xi.map(|own| own.value), contact, modes, problem);
-            let motion = |memory| motion(leaf, |own| own.value, after, memory);
+            let motion = |memory| motion(leaf, after, memory);
             if reading.sign == Sign::Negative {
                 return collected
                     .reject(number, modes, || Rejection::read(modes, reading, || motion(Motion::default())));
@@ -137,42 +137,24 @@ impl PrecisionTask for UndecidedPass<'_, '_> {
             }
             None => true,
         });
-        let left = if precision == Precision::Interval { PRECISE_COMBINATIONS } else { usize::MAX };
-        let mut attempt = Attempt { pass: self, solver: CombinationSolver::new(exact, scale), precision, left };
-        open.into_iter().for_each(|pending| attempt.solve(pending));
-        let Self { undecided, collected, .. } = self;
+        let is_last = precision == Precision::Interval;
+        let (rounds, most) = if is_last { (ROUNDS, PRECISE_COMBINATIONS) } else { (1, usize::MAX) };
+        let mut solver = CombinationSolver::new(exact, scale);
+        let Self { undecided, blunt, collected, .. } = self;
+        for (place, pending) in open.into_iter().enumerate() {
+            let stops = place >= most || is_spent_after(rounds);
+            let listed = collected.options.rejections.contain(&pending.modes);
+            match if stops { Err(Unsettled) } else { solver.solve(&pending.modes) } {
+                Ok(solved) if listed && !is_last && solved.is_vague() => undecided.push(pending),
+                Ok(solved) if solved.is_sharp() => collected.add(&pending, solved),
+                Ok(solved) => {
+                    blunt.insert(pending.number, solved);
+                    undecided.push(pending);
+                }
+                Err(Unsettled) => undecided.push(pending),
+            }
+        }
         *precision.share(&mut collected.effort) += (before - undecided.len()) as u64;
         undecided.is_empty()
-    }
-}
-
-/// One kind of numbers that decides what it can, and leaves the rest to the pass.
-struct Attempt<'p, 'a, 'c, 'e, T> {
-    pass: &'p mut UndecidedPass<'a, 'c>,
-    solver: CombinationSolver<'e, T>,
-    precision: Precision,
-    /// How many combinations may still be solved.
-    left: usize,
-}
-
-impl<T: Ordered> Attempt<'_, '_, '_, '_, T> {
-    fn solve(&mut self, pending: Pending) {
-        let UndecidedPass { undecided, blunt, collected, .. } = &mut *self.pass;
-        let rounds = if self.precision == Precision::Interval { ROUNDS } else { 1 };
-        let stops = self.left == 0 || is_spent_after(rounds);
-        let solved = if stops { Err(Unsettled) } else { self.solver.solve(&pending.modes) };
-        self.left = self.left.saturating_sub(1);
-        let listed = collected.options.rejections.contain(&pending.modes);
-        match solved {
-            Ok(solved) if listed && self.precision != Precision::Interval && solved.is_vague() => {
-                undecided.push(pending)
-            }
-            Ok(solved) if solved.is_sharp() => collected.add(&pending, solved),
-            Ok(solved) => {
-                blunt.insert(pending.number, solved);
-                undecided.push(pending);
-            }
-            Err(Unsettled) => undecided.push(pending),
-        }
     }
 }

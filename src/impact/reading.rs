@@ -5,7 +5,7 @@ use super::outcome::{Motion, Rejection, RejectionReason};
 use super::slack::{Scale, slacks};
 use crate::law::{Inequality, Law, Mode};
 use crate::planar::Pair;
-use crate::scalar::{Ordered, Real, Sign};
+use crate::scalar::{Ordered, Sign};
 
 /// What the slacks of a combination say.
 #[derive(Debug)]
@@ -91,15 +91,14 @@ pub fn read<T: Ordered>(
 
 /// Impulses and velocities of a leaf, in the memory of others: the nearest f64 of each number, and c+ of a contact with
 /// `[c_t, xi_n]`.
-pub fn motion<T: Real>(
+pub fn motion<T: Ordered>(
     leaf: &Leaf<'_, T>,
-    nearest: impl Fn(T) -> f64,
     after: impl Fn(usize, Pair<T>) -> Pair<f64>,
     Motion { mut impulse, mut velocity_after }: Motion,
 ) -> Motion {
     let contacts = 0..leaf.modes.len();
     impulse.clear();
-    impulse.extend(contacts.clone().map(|contact| leaf.impulse(contact).map(&nearest)));
+    impulse.extend(contacts.clone().map(|contact| leaf.impulse(contact).map(T::to_f64)));
     velocity_after.clear();
     velocity_after.extend(contacts.map(|contact| after(contact, leaf.velocity(contact))));
     Motion { impulse, velocity_after }

@@ -23,7 +23,7 @@ use super::index::index;
 use super::least_impulse::least_impulse;
 use super::linear::{LinearFunction, Solutions, Unsettled, extended, settled, solve};
 use super::needed::friction_needed;
-use super::outcome::{Motion, Range, Rejection, RejectionReason};
+use super::outcome::{Range, Rejection, RejectionReason};
 use super::problem::ContactProblem;
 use super::simplex::{Program, vanishing, widest};
 use super::slack::Scale;
@@ -38,13 +38,12 @@ const UNBOUNDED: f64 = 1e3;
 const EQUALLY_BAD: f64 = 1e-9;
 
 /// The solutions of a combination whose equations are singular.
-#[derive(Debug, Clone)]
-pub enum SingularCase<F = ()> {
+pub enum SingularCase<T> {
     Rejected(Rejection),
     /// Its velocity is the only one of these modes.
     Valid(SingularOutcome),
-    /// Its velocities form a set.
-    Family(F),
+    /// Its velocities form a set: the solutions that the inequalities leave, with one in its interior as their origin.
+    Family(Space<T>),
 }
 
 /// The velocities of a family, `[c_t, xi_n]` by rows \[m/s\].
@@ -79,7 +78,7 @@ struct Constraint<T> {
 }
 
 /// The solutions of a combination's equations, and what depends on them.
-struct Space<T> {
+pub struct Space<T> {
     solutions: Solutions<T>,
     /// `[c_t, xi_n]` by rows.
     velocity: Vec<LinearFunction<T>>,
@@ -144,17 +143,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
         !self.shared.is_empty()
     }
 
-    pub fn solve(&self) -> Result<SingularCase, Unsettled> {
-        Ok(match self.velocities()? {
-            SingularCase::Rejected(rejection) => SingularCase::Rejected(rejection),
-            SingularCase::Valid(outcome) => SingularCase::Valid(outcome),
-            SingularCase::Family(_) => SingularCase::Family(()),
-        })
-    }
-
-    /// As [`Equations::solve`]; the solutions of a family are those that the inequalities leave, with one in the
-    /// interior of its set as their origin.
-    fn velocities(&self) -> Result<SingularCase<Space<T>>, Unsettled> {
+    pub fn solve(&self) -> Result<SingularCase<T>, Unsettled> {
         let modes = self.modes;
         let Some(solutions) = self.solutions()? else {
             return Ok(SingularCase::Rejected(Rejection::of(modes, RejectionReason::NoSolution)));
@@ -232,7 +221,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
 
     /// The velocities of a combination that is a family; `None` if there are too many corners.
     pub fn family(&self) -> Result<Option<FamilyVelocities<T>>, Unsettled> {
-        let SingularCase::Family(Space { solutions, velocity: rows, inequalities }) = self.velocities()? else {
+        let SingularCase::Family(Space { solutions, velocity: rows, inequalities }) = self.solve()? else {
             return Err(Unsettled);
         };
         // Some rows are coordinates of the family, the others depend on them.
@@ -336,10 +325,11 @@ impl<'a, T: Ordered> Equations<'a, T> {
             contact: worst.contact,
             inequality: worst.inequality,
         });
-        let impulse = self.generators.impulse(&space.solutions.at(y));
+        let Self { problem, scale, modes, generators, .. } = self;
+        let impulse = generators.impulse(&space.solutions.at(y));
         let velocity: Vec<T> = space.velocity.iter().map(|row| row.at(y)).collect();
-        let motion = Motion::nearest(self.problem, self.modes, impulse.as_chunks().0, velocity.as_chunks().0);
-        Rejection { margin: worst.map(|_| least), motion: Some(motion), ..Rejection::of(self.modes, because) }
+        let numbers = Numbers::of((problem, scale), modes, impulse.as_chunks().0, velocity.as_chunks().0);
+        Rejection { margin: worst.map(|_| least), motion: Some(numbers.motion), ..Rejection::of(modes, because) }
     }
 
     /// Whether the only velocity of `space` is that without impulses.

@@ -86,6 +86,7 @@ impl Ordered for Rounded {
     }
 
     /// The value, whatever is known of it: rejected combinations are printed with it.
+    #[inline]
     fn to_f64(self) -> f64 {
         self.value
     }
