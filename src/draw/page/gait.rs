@@ -23,12 +23,6 @@ pub struct Gait {
     count: usize,
 }
 
-/// Successive states with the same outcomes, at least one, and their values on the axis.
-struct GaitRun<'g> {
-    states: &'g [ListedKeyframe],
-    at: &'g [f64],
-}
-
 impl Gait {
     /// Without states; whether those that come are single moments, `apart` from each other.
     pub fn new(forward: Forward, apart: bool) -> Self {
@@ -62,20 +56,14 @@ impl Gait {
         }
     }
 
-    fn runs<'g>(&'g self, order: &'g [f64]) -> Vec<GaitRun<'g>> {
-        let mut rest = order;
-        let runs = self.states.chunk_by(|a, b| happening(a) == happening(b)).map(|states| {
-            let (at, later) = rest.split_at(states.len());
-            rest = later;
-            GaitRun { states, at }
-        });
-        runs.collect()
+    /// Successive states with the same outcomes.
+    fn runs(&self) -> impl Iterator<Item = &[ListedKeyframe]> {
+        self.states.chunk_by(|a, b| happening(a) == happening(b))
     }
 
     /// Margins and needed friction of the contacts of every impact.
     pub fn picture(&self, robot: &str) -> Picture {
         let (name, order) = self.order();
-        let runs = self.runs(&order);
         let label = if name == "time" { "time [s]" } else { name };
         let span = plot::range(order.iter().copied()).unwrap_or_default();
         let room = if span.0 < span.1 { 0.04 * (span.1 - span.0) } else { 0.5 };
@@ -109,13 +97,14 @@ impl Gait {
         let given = words::Wording::of(aspect).drawn.given.0;
         let last = panels.len() - 1;
         for (at, panel) in panels.iter_mut().enumerate() {
-            (panel.bands, panel.x.bare) = (bands(&runs, &order, reach), at < last);
+            (panel.bands, panel.x.bare) = (bands(&self.states, &order, reach), at < last);
         }
         if crowd > 1 {
             panels[0].title =
                 format!("\ncontacts of one state stand side by side{}", panels[0].title.replace('\n', ", "));
         }
-        let looks = LOOKS.iter().filter(|look| runs.iter().any(|run| run.look().answer == look.answer));
+        let looks =
+            LOOKS.iter().filter(|look| self.states.iter().any(|state| StateLook::of(state).answer == look.answer));
         let entry = |name: &str, key| LegendEntry::new(name, key);
         let feet = feet.iter().enumerate();
         let legend = feet.map(|(foot, name)| entry(name, LegendKey::Mark(Mark::Circle, FEET[foot % FEET.len()])));
@@ -179,19 +168,18 @@ impl Gait {
 
     pub fn page(&self, robot: &str, rendered: Rendered) -> Page {
         let (name, order) = self.order();
-        let runs = self.runs(&order);
-        let region = |run: &GaitRun| {
-            let StateLook { words, fill, .. } = run.look();
+        let region = |run: &[ListedKeyframe]| {
+            let StateLook { words, fill, .. } = StateLook::of(&run[0]);
             PageRegion { name: (*words).into(), fill: fill.hex(), borders: Vec::new() }
         };
-        let numbers = runs.iter().enumerate().flat_map(|(number, run)| vec![number; run.states.len()]);
+        let numbers = self.runs().enumerate().flat_map(|(number, run)| vec![number; run.len()]);
         let page_state = |(state, region): (&ListedKeyframe, usize)| {
             let line = format!("line {}", state.line);
             let name = state.id.as_ref().map_or(line.clone(), |id| format!("{}, {line}", words::id(id)));
             PageState { keyframe: state.keyframe.clone(), region: Some(region), name: Some(name) }
         };
         let states: Vec<PageState> = self.states.iter().zip(numbers).map(page_state).collect();
-        let regions = runs.iter().map(region).collect();
+        let regions = self.runs().map(region).collect();
         let thinned = || format!("this page shows one of every {} of the {} states", 1 << self.halvings, self.count);
         let notes = (self.halvings > 0).then(thinned).into_iter().collect();
         let axes = vec![PageAxis { name: name.into(), values: order.clone() }];
@@ -205,11 +193,10 @@ const BANDS: usize = 160;
 
 /// A band for all neighboring states of one kind, no farther from each than half way to the next one and than `reach`;
 /// no bands if they are not distinguishable.
-fn bands(runs: &[GaitRun], order: &[f64], reach: f64) -> Vec<Band> {
+fn bands(states: &[ListedKeyframe], order: &[f64], reach: f64) -> Vec<Band> {
     let mut bands: Vec<Band> = Vec::new();
     let mut last = None;
-    let looks = runs.iter().flat_map(|run| std::iter::repeat_n(run.look(), run.at.len()));
-    for (number, (look, &at)) in looks.zip(order).enumerate() {
+    for (number, (look, &at)) in states.iter().map(StateLook::of).zip(order).enumerate() {
         let half = |other: Option<&f64>| other.map(|other| 0.5 * (other - at).abs());
         let [before, after] =
             [number.checked_sub(1).and_then(|before| order.get(before)), order.get(number + 1)].map(half);
@@ -229,13 +216,6 @@ fn bands(runs: &[GaitRun], order: &[f64], reach: f64) -> Vec<Band> {
 fn happening(state: &ListedKeyframe) -> Option<(Verdict, Vec<&[Mode]>)> {
     let answer = state.keyframe.answer.as_ref().ok()?;
     Some((answer.verdict, answer.outcomes.iter().map(|outcome| &*outcome.modes).collect()))
-}
-
-impl GaitRun<'_> {
-    fn look(&self) -> &'static StateLook {
-        let answer = self.states[0].keyframe.answer.as_ref().ok().map(|answer| answer.verdict);
-        LOOKS.iter().find(|look| look.answer == answer).unwrap_or(&LOOKS[0])
-    }
 }
 
 /// A contact in an outcome: the number of its foot, how it ends and where it is along x.
@@ -276,10 +256,9 @@ const MODES: [(Mode, Mark, &str); 4] = [
 /// A quantity of contacts; `None` if none has a value.
 fn panel(label: &str, x: PlotAxis, marks: &[GaitMark], size: f64, value: MarkValue) -> Option<Panel> {
     let finite = |mark: &GaitMark| value(mark).filter(|value| value.is_finite());
-    let (_, most) = plot::range(marks.iter().filter_map(finite))?;
+    let (low, most) = plot::range(marks.iter().filter_map(finite))?;
     let positive = plot::range(marks.iter().filter_map(finite).filter(|value| *value > 0.0));
-    let negative = marks.iter().filter_map(finite).any(|value| value < 0.0);
-    let least = positive.map(|(least, _)| least).filter(|least| !negative && most > DECADES * least);
+    let least = positive.map(|(least, _)| least).filter(|least| low >= 0.0 && most > DECADES * least);
     // Zero has no place on a logarithmic axis.
     let zero = least.map(|least| 0.1 * least);
     let place = |value: f64| zero.map_or(value, |zero| value.max(zero));
@@ -290,7 +269,6 @@ fn panel(label: &str, x: PlotAxis, marks: &[GaitMark], size: f64, value: MarkVal
         PlotShape::Marks { points, mark, color: FEET[foot % FEET.len()], size }
     };
     let shapes = words::grouped(points).into_iter().map(shape).collect();
-    let (low, _) = plot::range(marks.iter().filter_map(finite))?;
     let room = FLAT * most.abs();
     let range = (zero.is_none() && most - low < 0.1 * room).then_some((low - room, most + room));
     let y = PlotAxis { logarithmic: zero.is_some(), range, ..PlotAxis::new(label) };
@@ -304,6 +282,13 @@ struct StateLook {
     words: &'static str,
     /// Of bands, and of the track behind the slider.
     fill: Color,
+}
+
+impl StateLook {
+    fn of(state: &ListedKeyframe) -> &'static Self {
+        let answer = state.keyframe.answer.as_ref().ok().map(|answer| answer.verdict);
+        LOOKS.iter().find(|look| look.answer == answer).unwrap_or(&LOOKS[0])
+    }
 }
 
 static LOOKS: [StateLook; 7] = {
