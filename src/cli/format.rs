@@ -33,32 +33,19 @@ pub enum RecordFormat {
     Arrows,
 }
 
-/// The endings of tables.
-const TABLES: [(&str, RecordFormat); 7] = [
-    ("csv", RecordFormat::Csv),
-    ("tsv", RecordFormat::Tsv),
-    ("parquet", RecordFormat::Parquet),
-    ("arrow", RecordFormat::Arrow),
-    ("feather", RecordFormat::Arrow),
-    ("ipc", RecordFormat::Arrow),
-    ("arrows", RecordFormat::Arrows),
-];
-
 impl RecordFormat {
-    /// The table that a file's ending means.
+    /// The table that a file's ending means; endings are the names of formats.
     pub fn table(path: &Path) -> Option<Self> {
-        let is = |known: &str| path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(known));
-        TABLES.into_iter().find(|(ending, _)| is(ending)).map(|(_, format)| format)
+        let named = Self::from_str(path.extension()?.to_str()?, true).ok();
+        named.filter(|format| *format != Self::Ndjson)
     }
 
     /// What is `chosen` by the option of this name, or by the file's ending; else lines of JSON.
     pub(super) fn of(path: Option<&Path>, chosen: Option<Self>, option: &str) -> Result<Self, Failure> {
-        if chosen.is_none() {
-            let known = TABLES.map(|(ending, _)| ending);
-            let reason = "states and answers are .ndjson, .csv, .tsv, .parquet or .arrow";
-            check_ending(path, &known, reason, option)?;
-        }
         let format = chosen.or_else(|| path.and_then(Self::table)).unwrap_or(Self::Ndjson);
+        if chosen.is_none() && format == Self::Ndjson {
+            check_ending(path, "states and answers are .ndjson, .csv, .tsv, .parquet or .arrow", option)?;
+        }
         #[cfg(not(feature = "columnar"))]
         if !format.is_text() {
             let error = format.absent();

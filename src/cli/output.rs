@@ -45,7 +45,7 @@ impl OutputOptions {
     /// Refuses an output whose ending means a format that is not written here, unless the form is said.
     pub fn check_ending(&self) -> Result<(), Failure> {
         let written = "a result is written as .json, .ndjson or .txt, and tables by `batch`";
-        if self.format.is_some() { Ok(()) } else { check_ending(self.path(), &[], written, "--format") }
+        if self.format.is_some() { Ok(()) } else { check_ending(self.path(), written, "--format") }
     }
 
     /// The file; `None` for standard output.
@@ -65,22 +65,17 @@ impl OutputOptions {
     }
 }
 
-/// Endings of formats of which a command reads or writes a few.
+/// Endings of formats, of which a command may read or write a few.
 const FORMATS: [&str; 22] = [
     "arrow", "arrows", "csv", "feather", "h5", "hdf5", "html", "ipc", "mat", "npy", "npz", "parquet", "pdf", "pickle",
     "png", "svg", "toml", "tsv", "xlsx", "xml", "yaml", "yml",
 ];
 
-/// Refuses a file whose ending means a format that is not `known`, for the `reason`; `option` overrules the ending.
-pub(super) fn check_ending(
-    path: Option<&Path>,
-    known: &[&str],
-    reason: &'static str,
-    option: &str,
-) -> Result<(), Failure> {
+/// Refuses a file whose ending means a format, for the `reason`: the command has another one for it; `option` overrules
+/// the ending.
+pub(super) fn check_ending(path: Option<&Path>, reason: &'static str, option: &str) -> Result<(), Failure> {
     let ending = path.and_then(Path::extension).and_then(|ending| ending.to_str()).unwrap_or_default();
-    let ending = ending.to_ascii_lowercase();
-    if known.contains(&&*ending) || !FORMATS.contains(&&*ending) {
+    if !FORMATS.contains(&&*ending.to_ascii_lowercase()) {
         return Ok(());
     }
     let error = Error::new(Reason::Unsupported(reason.to_owned()));
