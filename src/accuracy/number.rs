@@ -1,6 +1,6 @@
 //! The numbers that are compared.
 
-use crate::scalar::{Ball, DoubleDouble, Interval, Ordered, Real, Trigonometry};
+use crate::scalar::{Ball, DoubleDouble, Interval, Midpoint, Ordered, Real, Trigonometry};
 
 /// A number that a state can be computed in, from its f64s on.
 pub trait Number: Trigonometry {
@@ -34,15 +34,9 @@ impl Number for f32 {
     }
 }
 
-impl Number for f64 {
+impl<T: Midpoint + Trigonometry> Number for T {
     fn parts(self) -> [f64; 2] {
-        [self, 0.0]
-    }
-}
-
-impl Number for DoubleDouble {
-    fn parts(self) -> [f64; 2] {
-        crate::scalar::Midpoint::parts(self)
+        Midpoint::parts(self)
     }
 }
 

@@ -29,7 +29,7 @@ const LONGEST_FACTORIZED: usize = 300;
 const TOO_LONG: &str = "with more than 300 coordinates it takes seconds";
 
 /// One case, computed by every method.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Default, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CaseStudy {
     /// What the case is called.
@@ -139,7 +139,8 @@ pub fn study(name: &str, subject: &CaseSubject, options: &Options, budget: Budge
 
 /// Studies a robot's state.
 pub fn of_state(name: &str, robot: &Robot, state: &State, options: &Options, budget: Budget) -> CaseStudy {
-    let mut study = CaseStudy::of(name, Some(robot.dofs()));
+    let coordinates = Some(robot.dofs());
+    let mut study = CaseStudy { name: name.to_owned(), coordinates, ..CaseStudy::default() };
     let mut pipeline = Pipeline::new(robot, options.clone());
     let found = pipeline.impact(state).and_then(|impact| Ok((impact, pipeline.prepare(state)?)));
     let (impact, prepared) = match found {
@@ -182,8 +183,8 @@ fn answers(prove: bool) -> impl Iterator<Item = (&'static str, bool)> {
 
 /// Studies a contact problem given as matrices, which are taken as exact.
 pub fn of_problem(name: &str, problem: &ContactProblem, prove: bool, budget: Budget) -> CaseStudy {
-    let mut study = CaseStudy::of(name, None);
-    study.contacts = problem.contacts();
+    let contacts = problem.contacts();
+    let mut study = CaseStudy { name: name.to_owned(), contacts, ..CaseStudy::default() };
     let mut scratch = Scratch::default();
     let mut analyze =
         |prove| scratch.analyze(problem, problem, AnalysisOptions { prove, ..AnalysisOptions::default() });
@@ -212,18 +213,6 @@ pub fn of_problem(name: &str, problem: &ContactProblem, prove: bool, budget: Bud
 }
 
 impl CaseStudy {
-    fn of(name: &str, coordinates: Option<usize>) -> Self {
-        Self {
-            name: name.to_owned(),
-            coordinates,
-            contacts: 0,
-            answer: None,
-            refused: None,
-            condition: ConditionNumbers::default(),
-            methods: Vec::new(),
-        }
-    }
-
     fn refuse(self, error: Error) -> Self {
         Self { refused: Some(error), ..self }
     }
