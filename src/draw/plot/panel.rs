@@ -175,15 +175,12 @@ impl<'p> PlacedPanel<'p> {
     }
 
     fn grid(&self, out: &mut PlotLayer) {
-        let Panel { x, y, framed, size: (width, height), .. } = self.panel;
-        if *framed && !x.bare {
-            self.area
-                .x
-                .ticks()
-                .map(|tick| width * tick.share)
-                .for_each(|x| out.line(vec![(x, 0.0), (x, *height)], GRID));
+        let Panel { x, y, framed: true, size: (width, height), .. } = self.panel else { return };
+        if !x.bare {
+            let lines = self.area.x.ticks().map(|tick| width * tick.share);
+            lines.for_each(|x| out.line(vec![(x, 0.0), (x, *height)], GRID));
         }
-        if *framed && !y.bare {
+        if !y.bare {
             let lines = self.area.y.ticks().map(|tick| height * (1.0 - tick.share));
             lines.for_each(|y| out.line(vec![(0.0, y), (*width, y)], GRID));
         }
