@@ -14,7 +14,7 @@ use heelstrike::dynamics::{
     factorize, kinematics, mass_matrix,
 };
 use heelstrike::impact::enumerate::{Leaf, Tableau};
-use heelstrike::impact::{AnalysisOptions, ContactProblem, Friction, Mode, Scratch};
+use heelstrike::impact::{AnalysisOptions, ContactProblem, Mode, Scratch};
 use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::planar::{Rotation, Vector};
 use heelstrike::state::NamedContact;
@@ -58,13 +58,7 @@ fn points(robot: &Robot, state: &State) -> Vec<ContactPoint> {
 }
 
 fn problem(robot: &Robot, state: &State) -> ContactProblem {
-    let (friction, restitution) = (vec![Friction::Finite(0.8); 2], vec![0.0; 2]);
-    let contacts = state.scene.contacts.as_deref().expect("named contacts");
-    let mut posture = Configuration::default();
-    posture.set(&Plan::new(robot, &[], &[]), &state.position);
-    Pipeline::new(robot, Options::default())
-        .contact_problem(&posture, &state.velocity, contacts, friction, restitution)
-        .expect("a good problem")
+    Pipeline::new(robot, Options::default()).unsolved(state).expect("a good state").problem
 }
 
 /// q to cos and sin, to M, J, G and c.

@@ -31,10 +31,6 @@ pub fn sign(value: &IBig) -> i8 {
     }
 }
 
-pub fn zeros(rows: usize, columns: usize) -> Matrix {
-    vec![vec![RBig::ZERO; columns]; rows]
-}
-
 pub fn dot(a: &[RBig], b: &[RBig]) -> RBig {
     let mut sum = RBig::ZERO;
     for (x, y) in a.iter().zip(b) {

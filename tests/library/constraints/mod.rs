@@ -9,7 +9,7 @@ mod redundant;
 mod refusals;
 mod singular;
 
-use crate::support::impact;
+use crate::support::impact::{self, outcomes, velocities_after};
 use heelstrike::pipeline::{Impact, Matrices, Options};
 use heelstrike::{Result, Robot};
 use nalgebra::{DMatrix, DVector};
@@ -38,4 +38,22 @@ fn assert_near(found: &[Vec<f64>], expected: &DMatrix<f64>, parts: f64) {
     assert_eq!(found.shape(), expected.shape());
     let error = (&found - expected).amax() / expected.amax();
     assert!(error <= parts * f64::EPSILON, "{error:e}\n{found}\n{expected}");
+}
+
+/// Asserts that M, J, G and the kinetic energy are those of `mass` and `jacobian`, and that impulses change `v` by them,
+/// to so many roundings.
+#[track_caller]
+pub fn assert_struck(found: &Impact, mass: &DMatrix<f64>, jacobian: &DMatrix<f64>, v: &DVector<f64>, roundings: f64) {
+    let matrices = matrices(found);
+    assert_near(&matrices.mass_matrix, mass, roundings);
+    assert_near(&matrices.contact_jacobian, jacobian, roundings);
+    let inverse = mass.clone().try_inverse().expect("positive definite");
+    assert_near(&matrices.delassus, &(jacobian * &inverse * jacobian.transpose()), 10.0 * roundings);
+    let energy = 0.5 * v.dot(&(mass * v));
+    assert!((found.kinetic_energy - energy).abs() <= roundings * f64::EPSILON * energy);
+    for (outcome, after) in outcomes(found).iter().zip(velocities_after(found)) {
+        let expected = v + &inverse * jacobian.transpose() * flat(&outcome.impulse);
+        let (error, size) = ((DVector::from_vec(after) - &expected).amax(), expected.amax().max(v.amax()));
+        assert!(error <= 100.0 * roundings * f64::EPSILON * size, "{error:e} of {size:e}");
+    }
 }

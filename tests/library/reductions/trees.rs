@@ -1,13 +1,17 @@
 //! Random trees with fixed joints, massless links, joints that leave the plane or are braked, shapes high above the
 //! ground, and one contact or several with all kinds of friction.
 
+use heelstrike::pipeline::Impact;
 use heelstrike::reductions::Reductions;
+use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
 use super::comparison::{FEWER, answer, difference, floating, largest_rate};
-use crate::support::impact::modes;
-use crate::support::mechanism::{Mechanism, Point, mechanism, motion};
+use crate::constraints::assert_struck;
+use crate::support::impact::{modes, outcomes};
+use crate::support::mechanism::{Kind, Link, Mechanism, Point, mechanism, motion};
+use crate::support::scaled::{largest, near};
 use std::collections::BTreeSet;
 
 /// A mechanism on its way to the ground.
@@ -80,6 +84,70 @@ proptest! {
             for reductions in FEWER {
                 let other = answer(&floating(&urdf, reductions), &state, reductions).expect("an answer");
                 prop_assert_eq!(difference(&one, &other, Some(largest_rate(&state))), Ok(()), "{:?}\n{}", reductions, state);
+            }
+        }
+    }
+
+    /// By velocities of points, without recursion.
+    #[test]
+    fn matrices_are_sums_over_the_bodies(mut case in case()) {
+        case.held.clear();
+        case.contacts.iter_mut().for_each(|(.., radius)| *radius = 0.0);
+        // What has no mass has no inertia in the file.
+        case.mechanism.links.iter_mut().filter(|link| link.mass == 0.0).for_each(|link| link.moment = 0.0);
+        let Case { mechanism, q, v, contacts, .. } = &case;
+        let moving: Vec<usize> = (0..q.len()).filter(|&k| k < 3 || mechanism.links[k - 2].moves()).collect();
+        let rates = contacts.iter().map(|&(link, [x, z], _)| {
+            let Link { name, place, .. } = &mechanism.links[link];
+            mechanism.point_rates(q, name, [x - place[0], z - place[1]]).select_columns(&moving)
+        });
+        let rates: Vec<_> = rates.collect();
+        let jacobian = DMatrix::from_fn(2 * rates.len(), moving.len(), |i, j| rates[i / 2][(i % 2, j)]);
+        let mass = mechanism.mass_matrix(q).select_rows(&moving).select_columns(&moving);
+        let v = DVector::from_fn(moving.len(), |k, _| v[moving[k]]);
+        let robot = floating(&mechanism.urdf(0), Reductions::ALL);
+        let found = answer(&robot, &case.state(0), Reductions::ALL).expect("an answer");
+        assert_struck(&found, &mass, &jacobian, &v, 1e6);
+    }
+
+    /// Powers of two change no digit of what is given.
+    #[test]
+    fn units_change_no_outcome(case in case(), exponents in prop::array::uniform3(prop_oneof![Just(0), Just(20), Just(-20)])) {
+        let [mass, length, time] = exponents.map(|exponent| f64::exp2(f64::from(exponent)));
+        let Case { mut mechanism, mut q, mut v, mut contacts, .. } = case.clone();
+        let in_length = |point: Point| point.map(|entry| entry * length);
+        mechanism.map_points(in_length);
+        for link in &mut mechanism.links {
+            link.mass *= mass;
+            link.moment *= mass * length * length;
+            link.spheres.iter_mut().for_each(|(_, radius)| *radius *= length);
+        }
+        for (_, point, radius) in &mut contacts {
+            (*point, *radius) = (in_length(*point), *radius * length);
+        }
+        let slides = |k: usize| k < 2 || (k > 2 && matches!(case.mechanism.links[k - 2].kind, Kind::Slide(_)));
+        let unit = |k: usize| if slides(k) { length } else { 1.0 };
+        q.iter_mut().enumerate().for_each(|(k, q)| *q *= unit(k));
+        v.iter_mut().enumerate().for_each(|(k, v)| *v *= unit(k) / time);
+        let scaled = Case { mechanism, q, v, contacts, ..case.clone() };
+        let [one, other] = [&case, &scaled].map(|case| {
+            let robot = floating(&case.mechanism.urdf(0), Reductions::ALL);
+            answer(&robot, &case.state(0), Reductions::ALL).expect("an answer")
+        });
+        let verdict = |impact: &Impact| impact.analysis.as_ref().map(|own| (own.verdict, own.proven, own.index_sum));
+        prop_assert_eq!(verdict(&one), verdict(&other));
+        prop_assert_eq!(modes(&one), modes(&other));
+        for (one, other) in outcomes(&one).iter().zip(outcomes(&other)) {
+            prop_assert_eq!(one.index, other.index);
+            let energy = mass * length * length / time / time;
+            for (own, unit, found) in [
+                (one.impulse.concat(), mass * length / time, other.impulse.concat()),
+                (one.velocity_after.concat(), length / time, other.velocity_after.concat()),
+                (vec![one.energy_loss], energy, vec![other.energy_loss]),
+                (one.margin.into_iter().collect(), 1.0, other.margin.into_iter().collect()),
+            ] {
+                let own: Vec<f64> = own.iter().map(|entry| entry * unit).collect();
+                prop_assert!(near(&found, &own, 1e-12 * largest(&own)), "{found:?} {own:?}");
             }
         }
     }

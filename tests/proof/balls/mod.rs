@@ -21,7 +21,6 @@ mod loads;
 mod number;
 mod oracle;
 mod poses;
-mod references;
 mod states;
 mod sustained;
 
@@ -57,6 +56,18 @@ fn states_are_decided_rightly() {
     assert!(near * 3 >= count, "{near} of {count} states are next to a border");
     let ambiguous = census.count("random", "ambiguous");
     assert!(ambiguous * 50 >= random, "{ambiguous} of {random} are ambiguous");
+}
+
+/// Robots of all forms, which no file has.
+#[test]
+fn states_of_random_trees_are_decided_rightly() {
+    let trees: Vec<_> = (0..40).map(|seed| states::tree(&mut Random::new(seed))).collect();
+    let census = census(&trees, environment("HEELSTRIKE_STATES", 1_200), 4);
+    let all = |column: &str| census.count("random", column) + census.count("near", column);
+    println!("{census}");
+    assert_eq!((all("wrong"), all("different")), (0, 0), "wrongly proven, wrongly decided");
+    let [number, proven] = ["number", "proven"].map(all);
+    assert!(number >= 1_200 && proven * 100 >= number * 98, "{proven} of {number} states proven");
 }
 
 /// The number in an environment variable.

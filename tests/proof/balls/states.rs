@@ -48,16 +48,43 @@ pub fn chain(length: usize, random: &mut Random) -> Model {
         urdf::link(format!("link_{link}"), mass, [0.0, -random.between(0.1, 0.9)], 0.02 * mass, "")
     });
     let mut parts: Vec<String> = links.collect();
-    parts.extend((1..length).map(|link| {
-        let ends = [link - 1, link].map(|end| format!("link_{end}"));
-        let joint = format!("joint_{link}");
-        urdf::joint(joint, Axis::Revolute(1.0), [&ends[0], &ends[1]], [0.0, -1.0], "")
-    }));
-    let robot = Robot::from_urdf(&urdf::robot(&parts)).unwrap_or_else(|error| panic!("{error}"));
-    let foot = |link: usize| NamedContact { link, offset: [0.1, 0.0, -1.0], radius: 0.0 };
-    let feet =
-        [length - 1, length - 3, 4].map(|link| foot(robot.link(&format!("link_{link}")).unwrap_or(link))).to_vec();
-    Model { name: "chain", robot, feet, touching: 2, most: 3, loops: Vec::new(), closing: |_| {} }
+    parts.extend((1..length).map(|link| joint(link - 1, link, Axis::Revolute(1.0), [0.0, -1.0])));
+    let feet = [length - 1, length - 3, 4].map(|link| (link, [0.1, -1.0]));
+    Model { touching: 2, most: 3, ..linked("chain", &parts, &feet) }
+}
+
+/// A tree of two to seven links, on revolute and prismatic joints; points of all links strike, two at a time.
+pub fn tree(random: &mut Random) -> Model {
+    let point = |random: &mut Random| [random.between(-1.0, 1.0), random.between(-1.0, 1.0)];
+    let mut parts = Vec::new();
+    let mut feet = Vec::new();
+    for link in 0..random.whole(2, 7) as usize {
+        let mass = random.between(0.3, 4.0);
+        parts.push(urdf::link(format!("link_{link}"), mass, point(random), random.between(0.01, 0.5), ""));
+        feet.push((link, point(random)));
+        if link > 0 {
+            let axes = [Axis::Revolute(1.0), Axis::Revolute(-1.0), Axis::Revolute(1.0), Axis::Prismatic(point(random))];
+            parts.push(joint(random.whole(0, link as i64 - 1) as usize, link, random.pick(&axes), point(random)));
+        }
+    }
+    linked("tree", &parts, &feet)
+}
+
+fn joint(parent: usize, link: usize, axis: Axis, origin: [f64; 2]) -> String {
+    let ends = [parent, link].map(|end| format!("link_{end}"));
+    urdf::joint(format!("joint_{link}"), axis, [&ends[0], &ends[1]], origin, "")
+}
+
+/// A robot of these elements with points of the links of these numbers for feet, two of which touch.
+fn linked(name: &'static str, parts: &[String], feet: &[(usize, [f64; 2])]) -> Model {
+    let robot = Robot::from_urdf(&urdf::robot(parts)).unwrap_or_else(|error| panic!("{error}"));
+    let foot = |&(link, [x, z]): &(usize, [f64; 2])| NamedContact {
+        link: robot.link(&format!("link_{link}")).expect("a link of the file"),
+        offset: [x, 0.0, z],
+        radius: 0.0,
+    };
+    let feet = feet.iter().map(foot).collect();
+    Model { name, robot, feet, touching: 2, most: 2, loops: Vec::new(), closing: |_| {} }
 }
 
 /// A body whose left knee follows its hip and whose right telescope follows its hip, and a toe that follows twice.

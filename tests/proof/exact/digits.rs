@@ -1,13 +1,7 @@
-//! Every printed number of a proven outcome against the exact one, relative to its own scale.
-//!
-//! 200,000 problems:
-//!
-//! ```text
-//!     HEELSTRIKE_PROBLEMS=200000 cargo test --release --test proof -- --nocapture digits
-//! ```
+//! Every printed number of an outcome as the exact one, and those of a flat foot in closed form.
 
-use super::enumeration::{Combination, Problem, enumerate};
-use super::{analyze_problem, case::rounded, delassus, numbers, solve_json};
+use super::enumeration::{Combination, Problem};
+use super::numbers;
 use crate::balls::environment;
 use crate::support::digits::{Truth, check, needed};
 use crate::support::parallel::total;
@@ -16,47 +10,18 @@ use crate::support::rational::{dot, ratio, to_f64};
 use dashu_ratio::RBig;
 use heelstrike::impact::{self, ContactProblem, Friction, Mode, Outcome};
 
-fn exact(value: f64) -> RBig {
+pub fn exact(value: f64) -> RBig {
     RBig::try_from(value).expect("a finite number")
 }
 
 /// 2 to a power.
-fn power(exponent: i64) -> RBig {
+pub fn power(exponent: i64) -> RBig {
     exact((exponent as f64).exp2())
 }
 
-fn coefficient(random: &mut Random) -> f64 {
+/// 1e-12 to 1e12.
+pub fn coefficient(random: &mut Random) -> f64 {
     10_f64.powf(random.between(-12.0, 12.0))
-}
-
-/// Up to four contacts, with mass ratios up to 1e12, speeds of many sizes, and no, any or infinite friction.
-fn problem(random: &mut Random) -> Option<Problem> {
-    let contacts = random.whole(1, 4) as usize;
-    let mut delassus = delassus(random, contacts, 5)?;
-    let spread = random.pick(&[0, 4, 10]);
-    let units: Vec<RBig> = (0..contacts).map(|_| power(random.whole(-spread, spread))).collect();
-    for (i, row) in delassus.iter_mut().enumerate() {
-        for (j, entry) in row.iter_mut().enumerate() {
-            *entry = &*entry * &units[i / 2] * &units[j / 2];
-        }
-    }
-    let velocity_before = (0..2 * contacts).map(|i| {
-        let speed = ratio(random.whole(-9, 9) - (i as i64 % 2) * 4, 4);
-        speed * &units[i / 2] * power(random.pick(&[0, 0, 0, -20, -45]))
-    });
-    Some(Problem {
-        delassus,
-        velocity_before: velocity_before.collect(),
-        friction: (0..contacts)
-            .map(|_| match random.whole(0, 5) {
-                0 => Some(RBig::ZERO),
-                1 => None,
-                2 => Some(ratio(1, 2)),
-                _ => Some(exact(coefficient(random))),
-            })
-            .collect(),
-        restitution: (0..contacts).map(|_| ratio(random.pick(&[0, 0, 0, 1, 4]), 4)).collect(),
-    })
 }
 
 fn pairs(rows: &[RBig]) -> Vec<[f64; 2]> {
@@ -69,7 +34,7 @@ fn roots(delassus: &[Vec<RBig>]) -> Vec<[f64; 2]> {
     pairs(&diagonal).into_iter().map(|pair| pair.map(f64::sqrt)).collect()
 }
 
-fn truth(problem: &Problem, combination: &Combination) -> Truth {
+pub fn truth(problem: &Problem, combination: &Combination) -> Truth {
     let (impulse, after) = (combination.impulse.exact(), combination.velocity_after.exact());
     let work = dot(&impulse, &problem.velocity_before) + dot(&impulse, &after);
     Truth {
@@ -82,35 +47,6 @@ fn truth(problem: &Problem, combination: &Combination) -> Truth {
         impulse: pairs(&impulse),
         rates: Vec::new(),
     }
-}
-
-#[test]
-fn digits_of_regular_problems_are_right() {
-    let [compared, sliding, marked] = total(environment("HEELSTRIKE_PROBLEMS", 3_000), |seed| {
-        let Some(problem) = problem(&mut Random::new(seed)) else { return [0; 3] };
-        let all = enumerate(&problem);
-        let analysis = analyze_problem(&problem, seed);
-        let frictions: Vec<Friction> = problem.friction.iter().map(rounded).collect();
-        let mut counts = [0; 3];
-        for combination in all.outcomes() {
-            let found = analysis.outcomes.iter().find(|found| found.modes == combination.modes);
-            let Some(found) = found else {
-                panic!("seed {seed}: {:?} is missing\n{}", combination.modes, solve_json(&problem))
-            };
-            if !found.proven {
-                counts[2] += 1;
-                continue;
-            }
-            truth(&problem, combination).check(found, &frictions).unwrap_or_else(|difference| {
-                panic!("seed {seed}, {:?}: {difference}\n{}", combination.modes, solve_json(&problem))
-            });
-            counts[0] += 1;
-            counts[1] += u64::from(found.modes.iter().any(|mode| mode.slides()));
-        }
-        counts
-    });
-    println!("{compared} outcomes, {sliding} of them with sliding, {marked} marked");
-    assert!(compared > 2_000 && sliding > 500 && marked * 1000 < compared, "{compared} {sliding} {marked}");
 }
 
 /// A flat foot of one body that two contacts stop. Its normal impulses are unique, its tangential ones have a sum.

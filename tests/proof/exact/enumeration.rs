@@ -40,11 +40,6 @@ pub struct Quotients {
 }
 
 impl Quotients {
-    /// The f64 nearest to each.
-    pub fn rounded(&self) -> Vec<f64> {
-        self.numerators.iter().map(|numerator| quotient(numerator, &self.denominator)).collect()
-    }
-
     pub fn exact(&self) -> Vec<RBig> {
         let exact = |numerator: &IBig| RBig::from_parts_signed(numerator.clone(), self.denominator.clone());
         self.numerators.iter().map(exact).collect()

@@ -4,10 +4,10 @@
 //! HEELSTRIKE_REDUNDANT=200000 cargo test --release --test proof -- --nocapture redundant_contacts_have_every_cell
 //! ```
 
-use super::case::rounded;
 use super::cells::{Cell, cells, impulse_range, modes_of};
+use super::digits::exact;
 use super::enumeration::{Friction, Problem};
-use super::{numbers, solve_json};
+use super::{numbers, rounded, solve_json};
 use crate::support::digits::check;
 use crate::support::parallel::total;
 use crate::support::random::Random;
@@ -24,10 +24,6 @@ struct Mechanism {
     velocity: Vec<RBig>,
     friction: Vec<Friction>,
     restitution: Vec<RBig>,
-}
-
-fn exact(value: f64) -> RBig {
-    RBig::try_from(value).expect("a finite number")
 }
 
 impl Mechanism {
