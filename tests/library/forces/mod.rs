@@ -1,7 +1,5 @@
 //! Forces and accelerations in sustained contact: laws of mechanics that hold for every robot, and cases by hand.
 
-mod flight;
-mod motion;
 mod next;
 mod painleve;
 mod refusals;

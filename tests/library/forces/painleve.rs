@@ -54,17 +54,6 @@ impl Rod {
     }
 }
 
-/// Where a condition changes between two numbers, to the last bit.
-fn border(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
-    let at_low = holds(low);
-    assert_ne!(at_low, holds(high));
-    while 0.5 * (low + high) > low && 0.5 * (low + high) < high {
-        let middle = 0.5 * (low + high);
-        if holds(middle) == at_low { low = middle } else { high = middle }
-    }
-    low
-}
-
 #[test]
 fn rod_is_in_the_region_of_its_closed_form() {
     let mut random = Random::new(3);
@@ -106,41 +95,4 @@ fn rod_is_in_the_region_of_its_closed_form() {
         assert_eq!(shock, (verdict == Verdict::None).then(|| vec![vec![Mode::Stick]]), "{rod:?}");
     }
     assert!(seen.iter().all(|&count| count > 10), "{seen:?}");
-}
-
-#[test]
-fn borders_lie_where_the_closed_form_has_them() {
-    let rod = Rod { half: 0.5, square: 0.25 / 3.0, theta: 0.9, omega: 3.0, friction: 2.0, slide: -1.0 };
-    // p = 0 along theta and along the friction, with and without a lift; b_n = 0 along omega, ordinary and not.
-    for omega in [3.0, 7.0] {
-        let along = |theta: f64| Rod { theta, omega, ..rod };
-        for [low, high] in [[0.3, 0.9], [0.9, 1.5]] {
-            let exact = border(low, high, |theta| along(theta).pressure() > 0.0);
-            let found = border(low, high, |theta| modes(&along(theta).forces()).len() == 1);
-            assert!((found - exact).abs() < 1e-10, "{found} {exact}");
-        }
-        let along = |friction: f64| Rod { friction, omega, ..rod };
-        let exact = border(1.0, 3.0, |friction| along(friction).pressure() > 0.0);
-        let found = border(1.0, 3.0, |friction| modes(&along(friction).forces()).len() == 1);
-        assert!((found - exact).abs() < 1e-10, "{found} {exact}");
-    }
-    for friction in [0.5, 2.0] {
-        let along = |omega: f64| Rod { omega, friction, ..rod };
-        let exact = border(3.0, 9.0, |omega| along(omega).lift() > 0.0);
-        let found = border(3.0, 9.0, |omega| modes(&along(omega).forces()).contains(&vec![Mode::Separate]));
-        assert!((found - exact).abs() < 1e-10, "{found} {exact}");
-    }
-}
-
-/// The least friction with which a uniform rod has a paradox is 4/3, at tan(theta) = 2.
-#[test]
-fn uniform_rod_is_ordinary_below_four_thirds() {
-    let rod = Rod { half: 1.0, square: 1.0 / 3.0, theta: 2.0_f64.atan(), omega: 0.0, friction: 0.0, slide: -1.0 };
-    let is_ordinary = |friction: f64| modes(&Rod { friction, ..rod }.forces()).len() == 1;
-    // The angle's rounding is of second order.
-    assert!((border(1.0, 2.0, is_ordinary) - 4.0 / 3.0).abs() < 1e-14);
-    for step in -20..20 {
-        let theta = rod.theta + 0.02 * f64::from(step);
-        assert_eq!(modes(&Rod { theta, friction: 1.333, ..rod }.forces()).len(), 1);
-    }
 }

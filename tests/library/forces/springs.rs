@@ -1,9 +1,8 @@
 //! Virtual model control: joint torques that imitate springs and dampers, against moments worked out by hand.
 
 use super::{forces, try_forces};
-use crate::support::impact::{outcomes, reduced, robot};
+use crate::support::impact::{outcomes, reduced};
 use crate::support::urdf::{self, Axis, HINGE, joint, link};
-use heelstrike::impact::Mode;
 use heelstrike::robot::{Base, Reduction};
 use heelstrike::write::{Detail, Report};
 use heelstrike::{Defaults, Impact, Robot, State};
@@ -123,46 +122,6 @@ fn held_joint_carries_its_load_through() {
     let note = "hinge is held: its torque is carried by what holds it";
     let has_note = |found: &Impact| found.notes.iter().any(|own| own.contains(note));
     assert!(has_note(&both) && !has_note(&one), "{:?}", both.notes);
-}
-
-/// Springs bear every body at its center and push the feet on the ground with what that weighs, by the lever rule: the
-/// ground pushes back, nothing is unrealized, and nothing moves.
-#[test]
-fn springs_that_balance_keep_a_robot_at_rest() {
-    let robot = robot(include_str!("../../../urdf/ramone.urdf"));
-    let mut state: Value = serde_json::from_str(include_str!("../../../examples/ramone_stands.json")).unwrap();
-    let held = forces(&robot, &state);
-    let weights = robot
-        .bodies
-        .iter()
-        .enumerate()
-        .map(|(index, own)| [9.81 * own.mass, 9.81 * own.mass * held.placement.world(index, own.com).x]);
-    let [weight, moment] = weights.fold([0.0; 2], |[sum, moments], [own, about]| [sum + own, moments + about]);
-    let [left, right] = [0, 1].map(|foot| held.contacts[foot].point.x);
-    let on_right = (moment - weight * left) / (right - left);
-    let pressed = [weight - on_right, on_right];
-    assert!(pressed.iter().all(|&force| force > 1.0), "{pressed:?}");
-    let spring = |link: usize, offset: [f64; 3], force: f64| json!({"a": {"link": robot.links[link].name, "offset": offset}, "b": {"world": [0, 0]}, "force": [0, force]});
-    let links = (0..robot.links.len()).filter(|&link| robot.links[link].has_inertial);
-    let mut springs: Vec<Value> = links
-        .map(|link| {
-            let body = &robot.bodies[robot.links[link].body];
-            spring(link, robot.links[link].offset(body.com), 9.81 * body.mass)
-        })
-        .collect();
-    assert_eq!(springs.len(), robot.bodies.len(), "each body is one link with a mass");
-    springs.extend(held.contacts.iter().zip(pressed).map(|(own, force)| spring(own.link, [0.0; 3], -force)));
-    state["held"] = json!([]);
-    state["virtual"] = json!(springs);
-    let found = forces(&robot, &state);
-    let at_rest = &outcomes(&found)[0];
-    assert_eq!(at_rest.modes, [Mode::Stick; 2], "{at_rest:?}");
-    for (own, force) in at_rest.impulse.iter().zip(pressed) {
-        assert!((own[1] - force).abs() < 1e-11 * weight && own[0].abs() < 1e-11 * weight, "{at_rest:?} {pressed:?}");
-    }
-    assert!(at_rest.velocity().all(|entry| entry.abs() < 1e-9), "{at_rest:?}");
-    let unrealized = &record(&robot, &state, &found)["unrealized"];
-    assert!(["fx", "fz", "moment"].iter().all(|entry| unrealized[entry].as_f64().unwrap().abs() < 1e-13 * weight));
 }
 
 #[test]

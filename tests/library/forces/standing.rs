@@ -3,14 +3,10 @@
 use super::{forces, modes, outcomes};
 use crate::support::command::read;
 use crate::support::impact::robot;
-use crate::support::robots::{Contact, ROBOTS, robot_and_reference};
+use crate::support::robots::{ROBOTS, by_name, robot_and_reference};
 use crate::support::urdf::{HINGE, POINT, body, collision, joint, link, robot as urdf};
-use heelstrike::contact::Placement;
 use heelstrike::impact::{Mode, Verdict};
-use heelstrike::planar::Vector;
-use heelstrike::robot::{Axis, Base, ParentJoint};
-use heelstrike::{Defaults, State};
-use serde::Deserialize;
+use heelstrike::robot::Base;
 use serde_json::{Value, json};
 
 const GRAVITY: f64 = 9.81;
@@ -115,6 +111,21 @@ fn nothing_touches_in_mid_flight() {
     assert_eq!(outcomes(&found)[0].velocity().collect::<Vec<_>>(), [0.0, -1.62, 0.0]);
 }
 
+/// Whatever robot is dropped, it falls as it is.
+#[test]
+fn robot_that_is_dropped_falls_with_gravity() {
+    let robots = ROBOTS.map(|own| robot(&read(&robot_and_reference::<Value>(own).0)));
+    for robot in robots.iter().filter(|robot| robot.base == Base::Floating) {
+        let names: Vec<String> = robot.coordinates().map(str::to_owned).collect();
+        let q: Vec<f64> = (0..robot.dofs()).map(|at| 0.3 * at as f64).collect();
+        let found = forces(robot, json!({"position": by_name(&names, 3, &q), "contacts": []}));
+        for (at, found) in outcomes(&found)[0].velocity().enumerate() {
+            let expected = if at == 1 { -GRAVITY } else { 0.0 };
+            assert!((found - expected).abs() < 1e-11 * GRAVITY, "{}: {found} of coordinate {at}", robot.name);
+        }
+    }
+}
+
 /// A heel that lifts off with the turning foot takes no part; the toe about which it turns does.
 #[test]
 fn heel_leaves_while_the_foot_turns() {
@@ -146,64 +157,4 @@ fn torque_holds_a_pendulum() {
     assert!(accelerations(held)[0].abs() < 1e-14);
     let expected = 2.0 * GRAVITY * 0.5 / (0.1 + 2.0 * 0.25);
     assert!((accelerations(loose)[0] - expected).abs() < 1e-13);
-}
-
-/// Whatever the contacts do, their forces and the weight move the whole: along z by m a_z.
-#[test]
-fn real_robots_bear_their_weight() {
-    let mut pressed = 0;
-    for folder in ROBOTS {
-        let (path, Reference { contacts, .. }): (String, Reference) = robot_and_reference(folder);
-        let robot = robot(&read(&path));
-        let standing = |held: Vec<&str>| {
-            let state = json!({"contacts": contacts, "friction": 0.7, "held": held});
-            (forces(&robot, &state), State::from_json(&state.to_string(), &robot, &Defaults::default()).unwrap())
-        };
-        if robot.base == Base::Fixed {
-            continue;
-        }
-        for held in [vec![], robot.joints.iter().map(|joint| joint.name.as_str()).collect()] {
-            let (found, state) = standing(held);
-            let mass: f64 = robot.bodies.iter().map(|body| body.mass).sum();
-            let placement = Placement::of_robot(&robot, &state.position);
-            for outcome in outcomes(&found) {
-                // From rest the center rises as the coordinates move it: a turn by the arm forward, downward.
-                let a: Vec<f64> = outcome.velocity().collect();
-                let rises = |body: usize| {
-                    let com = placement.world(body, robot.bodies[body].com);
-                    let mut rise = a[1] - a[2] * (com.x - placement.world(0, Vector::zero()).x);
-                    let mut at = body;
-                    while let Some(mover) = robot.bodies[at].joint {
-                        let (coordinate, ratio) = match mover {
-                            ParentJoint::Joint(index) => (3 + index, 1.0),
-                            ParentJoint::Mimic(index) => {
-                                (3 + robot.mimic_joints[index].mimicked, robot.mimic_joints[index].multiplier)
-                            }
-                            ParentJoint::Fixed { .. } => (0, 0.0),
-                        };
-                        let (parent, _, axis) = robot.hinge(mover);
-                        let unit = match axis {
-                            Some(Axis::Revolute { sign }) => -sign * (com.x - placement.world(at, Vector::zero()).x),
-                            Some(Axis::Prismatic { direction }) => placement.turned(parent, direction).z,
-                            None => 0.0,
-                        };
-                        rise += unit * ratio * a[coordinate];
-                        at = parent;
-                    }
-                    robot.bodies[body].mass * rise
-                };
-                let rising: f64 = (0..robot.bodies.len()).map(rises).sum();
-                let normal: f64 = outcome.impulse.iter().map(|force| force[1]).sum();
-                let size = mass * (GRAVITY + outcome.velocity().fold(0.0, |most: f64, a| most.max(a.abs())));
-                assert!((normal - mass * GRAVITY - rising).abs() < 1e-12 * size, "{path}: {normal} {rising}");
-                pressed += usize::from(normal > 0.0);
-            }
-        }
-    }
-    assert!(pressed > 4, "{pressed}");
-}
-
-#[derive(Deserialize)]
-struct Reference {
-    contacts: Vec<Contact>,
 }

@@ -145,9 +145,10 @@ fn close_five_bars(q: &mut [f64]) {
     (q[4], q[6]) = (turned(a, left), turned(b, right));
 }
 
-/// Robots with mimic joints, with a loop, and chains of random masses, for states in sustained contact.
+/// Robots with mimic joints, with a loop, on a fixed base, and chains of random masses, one of which is solved by
+/// articulated bodies alone, for states in sustained contact.
 pub fn tied_models(random: &mut Random) -> Vec<Model> {
-    let model = |name, urdf: &str, feet: &[(&str, [f64; 3], f64)]| {
+    let model = |name, urdf: &str, most, feet: &[(&str, [f64; 3], f64)]| {
         let robot = Robot::from_urdf(urdf).unwrap_or_else(|error| panic!("{name}: {error}"));
         let link = |name: &str| robot.link(name).unwrap_or_else(|| panic!("no link {name}"));
         let foot = |&(name, offset, radius): &(&str, [f64; 3], f64)| NamedContact { link: link(name), offset, radius };
@@ -155,8 +156,8 @@ pub fn tied_models(random: &mut Random) -> Vec<Model> {
             name,
             feet: feet.iter().map(foot).collect(),
             robot,
-            touching: 2,
-            most: 2,
+            touching: most,
+            most,
             loops: Vec::new(),
             closing: |_| {},
         }
@@ -164,6 +165,7 @@ pub fn tied_models(random: &mut Random) -> Vec<Model> {
     let mut five_bar = model(
         "five_bar",
         &read("urdf/five_bar.urdf"),
+        2,
         &[("left_shank", [0.0, 0.0, -0.5], 0.0), ("torso", [-0.3, 0.0, 0.0], 0.05), ("torso", [0.2, 0.0, 0.3], 0.0)],
     );
     let end = |link: &str| LinkPoint { link: five_bar.robot.link(link).unwrap_or(0), offset: [0.0, 0.0, -0.5] };
@@ -172,13 +174,16 @@ pub fn tied_models(random: &mut Random) -> Vec<Model> {
     let follower = model(
         "follower",
         &follower(),
+        2,
         &[
             ("left_toe", [0.1, 0.0, -0.05], 0.0),
             ("right_foot", [0.0, 0.0, -0.3], 0.03),
             ("tail", [-0.5, 0.0, 0.0], 0.0),
         ],
     );
-    vec![five_bar, follower, chain(10, random), chain(10, random)]
+    let acrobot = read("tests/data/robots/acrobot/Acrobot.urdf");
+    let acrobot = model("acrobot", &acrobot, 1, &[("lower_link", [0.0, 0.0, -2.0], 0.1)]);
+    vec![five_bar, follower, acrobot, chain(10, random), chain(26, random)]
 }
 
 /// The robots, each with up to four feet.
