@@ -1,24 +1,22 @@
-//! Studies of two parameters: the areas and curves of a map against single states, and against studies of one
-//! parameter.
+//! Studies of two parameters: the areas and curves of a map against single states.
 
 use crate::support::random::Random;
 use crate::support::urdf::{body, collision};
 use crate::sweep::command::straight;
 use crate::sweep::studies::with;
-use heelstrike::impact::Mode;
-use heelstrike::sweep::{Area, Findings, Map, Regime, RobotStudy, Solver, Survey, Workers};
+use heelstrike::sweep::{Area, Findings, Map, Regime, RobotStudy, Solver, Workers};
 use serde_json::{Value, json};
 
 const PDW: &str = include_str!("../../urdf/pdw.urdf");
 const MINIMALISTIC: &str = include_str!("../../urdf/minimalistic.urdf");
 const WORKERS: Workers<'static> = Workers { threads: 2, done: &|| () };
 
-/// The walker against its leg angle and its legs' inertia, with its CoG this far along the leg.
-fn inertia(along: f64) -> Value {
+/// The walker against its leg angle and its legs' inertia.
+fn inertia() -> Value {
     let mut study = straight(None);
     study["parameters"] = json!({"alpha": {"from": 0.001, "to": 1.5697, "steps": 33},
         "j": {"from": 0, "to": 0.5, "steps": 17}});
-    let leg = json!({"inertia": "j", "com": [0, 0, -along]});
+    let leg = json!({"inertia": "j", "com": [0, 0, -0.4]});
     study["robot"] = json!({"links": {"left_leg": leg, "right_leg": leg}});
     study
 }
@@ -47,10 +45,6 @@ fn winding(area: &Area, [x, y]: [f64; 2]) -> i32 {
     turns
 }
 
-fn outcomes(area: &Area) -> Vec<Vec<Mode>> {
-    area.regime.outcomes().map(<[_]>::to_vec).unwrap_or_default()
-}
-
 /// Random points of the ranges lie within exactly one area, and have its regime except in a thin seam at its curves.
 #[test]
 fn points_lie_in_the_area_of_their_outcomes() {
@@ -73,64 +67,14 @@ fn points_lie_in_the_area_of_their_outcomes() {
         // Curves are straight between points at most a sixty-fourth of the ranges apart.
         assert!(wrong * 500 < count, "{wrong} of {count} points are not in the area of their outcomes");
     };
-    with_map(PDW, &inertia(0.4), check);
+    with_map(PDW, &inertia(), check);
     with_map(MINIMALISTIC, &many, check);
-}
-
-/// The paper: both bands close where the leg's center of percussion, with the hip as pivot, is the foot.
-#[test]
-fn the_walker_s_bands_close_at_its_critical_inertia() {
-    for along in [0.3_f64, 0.4, 0.5] {
-        let critical = along * (1.0 - along);
-        with_map(PDW, &inertia(along), |_, map| {
-            let area = |wanted: &[[Mode; 2]]| {
-                let found = map.areas.iter().find(|area| outcomes(area) == wanted);
-                found.unwrap_or_else(|| panic!("no area of {wanted:?} at {along}"))
-            };
-            let slides = area(&[[Mode::SlideMinus, Mode::Stick]]);
-            let greatest = slides.loops.iter().flatten().map(|point| point[1]).fold(0.0, f64::max);
-            assert!((greatest - critical).abs() < 1e-3, "{along}: the sliding band ends at {greatest}, not {critical}");
-            // The second ambiguous band is the one that reaches up to the greatest inertia.
-            let ambiguous =
-                area(&[[Mode::Separate, Mode::Stick], [Mode::Stick, Mode::Stick], [Mode::SlidePlus, Mode::Stick]]);
-            let second = ambiguous.loops.iter().find(|points| points.iter().any(|point| point[1] == 0.5));
-            let second = second.unwrap_or_else(|| panic!("no second band at {along}"));
-            let least = second.iter().map(|point| point[1]).fold(1.0, f64::min);
-            assert!((least - critical).abs() < 1e-3, "{along}: the ambiguous band begins at {least}, not {critical}");
-        });
-    }
-}
-
-/// Where a line of the map is cut, the borders are those of the study of that line alone.
-#[test]
-fn a_section_of_a_map_is_the_study_of_one_parameter() {
-    let areas_along = |j: f64| {
-        with_map(PDW, &inertia(0.4), |_, map| {
-            let regions = (0..=2_000).map(|k| {
-                let at = [0.001 + 1.5687 * f64::from(k) / 2_000.0, j];
-                map.areas.iter().find(|area| winding(area, at) == 1).map(outcomes).unwrap_or_default()
-            });
-            let mut regions: Vec<_> = regions.collect();
-            regions.dedup();
-            regions
-        })
-    };
-    for j in [0.05, 0.21, 0.33] {
-        let mut line = inertia(0.4);
-        line["constants"] = json!({"j": j});
-        line["parameters"].as_object_mut().expect("an object").remove("j");
-        let alone: Vec<_> = with(PDW, &line, 0, |model| {
-            let regions = Survey::of(model, WORKERS).regions;
-            regions.iter().map(|region| region.regime.outcomes().unwrap_or_default().to_vec()).collect()
-        });
-        assert_eq!(areas_along(j), alone, "{j}");
-    }
 }
 
 #[test]
 fn a_map_is_the_same_for_any_number_of_threads() {
     let found = |threads| {
-        with(PDW, &inertia(0.4), 0, |model| {
+        with(PDW, &inertia(), 0, |model| {
             let map = Map::of(model, Workers { threads, done: &|| () });
             let loops: Vec<_> = map.areas.iter().map(|area| (area.loops.clone(), area.middles.clone())).collect();
             let curves: Vec<_> = map.curves.iter().map(|curve| (curve.sides, curve.points.clone())).collect();
@@ -142,7 +86,7 @@ fn a_map_is_the_same_for_any_number_of_threads() {
 
 #[test]
 fn curves_and_areas_have_what_turns_and_what_holds() {
-    with_map(PDW, &inertia(0.4), |model, map| {
+    with_map(PDW, &inertia(), |model, map| {
         let mut solver = Solver::new(model);
         for area in &map.areas {
             assert!(!area.middles.is_empty());
