@@ -142,14 +142,6 @@ fn a_counterexample_can_be_fed_back() {
     assert_ne!(modes, each(&first["outcomes"], "modes"));
 }
 
-#[test]
-fn a_robot_in_the_air_keeps_its_velocity() {
-    let result = result(&["impact", BLOCK, "-"], IN_THE_AIR);
-    let outcome = &result["outcomes"][0];
-    assert_eq!((&result["verdict"], &outcome["modes"]), (&json!("no_contact"), &json!([])));
-    assert_eq!(outcome["base_velocity_after"]["x"], 2.0);
-}
-
 // The JSON contract.
 
 /// The JSON with every number as 0: what is left are the fields, their order and their shapes.
@@ -235,27 +227,6 @@ fn too_many_contacts_have_matrices_and_an_error() {
         let fields: Vec<&str> = fields.as_object().expect("an object").keys().map(String::as_str).collect();
         assert_eq!((without.status, fields), (1, vec!["error", "id", "line"]));
     }
-}
-
-#[test]
-fn a_batch_answers_a_broken_line_in_its_place() {
-    let lines = concat!(
-        "{\"id\": 1, \"stance\": \"left_leg\", \"friction\": 0.5}\r\n",
-        "\n",
-        "{\"id\": \"k2\", \"friction\": 0.5, \"position\": {\"joints\": {\"hipp\": 1}}}\n",
-        "{\"id\": 3, \"friction\": 0.5, oops\n",
-        "   \n",
-        "{\"id\": 4.5, \"stance\": \"left_leg\", \"friction\": 0.5}"
-    );
-    let run = heelstrike_reads(&["batch", "urdf/pdw.urdf", "-"], lines);
-    assert_eq!(run.status, 1);
-    let answers = run.lines();
-    assert_eq!(each(&json!(answers), "id"), [json!(1), json!("k2"), json!(3), json!(4.5)]);
-    let second = r#"{"id":"k2","line":3,"error":{"message":"the robot has no joint named \"hipp\"","place":"position.joints.hipp","hint":"did you mean hip?"}}"#;
-    assert_eq!(run.stdout.lines().nth(1), Some(second));
-    assert_eq!(answers[2]["line"], 4);
-    let places: Vec<&str> = run.stderr.lines().filter(|line| line.starts_with(" --> ")).collect();
-    assert_eq!(places, [" --> <stdin>:3:55", " --> <stdin>:4:28"], "{}", run.stderr);
 }
 
 #[test]

@@ -91,16 +91,6 @@ fn straight_lines_stay_near_the_outcomes() {
 }
 
 #[test]
-fn curves_are_the_same_for_any_number_of_threads() {
-    walk(json!(1), |model| {
-        let places = |threads: usize| -> Vec<f64> {
-            curves(model, threads).1.iter().flat_map(|curve| &curve.places).map(|place| place.at).collect()
-        };
-        assert_eq!(places(1), places(5));
-    });
-}
-
-#[test]
 fn parameter_has_the_unit_of_its_numbers() {
     let still = json!({"position": {"base": {"z": 1}}});
     for (state, leg, unit) in [

@@ -4,12 +4,10 @@
 
 use crate::support::command::read;
 use crate::support::impact::{reduced as reduce, robot as load};
-use crate::support::robots::{ROBOTS, robot_and_reference};
 use crate::support::urdf::{self, HINGE, joint, link};
 use heelstrike::description::Description;
 use heelstrike::planar::Vector;
 use heelstrike::robot::{Axis, Base, Body, LeftOutPart, Link, ParentJoint, Reduction, Rim, Robot};
-use serde_json::{Value, json};
 use std::f64::consts::FRAC_PI_2;
 
 mod base;
@@ -32,45 +30,6 @@ fn disc(link: &Link) -> ([f64; 2], f64) {
 /// With these joints frozen at values.
 fn holding(text: &str, hold: &[(usize, f64)]) -> Robot {
     reduce(text, &Reduction { hold: hold.to_vec(), ..Reduction::default() })
-}
-
-/// urdf-rs's own reader, which checks less, finds the same values in files that it accepts.
-#[test]
-fn values_are_those_that_urdf_rs_reads() {
-    let mut compared = 0;
-    for folder in ROBOTS {
-        let text = read(&robot_and_reference::<Value>(folder).0);
-        let (Ok(theirs), ours) =
-            (urdf_rs::read_from_string(&text), Description::from_urdf(&text).expect("a good file"))
-        else {
-            continue;
-        };
-        let pose = |pose: &urdf_rs::Pose| (pose.xyz.0, pose.rpy.0);
-        for (own, other) in ours.links.iter().zip(&theirs.links) {
-            let urdf_rs::Inertial { origin, mass, inertia } = &other.inertial;
-            let urdf_rs::Inertia { ixx, ixy, ixz, iyy, iyz, izz } = *inertia;
-            let inertial = own.inertial.clone().unwrap_or_default();
-            let matrix = [[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]];
-            assert_eq!((&own.name, inertial.mass), (&other.name, mass.value));
-            assert_eq!((inertial.origin.xyz, inertial.origin.rpy), pose(origin), "{}", own.name);
-            assert_eq!(inertial.inertia.unwrap_or_default(), matrix, "{}", own.name);
-            let places = own.collisions.iter().map(|own| (own.origin.xyz, own.origin.rpy)).collect::<Vec<_>>();
-            assert_eq!(places, other.collision.iter().map(|own| pose(&own.origin)).collect::<Vec<_>>(), "{}", own.name);
-        }
-        for (own, other) in ours.joints.iter().zip(&theirs.joints) {
-            assert_eq!(
-                (&own.name, own.origin.xyz, own.origin.rpy),
-                (&other.name, other.origin.xyz.0, other.origin.rpy.0)
-            );
-            assert_eq!((own.axis, &ours.links[own.child].name), (other.axis.xyz.0, &other.child.link));
-        }
-        // The world needs no element of its own.
-        let named =
-            ours.links.iter().filter(|own| own.name != "world" || theirs.links.iter().any(|t| t.name == own.name));
-        assert_eq!((named.count(), ours.joints.len()), (theirs.links.len(), theirs.joints.len()));
-        compared += 1;
-    }
-    assert!(compared > 4, "{compared} robots");
 }
 
 /// With an element in a revolute joint.
@@ -201,62 +160,6 @@ fn walkers_and_the_block_have_points_for_feet() {
 }
 
 // Robots of others.
-
-#[test]
-fn robots_of_others_equal_the_values_of_pinocchio() {
-    for named in ROBOTS {
-        let (urdf, expected) = robot_and_reference::<Value>(named);
-        let (robot, folder) = (load(&read(&urdf)), named.0);
-        let [bodies, joints] = ["bodies", "joints"].map(|list| expected[list].as_array().expect("a list"));
-        assert_eq!(json!(robot.coordinates().collect::<Vec<_>>()), expected["coordinates"], "{folder}");
-        assert_eq!(robot.bodies.len(), bodies.len(), "{folder}");
-        close(robot.mass(), &expected["total_mass"]);
-
-        // Body origins at zero in the root's frame.
-        let mut origins = vec![Vector::zero(); robot.bodies.len()];
-        for (index, body) in robot.bodies.iter().enumerate().skip(1) {
-            let (parent, origin, _) = robot.hinge(body.joint.expect("all but the root have a joint"));
-            origins[index] = origins[parent] + origin;
-        }
-
-        for expected in bodies {
-            let index = robot.bodies.iter().position(|body| expected["link"] == body.name).expect("the body");
-            let reduced = &robot.bodies[index];
-            close(reduced.mass, &expected["mass"]);
-            close(reduced.moment, &expected["Iyy_com"]);
-            close_points(origins[index] + reduced.com, &expected["com_zero"]);
-            for link in expected["merged_links"].as_array().expect("a list") {
-                let link = robot.link(link.as_str().expect("a name")).expect("the link");
-                assert_eq!(robot.links[link].body, index, "{folder}");
-            }
-        }
-        for (joint, reference) in robot.joints.iter().zip(joints) {
-            assert_eq!(reference["name"], joint.name);
-            for (body, index) in [(joint.parent, "parent_body"), (joint.child, "child_body")] {
-                let index = reference[index].as_u64().expect("an index") as usize;
-                assert_eq!(bodies[index]["link"], robot.bodies[body].name);
-            }
-            match joint.axis {
-                Axis::Revolute { sign } => assert_eq!(reference["axis_sign_y"].as_f64(), Some(sign), "{}", joint.name),
-                Axis::Prismatic { direction } => {
-                    let expected = [0, 1].map(|axis| reference["direction_zero"][axis].as_f64().expect("a number"));
-                    assert_eq!(direction, expected, "{}", joint.name);
-                }
-            }
-            close_points(origins[joint.child], &reference["origin_zero"]);
-        }
-    }
-}
-
-/// Equal to 1e-12: all lengths are below 1 m and all masses below 50 kg.
-fn close(value: f64, reference: &Value) {
-    let reference = reference.as_f64().expect("a number");
-    assert!((value - reference).abs() <= 1e-12 * reference.abs().max(1.0), "{value} is not {reference}");
-}
-
-fn close_points(point: Vector, reference: &Value) {
-    point.components().into_iter().zip([0, 1]).for_each(|(own, axis)| close(own, &reference[axis]));
-}
 
 #[test]
 fn wheels_are_discs_and_unread_meshes_left_out() {
