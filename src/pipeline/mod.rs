@@ -26,18 +26,18 @@ pub use self::springs::{Driven, SpringForce, Unrealized};
 pub use self::unsolved::Unsolved;
 use crate::budget::{Budget, is_spent, within};
 use crate::contact::{Contact, Feet, Merged, Placement};
-use crate::dynamics::plan::{Configuration, Plan};
-use crate::dynamics::{Closed, ContactPoint, RoundingBounds};
+use crate::dynamics::plan::Plan;
+use crate::dynamics::{Closed, RoundingBounds};
 use crate::error::{Result, finite};
 use crate::impact::{
     Analysis, AnalysisOptions, ContactProblem, Errors, ListedRejections, Scratch, Verdict, too_many_contacts,
 };
 use crate::law::{Friction, Law, Mode};
-use crate::planar::{Pair, Rotation};
+use crate::planar::Pair;
 use crate::reductions::Reductions;
 use crate::robot::Robot;
 use crate::scalar::Magnitude;
-use crate::state::{NamedContact, Scene, State, check_length};
+use crate::state::{NamedContact, Scene, State};
 use serde::{Deserialize, Serialize};
 use std::mem::replace;
 use std::sync::Arc;
@@ -379,44 +379,6 @@ impl<'r> Pipeline<'r> {
     pub fn recycle(&mut self, mut impact: Box<Impact>) {
         self.scratch.recycle(impact.analysis.take().map_or(Vec::new(), |analysis| analysis.outcomes));
         self.recycled = Some(impact);
-    }
-
-    /// The contact problem of contacts given by hand, in a configuration whose cosines and sines the caller knows
-    /// better than an f64 angle can give them; `velocity` is dq/dt by coordinate. Level ground, restitution and
-    /// friction per contact.
-    ///
-    /// # Errors
-    /// `Singular` for a coordinate without inertia, and lengths that do not fit.
-    pub fn contact_problem(
-        &mut self,
-        configuration: &Configuration,
-        velocity: &[f64],
-        contacts: &[NamedContact],
-        friction: Vec<Friction>,
-        restitution: Vec<f64>,
-    ) -> Result<ContactProblem> {
-        let coordinates = self.robot.dofs();
-        let places = coordinates + self.robot.mimic_joints.len();
-        for length in [configuration.cos.len(), configuration.sin.len(), configuration.displacement.len()] {
-            check_length("configuration", length, places)?;
-        }
-        check_length("velocity", velocity.len(), coordinates)?;
-        self.compile(&Scene::default());
-        self.close_loops(&[], &[], None, &mut [], &mut Vec::new())?;
-        self.assembly.configuration.clone_from(configuration);
-        self.assembly.place();
-        self.assembly.factorize();
-        self.check_inertia(&[])?;
-        let point = |contact: &NamedContact| {
-            let link = &self.robot.links[contact.link];
-            let (center, ground) = (link.point(contact.offset), Rotation::identity());
-            ContactPoint { body: link.body, center, radius: contact.radius, ground }
-        };
-        self.assembly.points = contacts.iter().map(point).collect();
-        self.assembly.contact_jacobian(velocity, None);
-        self.assembly.delassus();
-        let before = self.assembly.workspace.contact_velocity.clone();
-        ContactProblem::new(self.assembly.workspace.delassus.clone(), before, friction, restitution)
     }
 
     /// Lists what a scene leaves out.
