@@ -1,5 +1,5 @@
 //! One core, many numbers: kinematics, mass matrix, factorization, Jacobian, Delassus matrix and the numbers of all
-//! combinations run on exact rationals, balls and lanes without a change, and agree with f64.
+//! combinations run on exact rationals and balls without a change, and agree with f64.
 
 use dashu_ratio::RBig;
 use heelstrike::Robot;
@@ -20,26 +20,25 @@ thread_local! {
 #[derive(Clone, Copy, Default)]
 struct Exact(usize);
 
-/// The operators of a number, by its `zip` with another.
 macro_rules! operators {
-    ($number:ty: $($operator:ident $function:ident),*) => {
-        $(impl $operator for $number {
+    ($($operator:ident $function:ident),*) => {
+        $(impl $operator for Exact {
             type Output = Self;
             fn $function(self, other: Self) -> Self {
-                self.zip(other, $operator::$function)
+                Self::new($operator::$function(self.value(), other.value()))
             }
         })*
-        impl Neg for $number {
-            type Output = Self;
-            fn neg(self) -> Self {
-                self.zip(self, |own, _| -own)
-            }
-        }
     };
 }
 
-operators!(Exact: Add add, Sub sub, Mul mul, Div div);
-operators!(Lanes: Add add, Sub sub, Mul mul, Div div);
+operators!(Add add, Sub sub, Mul mul, Div div);
+
+impl Neg for Exact {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self::new(-self.value())
+    }
+}
 
 impl Exact {
     fn new(value: RBig) -> Self {
@@ -52,31 +51,11 @@ impl Exact {
     fn value(self) -> RBig {
         ARENA.with_borrow(|arena| arena[self.0].clone())
     }
-
-    fn zip(self, other: Self, operation: impl Fn(RBig, RBig) -> RBig) -> Self {
-        Self::new(operation(self.value(), other.value()))
-    }
 }
 
 impl Real for Exact {
     fn from_f64(value: f64) -> Self {
         Self::new(RBig::try_from(value).expect("finite"))
-    }
-}
-
-/// Four states side by side.
-#[derive(Clone, Copy, Default)]
-struct Lanes([f64; 4]);
-
-impl Lanes {
-    fn zip(self, other: Self, operation: impl Fn(f64, f64) -> f64) -> Self {
-        Self(std::array::from_fn(|lane| operation(self.0[lane], other.0[lane])))
-    }
-}
-
-impl Real for Lanes {
-    fn from_f64(value: f64) -> Self {
-        Self([value; 4])
     }
 }
 
@@ -163,14 +142,4 @@ fn balls_enclose_the_exact_core() {
         widest = widest.max(ball.radius);
     }
     assert!(widest < 1e-11, "balls are of use only while they are small: {widest}");
-}
-
-#[test]
-fn lanes_give_the_bits_of_f64() {
-    let lanes = run(std::array::from_fn(|angle| Lanes(std::array::from_fn(|lane| HALF_TANGENTS[lane][angle]))));
-    for (lane, &tangents) in HALF_TANGENTS.iter().enumerate() {
-        for (wide, single) in lanes.iter().zip(run(tangents)) {
-            assert_eq!(wide.0[lane].to_bits(), single.to_bits());
-        }
-    }
 }
