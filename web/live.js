@@ -282,7 +282,7 @@ ready.then((ask) => {
   });
   const copy = (text) => navigator.clipboard?.writeText(text).catch(() => {}) ?? place("state").select();
   place("copy").addEventListener("click", () => copy(JSON.stringify(state)));
-  place("link").addEventListener("click", () => { keep(); copy(location.href); });
+  place("link").addEventListener("click", () => copy(location.href.split("#")[0] + link()));
 
   /** A URDF file, or a state of the robot that is there. */
   const file = async ([given]) => {
