@@ -306,7 +306,7 @@ impl fmt::Display for Summary {
         }
         if self.resting > 0 {
             let states = self.resting;
-            writeln!(f, "slow contacts are taken as exactly at rest: {states}; `resting_speed: 0` takes none so")?;
+            writeln!(f, "slow contacts are taken as exactly at rest: {states}; `resting_speed: 0` turns this off")?;
         }
         if let OddJoints { states, first: Some(OddJoint { state, what }) } = &self.odd_joints {
             writeln!(

@@ -69,10 +69,10 @@ pub(super) struct ContactOptions {
     /// Refuse states with joints outside the limits of the robot's file; otherwise they are noted
     #[arg(long)]
     pub strict_limits: bool,
-    /// Where the base is along z, unless the state says so
+    /// How high the base is, unless the state says so
     #[arg(long, value_name = "WHERE", value_parser = choice(PLACES), default_value = "given")]
     place: PlaceLowest,
-    /// Treat contacts slower than this before the impact, in m/s, as exactly at rest; 0 takes every velocity at its word
+    /// Treat contacts slower than this before the impact, in m/s, as exactly at rest; 0 turns this off
     /// [default: the rounding of each, and half a unit in the last place of numbers with 6 to 15 digits]
     #[arg(long, value_name = "SPEED", value_parser = from_zero, allow_hyphen_values = true)]
     pub resting_speed: Option<f64>,
@@ -82,7 +82,7 @@ pub(super) struct ContactOptions {
 type PlaceLowest = bool;
 
 const PLACES: Choices<PlaceLowest> = &[
-    ("given", "Where the state puts it", false),
+    ("given", "At the z of the state", false),
     ("lowest", "Such that the lowest foot is on the ground; the foot moves as it does", true),
 ];
 
@@ -155,7 +155,7 @@ impl DetailOptions {
 /// Whether impacts are followed.
 #[derive(Debug, Clone, Copy, clap::Args)]
 pub(super) struct NextOption {
-    /// Also find the forces just after each outcome: what the contacts do that are still on the ground then
+    /// Also find the contact forces just after each outcome, at the contacts that stay on the ground
     #[arg(long, help_heading = "Output")]
     pub next: bool,
 }
@@ -163,7 +163,7 @@ pub(super) struct NextOption {
 /// Which computations are skipped if the scene does not need them.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub(super) struct ReductionOptions {
-    /// Run also the computations that the scene does not need, all or these; the outcomes are the same
+    /// Also run computations that the scene does not need, all or the listed ones; outcomes stay the same
     #[arg(long, value_name = "WHICH", value_parser = choice(REDUCTIONS), num_args = 0.., require_equals = true)]
     #[arg(value_delimiter = ',')]
     no_reduction: Option<Vec<fn(&mut Reductions)>>,
@@ -171,12 +171,12 @@ pub(super) struct ReductionOptions {
 
 const REDUCTIONS: Choices<fn(&mut Reductions)> = &[
     ("weld", "Links on fixed and frozen joints are merged into their parents", |all| all.weld = false),
-    ("massless", "Massless links without shapes on such joints vanish", |all| all.massless = false),
-    ("held", "Joints that a state brakes have no column", |all| all.held = false),
+    ("massless", "Massless links without shapes on such joints are removed", |all| all.massless = false),
+    ("held", "Joints that a state brakes are left out of the mass matrix", |all| all.held = false),
     ("reach", "Shapes too high to reach the ground are skipped", |all| all.reach = false),
     ("merge", "Points between the outer two of a body act through these", |all| all.merge = false),
     ("frictionless", "The modes of a contact without friction share one elimination", |all| all.frictionless = false),
-    ("lone", "The condition of a lone contact is taken in closed form", |all| all.lone = false),
+    ("lone", "The condition number of a single contact is computed in closed form", |all| all.lone = false),
 ];
 
 impl ReductionOptions {
@@ -245,9 +245,9 @@ pub(super) struct BudgetOptions<const STUDY: bool> {
     #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_hyphen_values = true)]
     #[arg(default_value = if STUDY { "60" } else { "10" })]
     #[arg(help = if STUDY {
-        "How many seconds of processor time the study may take, or \"infinite\"; beyond it, it is refused"
+        "How many seconds of processor time the study may take, or \"infinite\"; a study that takes longer is refused"
     } else {
-        "How many seconds of processor time each answer may take, or \"infinite\"; what is open then is undecided"
+        "How many seconds of processor time each answer may take, or \"infinite\"; what is not decided by then is reported as undecided"
     })]
     budget: Seconds,
 }

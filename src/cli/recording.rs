@@ -17,14 +17,14 @@ pub struct RecordingOptions {
     ///
     /// A foot touches down if it descends far enough (--drop), faster than 0.05 m/s, and stops low enough
     /// (--ground-height). The moment of contact is when its motion before reaches the level at which it stops, or, if it
-    /// slows down, when it is 2 mm above that level. Noise is measured, and lines are laid through it. For robots smaller
+    /// slows down, when it is 2 mm above that level. Noise is measured and fitted by lines. For robots smaller
     /// than 0.25 m these thresholds shrink in proportion; the size is the greatest distance from the root's origin to a
     /// foot or center of gravity with all joints at zero. The base is then shifted so that the foot is at z = 0.
     #[arg(long, conflicts_with = "place")]
     pub touchdowns: bool,
-    /// Take the heights of a simulation at their word: the ground is z = 0, and a foot touches down when it crosses that
+    /// Trust the heights of a simulation: the ground is z = 0, and a foot touches down when it crosses it
     ///
-    /// The moment is where its height is zero as the up to six rows before it go on. For recordings without noise.
+    /// The moment of contact is extrapolated from up to six rows before it. For recordings without noise.
     #[arg(long, requires = "touchdowns", conflicts_with = "ground_height")]
     pub simulated: bool,
     /// Which state of a touchdown is analyzed

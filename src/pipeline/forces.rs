@@ -93,7 +93,7 @@ impl Pipeline<'_> {
         let (mut prepared, slips) = self.prepare_sustained(state)?;
         if state.uncertainty.is_some() {
             let notes = &mut prepared.impact.notes;
-            notes.push("the uncertainty is not asked about: forces are those of the given numbers".to_owned());
+            notes.push("the uncertainty is ignored: forces are those of the given numbers".to_owned());
         }
         let unforced = self.pose(state, &mut prepared, &slips)?;
         let notes = &mut prepared.impact.notes;

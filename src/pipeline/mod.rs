@@ -68,10 +68,9 @@ pub struct Options {
     /// How far from the ground a foot may be and still touch \[m\]; by default [`CONTACT_TOLERANCE`] times the robot's
     /// size.
     pub contact_tolerance: Option<f64>,
-    /// Contacts slower than this are taken as exactly at rest \[m/s\]; 0 takes every velocity at its word. By default it
-    /// is, of each contact, the bound of the rounding in J v and, where rates and angles have 6 to 15 significant digits
-    /// and cancel to a ten-thousandth, what half a unit in their last places makes of it; a state with an uncertainty is
-    /// then taken at its word.
+    /// Contacts slower than this are taken as exactly at rest \[m/s\]; 0 turns this off. The default differs by contact:
+    /// the bound of the rounding in J v. If rates and angles have 6 to 15 significant digits and cancel to a
+    /// ten-thousandth, it also covers half a unit in their last places. A state with an uncertainty is used as given.
     pub resting_speed: Option<f64>,
     /// Refuse states with joints outside the limits of the robot's file, which otherwise are noted.
     pub strict_limits: bool,

@@ -147,7 +147,7 @@ fn the_example_s_walk_has_its_two_touchdowns() {
     let expected = "\
 102 states: 2 unique, 100 without impact
 smallest margins with an impulse: 0.52 gait/050 (line 52), 0.52 gait/101 (line 103)
-slow contacts are taken as exactly at rest: 102; --resting-speed 0 takes none so
+slow contacts are taken as exactly at rest: 102; --resting-speed 0 turns this off
 ";
     assert!(summary.starts_with(expected), "{summary}");
 }
