@@ -1,7 +1,7 @@
 //! The numbers that the core runs on.
 //!
 //! From kinematics to the slacks of the modes every algorithm is written once over [`Real`]. It neither branches on a
-//! number nor takes a root, so that eight lanes, a ball, a double-double or an exact rational run the same code as
+//! number nor takes a root, so that a ball, a double-double or an exact rational run the same code as
 //! `f64`. Only the stage that turns numbers into signs looks inside.
 //!
 //! | Number | Encloses | Cost of an operation |
