@@ -18,9 +18,9 @@ fn walk<T>(friction: Value, ask: impl FnOnce(&RobotStudy) -> T) -> T {
     with(MINIMALISTIC, &study, 2, ask)
 }
 
-fn curves(model: &RobotStudy, threads: usize) -> (Survey, Vec<RegionCurves>) {
+fn curves(model: &RobotStudy) -> (Survey, Vec<RegionCurves>) {
     let survey = Survey::of(model, Workers { threads: 2, done: &|| () });
-    let curves = RegionCurves::of(model, &survey, Workers { threads, done: &|| () });
+    let curves = RegionCurves::of(model, &survey, Workers { threads: 2, done: &|| () });
     (survey, curves)
 }
 
@@ -36,7 +36,7 @@ fn angles(explanation: &Explanation) -> Vec<f64> {
 #[test]
 fn a_curve_goes_from_border_to_border() {
     walk(json!("infinite"), |model| {
-        let (survey, curves) = curves(model, 2);
+        let (survey, curves) = curves(model);
         assert_eq!(curves.len(), 4);
         for (region, RegionCurves { places }) in survey.regions.iter().zip(&curves) {
             let (first, last) = (places.first().expect("a place"), places.last().expect("a place"));
@@ -60,7 +60,7 @@ fn straight_lines_stay_near_the_outcomes() {
     for friction in [json!("infinite"), json!(1), json!(10)] {
         walk(friction.clone(), |model| {
             let mut solver = Solver::new(model);
-            for RegionCurves { places } in curves(model, 2).1 {
+            for RegionCurves { places } in curves(model).1 {
                 let motions = || places.iter().flat_map(|place| &place.outcomes).map(|(_, motion)| numbers(motion));
                 let scales = [0, 1].map(|kind| largest(&motions().flat_map(|of| of[kind].clone()).collect::<Vec<_>>()));
                 for pair in places.windows(2) {

@@ -4,7 +4,7 @@
 use crate::constraints::{assert_near, flat, impact, matrices};
 use crate::support::impact::{loop_impulses, modes, outcomes, robot, velocities_after};
 use crate::support::mechanism::{Mechanism, Point, point};
-use crate::support::scaled::near;
+use crate::support::scaled::{matrix, near};
 use heelstrike::pipeline::Impact;
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -17,15 +17,19 @@ const THIGH: f64 = 0.4;
 const SHANK: f64 = 0.5;
 const WIDTH: f64 = 0.2;
 
-/// With a leg that hangs this far behind the root's middle. The shanks' ends are one pin; its foot is that of the left
-/// shank.
-fn with_leg(mechanism: Mechanism, leg: &str, behind: f64) -> Mechanism {
-    let [left, right] = ["left", "right"].map(|side| format!("{leg}{side}_thigh"));
+/// With both thighs and the left shank of a leg that hangs this far behind the root's middle.
+fn open_leg(mechanism: Mechanism, leg: &str, behind: f64) -> Mechanism {
+    let left = format!("{leg}left_thigh");
     mechanism
         .with(&left, "root", [-0.5 * WIDTH - behind, 0.0], 0.8, [0.01, -0.15])
         .with(&format!("{leg}left_shank"), &left, [0.0, -THIGH], 0.4, [0.0, -0.2])
-        .with(&right, "root", [0.5 * WIDTH - behind, 0.0], 0.7, [-0.01, -0.18])
-        .with(&format!("{leg}right_shank"), &right, [0.0, -THIGH], 0.3, [0.02, -0.25])
+        .with(&format!("{leg}right_thigh"), "root", [0.5 * WIDTH - behind, 0.0], 0.7, [-0.01, -0.18])
+}
+
+/// The shanks' ends are one pin. Its foot is that of the left shank.
+fn with_leg(mechanism: Mechanism, leg: &str, behind: f64) -> Mechanism {
+    let (thigh, shank) = (format!("{leg}right_thigh"), format!("{leg}right_shank"));
+    open_leg(mechanism, leg, behind).with(&shank, &thigh, [0.0, -THIGH], 0.3, [0.02, -0.25])
 }
 
 fn root() -> Mechanism {
@@ -36,10 +40,16 @@ fn cut_at_the_pin() -> Mechanism {
     with_leg(root(), "", 0.0)
 }
 
+/// The same leg with the pin as a joint and the right knee open: the right shank is attached to the left one's end.
+fn cut_at_the_knee() -> Mechanism {
+    open_leg(root(), "", 0.0).with("right_shank", "left_shank", [0.0, -SHANK], 0.3, [0.02, SHANK - 0.25])
+}
+
 /// Ends of the loop: (link, point) of a and b.
 type Ends = [(&'static str, Point); 2];
 const PIN: Ends = [("left_shank", [0.0, -SHANK]), ("right_shank", [0.0, -SHANK])];
 const HIND_PIN: Ends = [("hind_left_shank", [0.0, -SHANK]), ("hind_right_shank", [0.0, -SHANK])];
+const KNEE: Ends = [("right_thigh", [0.0, -THIGH]), ("right_shank", [0.0, SHANK])];
 
 /// The coordinates of the tree that is cut at the pin, from pitch and the angles of both thighs: two circles about the
 /// knees.
@@ -154,6 +164,23 @@ proptest! {
             // Loops take no energy.
             let left = 0.5 * after.dot(&(&mass * &after));
             prop_assert!((energy - left - outcome.energy_loss).abs() <= ROUNDINGS * f64::EPSILON * energy);
+        }
+    }
+
+    #[test]
+    fn where_the_loop_is_cut_does_not_matter((q, v) in case()) {
+        let one = strike(&cut_at_the_pin(), &q, v.as_slice(), &[PIN]);
+        // The right shank's coordinate is now its angle from the left shank.
+        let turned = |list: &[f64]| {
+            let mut list = list.to_vec();
+            list[6] = list[5] + list[6] - list[3] - list[4];
+            list
+        };
+        let other = strike(&cut_at_the_knee(), &turned(&q), &turned(v.as_slice()), &[KNEE]);
+        prop_assert_eq!(modes(&one), modes(&other));
+        assert_near(&matrices(&other).delassus, &matrix(&matrices(&one).delassus), ROUNDINGS);
+        for (one, other) in velocities_after(&one).iter().zip(velocities_after(&other)) {
+            assert_vectors_near(&other, &turned(one), 10.0);
         }
     }
 

@@ -4,10 +4,12 @@
 
 use crate::support::command::read;
 use crate::support::impact::{reduced as reduce, robot as load};
+use crate::support::robots::{ROBOTS, robot_and_reference};
 use crate::support::urdf::{self, HINGE, joint, link};
 use heelstrike::description::Description;
 use heelstrike::planar::Vector;
 use heelstrike::robot::{Axis, Base, Body, LeftOutPart, Link, ParentJoint, Reduction, Rim, Robot};
+use serde_json::Value;
 use std::f64::consts::FRAC_PI_2;
 
 mod base;
@@ -30,6 +32,45 @@ fn disc(link: &Link) -> ([f64; 2], f64) {
 /// With these joints frozen at values.
 fn holding(text: &str, hold: &[(usize, f64)]) -> Robot {
     reduce(text, &Reduction { hold: hold.to_vec(), ..Reduction::default() })
+}
+
+/// urdf-rs's own reader, which checks less, finds the same values in files that it accepts.
+#[test]
+fn values_are_those_that_urdf_rs_reads() {
+    let mut compared = 0;
+    for folder in ROBOTS {
+        let text = read(&robot_and_reference::<Value>(folder).0);
+        let (Ok(theirs), ours) =
+            (urdf_rs::read_from_string(&text), Description::from_urdf(&text).expect("a good file"))
+        else {
+            continue;
+        };
+        let pose = |pose: &urdf_rs::Pose| (pose.xyz.0, pose.rpy.0);
+        for (own, other) in ours.links.iter().zip(&theirs.links) {
+            let urdf_rs::Inertial { origin, mass, inertia } = &other.inertial;
+            let urdf_rs::Inertia { ixx, ixy, ixz, iyy, iyz, izz } = *inertia;
+            let inertial = own.inertial.clone().unwrap_or_default();
+            let matrix = [[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]];
+            assert_eq!((&own.name, inertial.mass), (&other.name, mass.value));
+            assert_eq!((inertial.origin.xyz, inertial.origin.rpy), pose(origin), "{}", own.name);
+            assert_eq!(inertial.inertia.unwrap_or_default(), matrix, "{}", own.name);
+            let places = own.collisions.iter().map(|own| (own.origin.xyz, own.origin.rpy)).collect::<Vec<_>>();
+            assert_eq!(places, other.collision.iter().map(|own| pose(&own.origin)).collect::<Vec<_>>(), "{}", own.name);
+        }
+        for (own, other) in ours.joints.iter().zip(&theirs.joints) {
+            assert_eq!(
+                (&own.name, own.origin.xyz, own.origin.rpy),
+                (&other.name, other.origin.xyz.0, other.origin.rpy.0)
+            );
+            assert_eq!((own.axis, &ours.links[own.child].name), (other.axis.xyz.0, &other.child.link));
+        }
+        // The world needs no element of its own.
+        let named =
+            ours.links.iter().filter(|own| own.name != "world" || theirs.links.iter().any(|t| t.name == own.name));
+        assert_eq!((named.count(), ours.joints.len()), (theirs.links.len(), theirs.joints.len()));
+        compared += 1;
+    }
+    assert!(compared > 4, "{compared} robots");
 }
 
 /// With an element in a revolute joint.

@@ -10,6 +10,7 @@ mod cells;
 mod digits;
 mod enumeration;
 mod redundant;
+mod self_test;
 
 use crate::balls::environment;
 use crate::support::digits::check;
@@ -229,9 +230,10 @@ fn matrices_have_exact_outcomes() {
                 .unwrap_or_else(|difference| panic!("{name}, seed {seed}: {difference}\n{}", solve_json(&problem)))
         });
         println!("{name}: {counts:?}");
-        let [compared, .., undecided, digits, _, marked] = counts;
+        let [compared, .., undecided, _, _, marked] = counts;
         let enough = counts.iter().zip(least).all(|(count, least)| *count >= least);
-        assert!(enough && undecided * 300 <= compared && marked * 300 <= digits, "{name}: {counts:?}");
+        let open = if name == "of small numbers" { 0 } else { compared / 300 };
+        assert!(enough && undecided <= open && marked <= open, "{name}: {counts:?}");
     }
 }
 
