@@ -14,7 +14,7 @@ pub(super) fn halvings(angle: f64, bits: u32) -> u32 {
 
 /// Cosine and sine of `angle` \[rad\], of which the series gives `bits` before each doubling loses up to two.
 ///
-/// The halved angle is exact and at most 1: the series alternate with falling terms, and the first left out bounds all.
+/// The halved angle is exact and at most 1: the series alternate with falling terms.
 pub(super) fn cos_sin<N: Enclosure>(angle: f64, halvings: u32, bits: u32) -> [N; 2] {
     if angle == 0.0 {
         return [N::one(), N::zero()];
@@ -28,22 +28,22 @@ pub(super) fn cos_sin<N: Enclosure>(angle: f64, halvings: u32, bits: u32) -> [N;
     }
     let square = N::from_f64(angle) * N::from_f64(angle);
     let fewer = f64::from(-libm::frexp(angle).1) * 2.0;
-    let (mut cos, mut sin) = (N::one(), N::one());
-    let (mut cos_term, mut sin_term) = (N::one(), N::one());
-    let (mut order, mut reached) = (0.0, 0.0);
-    loop {
-        cos_term = -(cos_term * square) / N::from_f64((order + 1.0) * (order + 2.0));
-        sin_term = -(sin_term * square) / N::from_f64((order + 2.0) * (order + 3.0));
-        reached += fewer + f64::from(libm::frexp((order + 1.0) * (order + 2.0)).1 - 1);
+    let (mut order, mut reached) = (0.0, fewer);
+    while reached <= f64::from(bits) {
         order += 2.0;
-        if reached > f64::from(bits) {
-            break;
-        }
-        cos = cos + cos_term;
-        sin = sin + sin_term;
+        reached += fewer + f64::from(libm::frexp(order * (order - 1.0)).1 - 1);
     }
-    cos = cos.widened(cos_term);
-    sin = sin.widened(sin_term) * N::from_f64(angle);
+    // All terms times the factorial of the last, by which the sum is divided once; with those left out the last is between
+    // 1 - x^2 and 1.
+    let last = N::one().widened(square);
+    let ([mut cos, mut sin], mut factorials) = ([last; 2], [N::one(); 2]);
+    while order > 0.0 {
+        factorials[0] = factorials[0] * N::from_f64(order * (order - 1.0));
+        factorials[1] = factorials[1] * N::from_f64(order * (order + 1.0));
+        (cos, sin) = (factorials[0] - cos * square, factorials[1] - sin * square);
+        order -= 2.0;
+    }
+    (cos, sin) = (cos / factorials[0], sin / factorials[1] * N::from_f64(angle));
     for _ in 0..halvings {
         let both = sin * cos;
         (cos, sin) = (cos * cos - sin * sin, both + both);
