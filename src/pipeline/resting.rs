@@ -208,10 +208,20 @@ fn half_units(numbers: &[f64]) -> Vec<f64> {
 
 /// How many significant digits a number has in the shortest decimal, and the power of ten of the last one.
 fn last_place(number: f64) -> (usize, i32) {
-    let text = format!("{number:e}");
-    let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
-    let digits = mantissa.bytes().filter(u8::is_ascii_digit).count();
-    (digits, exponent.parse::<i32>().unwrap_or(0) - (digits as i32 - 1))
+    let mut buffer = zmij::Buffer::new();
+    let text = buffer.format(number);
+    let (decimal, exponent) = text.split_once('e').unwrap_or((text, "0"));
+    let exponent = exponent.parse().unwrap_or(0);
+    let decimal = decimal.trim_end_matches('0');
+    let (digits, place) = match decimal.strip_suffix('.') {
+        Some(whole) => {
+            let digits = whole.trim_end_matches('0');
+            (digits, exponent + (whole.len() - digits.len()) as i32)
+        }
+        None => (decimal, exponent - decimal.find('.').map_or(0, |point| decimal.len() - point - 1) as i32),
+    };
+    let digits = digits.trim_start_matches(['-', '0', '.']).bytes().filter(u8::is_ascii_digit).count();
+    (digits, place)
 }
 
 #[cfg(test)]
@@ -225,6 +235,16 @@ mod tests {
         assert_eq!(half(&[0.566082, -1.191566, 0.5, 0.0]), [5e-7; 4]);
         // As `%.6g` does.
         assert_eq!(half(&[0.00123457, -5.88049, 1234.56]), [5e-9, 5e-6, 5e-3]);
+    }
+
+    #[test]
+    fn last_place_is_that_of_the_shortest_decimal() {
+        for number in [1.0, -0.25, 12345.0, 1_234_500.0, 0.00123457, -5.88049, 0.1 + 0.2, 1.5e-9, 1e300, -7.25e22] {
+            let text = format!("{number:e}");
+            let (mantissa, exponent) = text.split_once('e').unwrap();
+            let digits = mantissa.bytes().filter(u8::is_ascii_digit).count();
+            assert_eq!(last_place(number), (digits, exponent.parse::<i32>().unwrap() - (digits as i32 - 1)), "{text}");
+        }
     }
 
     #[test]
