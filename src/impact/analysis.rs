@@ -16,7 +16,7 @@ use super::explanation::explanation;
 use super::families::FamiliesPass;
 use super::outcome::{Analysis, OpenCombinations, Outcome, Verdict};
 use super::passes::{F64Pass, UndecidedPass};
-use super::problem::{ContactProblem, Precision, PrecisionTask, Remembered, Source, escalate};
+use super::problem::{ContactProblem, Errors, Precision, PrecisionTask, Remembered, Source, escalate};
 use super::rank::rank_and_condition;
 use super::relaxation::Relaxation;
 use super::slack::Scale;
@@ -170,7 +170,25 @@ impl Scratch {
                 pass.collected.unlisted = pass.collected.total - search.survivors.len() as u64;
             }
         }
-        let F64Pass { mut regular, undecided, mut collected, .. } = pass;
+        let F64Pass { mut regular, mut undecided, mut collected, .. } = pass;
+        let velocity = if !undecided.is_empty() && self.scale.is_slow() { source.velocity() } else { None };
+        let sharper = velocity.map(|velocity| problem.moving(&velocity));
+        let (mut problem, mut errors, mut scale) = (problem, errors, &self.scale);
+        let mut sharp_scale = Scale::default();
+        if let Some((moving, off)) = &sharper {
+            (problem, errors) = (moving, Errors { velocity: Some(off), likely: [errors.likely[0], 1.0], ..errors });
+            sharp_scale.measure(problem, errors);
+            scale = &sharp_scale;
+            self.tableau.load_entries(problem.laws(), scale.delassus(problem, errors), scale.free(problem, errors));
+            collected.total -= undecided.len() as u64;
+            (collected.problem, collected.scale) = (problem, scale);
+            let again = std::mem::take(&mut undecided);
+            let mut pass = F64Pass { labels: &mut self.labels, shares: false, regular, undecided, collected };
+            for pending in again {
+                self.tableau.visit_one(&pending.modes, &mut pass);
+            }
+            F64Pass { regular, undecided, collected, .. } = pass;
+        }
         let is_asked = !(options.brief || self.tableau.without_slip);
         // If all combinations are visited, so is the one in which every contact sticks, which shows it by itself.
         let is_shown =
@@ -181,8 +199,8 @@ impl Scratch {
         if !undecided.is_empty() {
             let first = Precision::first(regular || is_searched && self.relaxation.is_regular, problem);
             let mut pass = UndecidedPass { undecided, blunt: BTreeMap::new(), kernel, collected: &mut collected };
-            let is_enclosed = !shared.is_empty() && errors.delassus.is_finite() && self.scale.is_far_from_underflow();
-            if !(is_enclosed && pass.attempt(&self.scale.enclosed(problem, errors, shared), Precision::Enclosed)) {
+            let is_enclosed = !shared.is_empty() && errors.delassus.is_finite() && scale.is_far_from_underflow();
+            if !(is_enclosed && pass.attempt(&scale.enclosed(problem, errors, shared), Precision::Enclosed)) {
                 escalate(source, first, &mut pass);
             }
             pass.finish();
@@ -237,7 +255,6 @@ fn no_slip_consistent(outcomes: &[Outcome], open: Option<&OpenCombinations>) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::impact::problem::Errors;
     use crate::law::Friction;
     use crate::scalar::{Ordered, Trigonometry};
     use proptest::prelude::*;

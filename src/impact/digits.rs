@@ -28,6 +28,10 @@ use nalgebra::DMatrix;
 /// What a number of an outcome may be off by: 1e-10, with room for the quotient of two.
 pub const DIGITS: f64 = 4e-11;
 
+/// What the velocities of a problem may be off by, as part of their scale, before an outcome's numbers, in which that
+/// grows, likely lack digits.
+const SLOW: f64 = DIGITS / 256.0;
+
 /// The scales of an outcome's numbers, per contact.
 struct Scales<'a> {
     scale: &'a Scale,
@@ -134,6 +138,11 @@ impl Scale {
     /// Up to what bound of its error a number likely has the digits that are promised.
     pub fn digits(&self) -> f64 {
         DIGITS / self.likely_part
+    }
+
+    /// Whether the contacts are so slow that the rounding of c likely takes digits of an outcome.
+    pub fn is_slow(&self) -> bool {
+        self.likely_noise > SLOW && self.likely_noise.is_finite()
     }
 }
 

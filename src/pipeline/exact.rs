@@ -9,7 +9,7 @@ use crate::impact::{ContactProblem, Errors, Source};
 use crate::law::Law;
 use crate::planar::{Pair, Vector};
 use crate::robot::Robot;
-use crate::scalar::{Ordered, Real, Trigonometry};
+use crate::scalar::{Ball, DoubleDouble, Ordered, Real, Trigonometry};
 use crate::state::{Scene, State};
 use std::cmp::Ordering;
 
@@ -146,8 +146,8 @@ impl<'a> ExactState<'a> {
         change
     }
 
-    /// G, which leaves the assembly, and both c, once all steps are done.
-    pub fn collect<T: Real>(&self, assembly: &mut Assembly<T>) -> Contacts<T> {
+    /// c-, without what rests.
+    fn before<T: Real>(&self, assembly: &Assembly<T>) -> Vec<Pair<T>> {
         let speeds = assembly.workspace.contact_velocity.iter().zip(self.resting);
         let before = speeds.enumerate().map(|(at, (&[tangential, normal], &rests))| match self.asked {
             _ if rests => [T::zero(); 2],
@@ -155,7 +155,12 @@ impl<'a> ExactState<'a> {
             Asked::Shock(_) => [tangential, T::zero()],
             Asked::Impact | Asked::Forces(_) => [tangential, normal],
         });
-        let before = before.collect::<Vec<_>>();
+        before.collect()
+    }
+
+    /// G, which leaves the assembly, and both c, once all steps are done.
+    pub fn collect<T: Real>(&self, assembly: &mut Assembly<T>) -> Contacts<T> {
+        let before = self.before(assembly);
         let free = match self.scene.impulses.is_empty() {
             true => before.clone(),
             false => {
@@ -254,6 +259,18 @@ impl Source for ExactState<'_> {
         self.errors
     }
 
+    fn velocity(&self) -> Option<Vec<Pair<Ball<DoubleDouble>>>> {
+        let Inputs { configuration, mut velocity, plan } = self.inputs();
+        let mut assembly = self.assembly(plan);
+        assembly.configuration = configuration;
+        let is_kinematic = self.scene.impulses.is_empty() && !assembly.is_constrained();
+        (matches!(self.asked, Asked::Impact) && is_kinematic).then(|| {
+            self.place(&mut assembly);
+            self.contact_velocities(&mut assembly, &mut velocity);
+            self.before(&assembly)
+        })
+    }
+
     fn is_exact(&self) -> bool {
         self.is_rank_certain
     }
@@ -266,5 +283,69 @@ impl Source for ExactState<'_> {
         let &Level { with, .. } = self.levels.get(contact)?.as_ref()?;
         // Accelerations differ by what the body's turn brings along.
         (matches!(self.asked, Asked::Impact) && self.resting[contact] == self.resting[with]).then_some(with)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dynamics::RoundingBounds;
+    use crate::impact::{Analysis, AnalysisOptions, Scratch};
+    use crate::pipeline::{Options, Pipeline};
+    use crate::state::Defaults;
+
+    /// A state whose c is known no better than in f64.
+    struct Blurred<'a>(&'a ExactState<'a>);
+
+    impl Source for Blurred<'_> {
+        fn problem<T: Ordered + Trigonometry>(&self) -> ContactProblem<T> {
+            self.0.problem()
+        }
+
+        fn errors(&self) -> Errors<'_> {
+            self.0.errors()
+        }
+    }
+
+    #[test]
+    fn slow_contacts_are_decided_in_f64_as_by_balls() {
+        let robot = Robot::from_urdf(include_str!("../../urdf/ramone.urdf")).unwrap();
+        let mut pipeline = Pipeline::new(&robot, Options::default());
+        let beyond_f64 = |analysis: &Analysis| analysis.effort.ball + analysis.effort.double_double;
+        let (mut slow, mut decided) = (0, 0);
+        let lines = include_str!("../../examples/gait/ramone_walk.ndjson").lines();
+        for (line, noise) in lines.zip([1e-4, 1e-6, 1e-8, 1e-10].into_iter().cycle()) {
+            let mut state = State::from_json(line, &robot, &Defaults::default()).unwrap();
+            for (k, rate) in state.velocity.iter_mut().enumerate() {
+                *rate *= 1.0 + noise * f64::from(k as u32).cos();
+            }
+            let prepared = pipeline.prepare(&state).unwrap();
+            let RoundingBounds { delassus, velocity, likely, .. } = &pipeline.bounds;
+            let errors = Errors { delassus: *delassus, velocity: Some(velocity), likely: *likely };
+            let source = prepared.exact(&robot, &state, &pipeline.assembly, errors);
+            let problem = &prepared.impact.problem;
+            let analyze = |blurred: bool| match blurred {
+                true => Scratch::default().analyze(problem, &Blurred(&source), AnalysisOptions::default()).unwrap(),
+                false => Scratch::default().analyze(problem, &source, AnalysisOptions::default()).unwrap(),
+            };
+            let [sharp, blurred] = [false, true].map(analyze);
+            assert_eq!((sharp.verdict, sharp.proven), (blurred.verdict, blurred.proven), "{line}");
+            assert_eq!(sharp.outcomes.len(), blurred.outcomes.len(), "{line}");
+            for (own, other) in sharp.outcomes.iter().zip(&blurred.outcomes) {
+                assert_eq!((&own.modes, own.index), (&other.modes, other.index), "{line}");
+                let [own, other] =
+                    [own, other].map(|own| [&own.impulse, &own.velocity_after].map(|list| list.as_flattened()));
+                for (own, other) in own.into_iter().zip(other) {
+                    let scale = other.iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
+                    let near = own.iter().zip(other).all(|(own, other)| (own - other).abs() <= 1e-10 * scale);
+                    assert!(near, "{own:?} is not {other:?} of {line}");
+                }
+            }
+            if beyond_f64(&blurred) > 0 {
+                slow += 1;
+                decided += usize::from(beyond_f64(&sharp) == 0);
+            }
+        }
+        assert!(decided > 50 && decided * 10 > slow * 9, "{decided} of {slow} in f64");
     }
 }

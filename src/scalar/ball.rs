@@ -51,6 +51,11 @@ impl<M: Midpoint> Ball<M> {
         if known { Self { mid, radius: radius * BLOW_UP } } else { Self::unknown() }
     }
 
+    /// How far the number may be from [`Ordered::to_f64`].
+    pub fn error_of_nearest(self) -> f64 {
+        (self.mid.parts()[1].abs() + self.radius) * BLOW_UP
+    }
+
     fn is_exact_zero(self) -> bool {
         self.mid.parts() == [0.0; 2] && self.radius == 0.0
     }

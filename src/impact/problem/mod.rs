@@ -22,7 +22,7 @@ use self::repair::{FactorRows, is_semidefinite};
 use crate::error::{Error, Reason, Result, finite};
 use crate::law::{Friction, Law};
 use crate::planar::Pair;
-use crate::scalar::{Ordered, Real, Sign};
+use crate::scalar::{Ball, DoubleDouble, Ordered, Real, Sign};
 
 /// A contact problem of n contacts; vectors have two entries per contact, [tangential, normal].
 ///
@@ -248,9 +248,23 @@ impl ContactProblem {
         self.complete()
     }
 
-    fn complete(&mut self) -> Result<()> {
+    /// The same problem for the nearest f64 of another `velocity` before, which nothing was applied to, and what it is off
+    /// by \[m/s\].
+    pub(super) fn moving(&self, velocity: &[Pair<Ball<DoubleDouble>>]) -> (Self, Vec<Pair<f64>>) {
+        let nearest: Vec<Pair<f64>> = velocity.iter().map(|c| c.map(Ordered::to_f64)).collect();
+        let off = velocity.iter().map(|c| c.map(Ball::error_of_nearest)).collect();
+        let mut problem = Self { velocity_before: nearest.clone(), velocity_free: nearest, ..self.clone() };
+        problem.take_approach();
+        (problem, off)
+    }
+
+    fn take_approach(&mut self) {
         self.approach.clear();
         self.approach.extend(self.velocity_before.iter().map(|c| c[1].min(0.0)));
+    }
+
+    fn complete(&mut self) -> Result<()> {
+        self.take_approach();
         self.check_contacts()?;
         self.check_range()
     }

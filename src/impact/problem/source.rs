@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!     f64 with an error bound --> plain balls --> balls --> balls around pairs of f64 --> intervals of 256, 1024, 4096 bits
-//!          (and balls around it)
+//!          (again with c from pairs of f64, if the robot is slow; and balls around it)
 //! ```
 //!
 //! From the balls on, each number also has a residue that shows whether it is exactly zero (see
@@ -24,6 +24,11 @@ pub trait Source {
 
     /// What the f64 problem may be off by.
     fn errors(&self) -> Errors<'_>;
+
+    /// c- by itself, which is also c_free, far more closely than `errors` says; `None` if that takes as long as all else.
+    fn velocity(&self) -> Option<Vec<Pair<Ball<DoubleDouble>>>> {
+        None
+    }
 
     /// Whether the numbers are what was asked about, so that what is shown of them is proven.
     fn is_exact(&self) -> bool {
@@ -67,6 +72,10 @@ impl<S: Source> Source for Remembered<'_, S> {
 
     fn errors(&self) -> Errors<'_> {
         self.source.errors()
+    }
+
+    fn velocity(&self) -> Option<Vec<Pair<Ball<DoubleDouble>>>> {
+        self.source.velocity()
     }
 
     fn is_exact(&self) -> bool {
