@@ -1,6 +1,6 @@
 //! XML elements -> links and joints: checked and located.
 
-use super::elements::{ByName, EXPAND, IgnoredCount, WORLD, undefined_world};
+use super::elements::{ByName, EXPAND, IgnoredCount, WORLD, misspelt, undefined_world};
 use super::repair::Repaired;
 use super::xml::{self, Cursor, MOST_LINKS, Unparsed};
 use super::{Collision, Description, JointKind, UrdfJoint, UrdfLink, joint_place, link_place, values};
@@ -63,7 +63,11 @@ fn read_document(document: &Document<'_>) -> Result<Description> {
         joints: Vec::with_capacity(joints.elements.len()),
         root: 0,
         ignored: Vec::new(),
+        misspelt: Vec::new(),
     };
+    for &(_, element, _) in links.elements.iter().chain(&joints.elements) {
+        misspelt(element, &mut description.misspelt);
+    }
     let mut shapes = 0;
     for &(name, element, location) in &links.elements {
         let link = read_link(name, element, location, &mut ignored).and_then(|link| {

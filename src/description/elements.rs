@@ -77,3 +77,55 @@ impl IgnoredCount {
         Ok(())
     }
 }
+
+/// What is read of elements: their attributes and their children.
+const READ: [(&str, &[&str], &[&str]); 16] = [
+    ("link", &["name"], &["inertial", "collision", "visual"]),
+    ("joint", &["name", "type"], &["origin", "parent", "child", "axis", "mimic", "limit"]),
+    ("inertial", &[], &["origin", "mass", "inertia"]),
+    ("collision", &[], &["origin", "geometry"]),
+    ("geometry", &[], &["box", "cylinder", "capsule", "sphere", "mesh"]),
+    ("origin", &["xyz", "rpy"], &[]),
+    ("axis", &["xyz"], &[]),
+    ("mimic", &["joint", "multiplier", "offset"], &[]),
+    ("limit", &["lower", "upper"], &[]),
+    ("mass", &["value"], &[]),
+    ("inertia", &["ixx", "ixy", "ixz", "iyy", "iyz", "izz"], &[]),
+    ("box", &["size"], &[]),
+    ("cylinder", &["radius", "length"], &[]),
+    ("capsule", &["radius", "length"], &[]),
+    ("sphere", &["radius"], &[]),
+    ("mesh", &["filename", "scale"], &[]),
+];
+
+/// The most misspelt names that are kept.
+const MOST_MISSPELT: usize = 100;
+
+/// Adds the names of attributes and elements in a link or a joint that are not read, but a letter away from one that is
+/// and that is not there.
+pub(super) fn misspelt(element: Node<'_, '_>, found: &mut Vec<String>) {
+    let mut waiting = vec![element];
+    while let Some(element) = waiting.pop().filter(|_| found.len() < MOST_MISSPELT) {
+        let tag = element.tag_name().name();
+        let Some((_, attributes, children)) = READ.iter().find(|(known, ..)| *known == tag) else { continue };
+        let line = |node: Node| node.document().text_pos_at(node.range().start).row;
+        for name in element.attributes().filter(|own| own.namespace().is_none()).map(|own| own.name()) {
+            let meant = attributes.iter().find(|known| is_slip(name, known) && !element.has_attribute(**known));
+            found.extend(meant.map(|meant| format!("{name} of <{tag}> on line {} ({meant}?)", line(element))));
+        }
+        let inside: Vec<_> = element.children().filter(Node::is_element).collect();
+        let has = |tag: &str| inside.iter().any(|child| child.tag_name().name() == tag);
+        for child in inside.iter().rev() {
+            let name = child.tag_name().name();
+            let meant = children.iter().find(|known| is_slip(name, known) && !has(known));
+            found.extend(meant.map(|meant| format!("<{name}> in <{tag}> on line {} (<{meant}>?)", line(*child))));
+            waiting.push(*child);
+        }
+    }
+}
+
+/// Whether a name is a letter away from another one that is known.
+fn is_slip(name: &str, known: &str) -> bool {
+    let is_near = name.len().abs_diff(known.len()) <= 1 && strsim::osa_distance(name, known) == 1;
+    name != known && (is_near || name.eq_ignore_ascii_case(known))
+}

@@ -47,6 +47,8 @@ pub struct Description {
     pub root: usize,
     /// Elements that were passed over, in the order in which they first occur.
     pub ignored: Vec<Ignored>,
+    /// Attributes and elements that are not read and perhaps misspelt, each with its line and what may be meant.
+    pub misspelt: Vec<String>,
 }
 
 /// A link of the file.

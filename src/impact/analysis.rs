@@ -82,7 +82,7 @@ impl Scratch {
         let open = (undecided > 0).then(|| OpenCombinations { combinations, undecided, beyond_budget: is_spent() });
         let indices = || outcomes.iter().map(|outcome| outcome.index.map(i32::from)).sum();
         let ranked = || rank_and_condition(problem, source, &self.scale, regular, options.reductions);
-        let (rank, condition) = (!options.brief).then(ranked).unzip();
+        let (rank, condition) = (!options.brief).then(ranked).flatten().unzip();
         let is_explained = options.rejections == ListedRejections::Everything && rank == Some(2 * contacts);
         Ok(Analysis {
             verdict: verdict(contacts, &outcomes, open.is_some()),

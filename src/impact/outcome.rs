@@ -345,7 +345,7 @@ pub struct Analysis {
     pub unlisted: u64,
     /// Sum of the outcomes' indices; `None` if one of them has none.
     pub index_sum: Option<i32>,
-    /// Rank of the Delassus matrix; `None` if it is not asked for.
+    /// Rank of the Delassus matrix; `None` if it is not asked for or not known within the budget.
     pub rank: Option<usize>,
     /// Condition number of the Delassus matrix scaled to a unit diagonal; `None` if it is singular, or not asked for.
     pub condition: Option<f64>,

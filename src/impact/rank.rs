@@ -3,6 +3,7 @@
 use super::linear::solve;
 use super::problem::{ContactProblem, Precision, PrecisionTask, Source, escalate};
 use super::slack::Scale;
+use crate::budget::is_spent;
 use crate::reductions::Reductions;
 use crate::scalar::Ordered;
 use nalgebra::DMatrix;
@@ -14,10 +15,10 @@ pub fn rank_and_condition<S: Source>(
     scale: &Scale,
     regular: bool,
     reductions: Reductions,
-) -> (usize, Option<f64>) {
+) -> Option<(usize, Option<f64>)> {
     let rows = 2 * problem.contacts();
     if rows == 0 {
-        return (0, None);
+        return Some((0, None));
     }
     let mobility = &scale.mobility;
     let scaled = |i: usize, j: usize| problem.delassus(i, j) / (mobility[i] * mobility[j]);
@@ -25,7 +26,7 @@ pub fn rank_and_condition<S: Source>(
     let own: Vec<usize> = (0..rows).filter(is_own).collect();
     let without_shared = || DMatrix::from_fn(own.len(), own.len(), |i, j| scaled(own[i], own[j]));
     if own.len() < rows && scale.is_far_from_underflow() && is_definite(without_shared(), source.errors().delassus) {
-        return (own.len(), None);
+        return Some((own.len(), None));
     }
     let [least, greatest] = if problem.contacts() == 1 && reductions.lone {
         // G of a single contact scaled to a unit diagonal: [[1, r], [r, 1]].
@@ -36,20 +37,21 @@ pub fn rank_and_condition<S: Source>(
         [values.min(), values.max()]
     };
     if regular && greatest < F64_CONDITION_LIMIT * least {
-        return (rows, Some(greatest / least));
+        return Some((rows, Some(greatest / least)));
     }
     let mut inverse = Inverse { mobility: mobility.clone(), ..Inverse::default() };
     escalate(source, Precision::Ball, &mut inverse);
-    match inverse.rank {
+    Some(match inverse.rank {
         Some(rank) if rank < rows => (rank, None),
         Some(rank) => {
             let inverse = DMatrix::from_fn(rows, rows, |i, j| 0.5 * (inverse.rows[i][j] + inverse.rows[j][i]));
             let condition = greatest * inverse.symmetric_eigenvalues().max();
             (rank, condition.is_finite().then_some(condition))
         }
+        None if is_spent() => return None,
         // No precision shows whether the rank is full.
         None => (rows, None),
-    }
+    })
 }
 
 /// The least eigenvalue of a scaled G that counts as regular.

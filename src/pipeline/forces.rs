@@ -159,6 +159,9 @@ impl Pipeline<'_> {
             // Those of an impact are infinite.
             self.bound_velocities(contacts, levels, velocity, Standing { foot: foot.as_ref(), place: *stance });
         }
+        if state.scene.gravity() < 0.0 {
+            notes.push("gravity is negative, so it acts upward: 9.81 is that of the earth".into());
+        }
         let slips = self.slips(state, velocity, contacts, foot.as_ref(), notes)?;
         for (contact, _) in contacts.iter().zip(&slips).filter(|(_, slip)| slip.is_none()) {
             notes.push(format!("{} leaves the ground, and takes no part", contact.name));

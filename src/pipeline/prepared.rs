@@ -120,7 +120,7 @@ impl Pipeline<'_> {
         left_out.clear();
         notes.clear();
         notes.extend(state.odd_joints(self.robot));
-        self.note_unused_laws(scene, notes);
+        self.note_unused_laws(state, notes);
         state.velocity.clone_into(velocity);
         (*placement, *foot) = self.stand(state, &surface, velocity, take(placement))?;
         self.close_loops(&scene.loops, &state.position, foot.as_ref(), velocity, notes)?;
@@ -187,11 +187,13 @@ impl Pipeline<'_> {
     }
 
     /// Notes friction and restitution of links on which nothing can touch.
-    fn note_unused_laws(&self, scene: &Scene, notes: &mut Vec<String>) {
+    fn note_unused_laws(&self, State { scene, uncertainty, .. }: &State, notes: &mut Vec<String>) {
         let named = |link| scene.contacts.iter().flatten().any(|contact| contact.link == link);
         let has_foot = |link| self.feet.iter().any(|foot| foot.link == link) || named(link);
         let given = scene.friction.links.keys().map(|link| ("friction", *link));
         let given = given.chain(scene.restitution.links.keys().map(|link| ("restitution", *link)));
+        let uncertain = uncertainty.iter().flat_map(|uncertainty| uncertainty.friction.links.keys());
+        let given = given.chain(uncertain.map(|link| ("uncertainty of friction", *link)));
         notes.extend(given.filter(|(_, link)| !has_foot(*link)).map(|(what, link)| {
             format!("{what} is given to {}, which has no foot: it has no effect", self.robot.links[link].name)
         }));
@@ -379,6 +381,10 @@ impl Pipeline<'_> {
         let Reason::Penetration { link, depth, tolerance, .. } = error.reason() else { return error };
         let velocity = lowest.filter(|foot| self.robot.links[foot.link].name == *link).map(|foot| foot.velocity);
         let hint = match (state.scene.stance, error.remedy()) {
+            _ if !self.assembly.plan.floating => {
+                "the robot is bolted to the world: correct its joints or the height of the ground, or give `base: floating`"
+                    .to_owned()
+            }
             (Some(_), _) | (_, None) => format!(
                 "a stance leaves the other feet where the pose puts them: correct the pitch or the joints, stand on \
                  {link}, or give `place: lowest` instead of the stance"

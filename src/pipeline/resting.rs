@@ -206,10 +206,12 @@ fn half_units(numbers: &[f64]) -> Vec<f64> {
     last_places.iter().map(half_unit).collect()
 }
 
-/// How many significant digits a number has in the shortest decimal, and the power of ten of the last one.
+/// How many significant digits a number has in the shortest decimal of its precision, and the power of ten of the last
+/// one.
 fn last_place(number: f64) -> (usize, i32) {
-    let mut buffer = zmij::Buffer::new();
-    let text = buffer.format(number);
+    let (mut buffer, single) = (zmij::Buffer::new(), number as f32);
+    // A number of f32 was rounded there, whatever digits it has in f64.
+    let text = if f64::from(single) == number { buffer.format(single) } else { buffer.format(number) };
     let (decimal, exponent) = text.split_once('e').unwrap_or((text, "0"));
     let exponent = exponent.parse().unwrap_or(0);
     let decimal = decimal.trim_end_matches('0');
@@ -245,6 +247,12 @@ mod tests {
             let digits = mantissa.bytes().filter(u8::is_ascii_digit).count();
             assert_eq!(last_place(number), (digits, exponent.parse::<i32>().unwrap() - (digits as i32 - 1)), "{text}");
         }
+    }
+
+    #[test]
+    fn numbers_of_f32_were_rounded_to_it() {
+        let widened = [0.339_661_72_f32, -1.191_566_f32, 0.5].map(f64::from);
+        assert_eq!(half_units(&widened), [5e-9, 5e-7, 5e-9]);
     }
 
     #[test]

@@ -76,6 +76,12 @@ pub(super) fn about_outside(description: &Description, outside: &[&UrdfLink]) ->
     })
 }
 
+/// The caution about names in the file that are perhaps misspelt.
+pub(super) fn about_spelling(description: &Description) -> Option<String> {
+    let names = names(description.misspelt.iter().map(String::as_str));
+    (!description.misspelt.is_empty()).then(|| format!("not read, and perhaps misspelt: {names}"))
+}
+
 /// The caution about joints that move, but whose `<axis>` the file leaves out.
 pub(super) fn about_axes(description: &Description) -> Option<String> {
     let without = description.joints.iter().filter(|joint| joint.kind.has_axis() && !joint.has_axis);

@@ -1,13 +1,13 @@
 //! COLLADA (DAE) -> vertices.
 //!
 //! ```text
-//!     p = axes (unit (T_1 ... T_k p_mesh))         T_1 ... T_k: the transformations of the nodes from the scene inward
+//!     p = unit (T_1 ... T_k p_mesh)         T_1 ... T_k: the transformations of the nodes from the scene inward
 //! ```
 //!
 //! Only what places vertices is read (COLLADA 1.4.1, chapters 5 and 6): asset, visual scene, nodes and the positions of
-//! geometries, those of skins in their bind shape. A file without a visual scene has its geometries as they are; one
-//! without an up axis has z up, as in the URDF (so in every tool of ROS, although COLLADA's own default is y). Nothing
-//! recurses, and node instances are counted: a file of a few lines could ask for 2^100 of them.
+//! geometries, those of skins in their bind shape. A file without a visual scene has its geometries as they are. Its up
+//! axis is not read, as in RViz, MoveIt, Gazebo and Pinocchio: many files of robots say y although they have the axes of
+//! their link. Nothing recurses, and node instances are counted: a file of a few lines could ask for 2^100 of them.
 
 use super::super::pose::{Matrix, apply, product, turn, unit};
 use super::super::xml;
@@ -38,20 +38,9 @@ pub(super) fn vertices(bytes: &[u8]) -> Result<Vec<[f64; 3]>, String> {
     if root.tag_name().name() != "COLLADA" {
         return Err(format!("the outermost element is <{}> and not <COLLADA>", root.tag_name().name()));
     }
-    Shown::new(&document).vertices((axes(root)?, [0.0; 3]))
-}
-
-/// The turn of the file's axes to z up and the scale of its unit to meters.
-fn axes(root: Node<'_, '_>) -> Result<Matrix, String> {
-    let asset = |tag| child(child(root, "asset")?, tag);
-    let meters = asset("unit").and_then(|unit| unit.attribute("meter")).map_or(Ok(1.0), number)?;
-    let turn = match asset("up_axis").and_then(|up| up.text()).map(str::trim) {
-        Some("X_UP") => [[0.0, -1.0, 0.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]],
-        Some("Y_UP") => [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]],
-        Some("Z_UP") | None => IDENTITY,
-        Some(other) => return Err(format!("unknown <up_axis> \"{other}\"")),
-    };
-    Ok(turn.map(|row| row.map(|entry| meters * entry)))
+    let unit = child(root, "asset").and_then(|asset| child(asset, "unit"));
+    let meters = unit.and_then(|unit| unit.attribute("meter")).map_or(Ok(1.0), number)?;
+    Shown::new(&document).vertices((IDENTITY.map(|row| row.map(|entry| meters * entry)), [0.0; 3]))
 }
 
 /// A document, its elements by id, what was read of its geometries, and the vertices that its scene shows.
@@ -137,8 +126,14 @@ impl<'a, 'input: 'a> Shown<'a, 'input> {
             let position = |node: &Node<'_, '_>| is(*node, "input") && node.attribute("semantic") == Some("POSITION");
             let Some(input) = vertices.children().find(position) else { continue };
             let source = self.target(input, "source")?;
-            let values = child(source, "float_array").and_then(|array| array.text()).unwrap_or_default();
+            let array = child(source, "float_array");
+            let values = array.map(text).unwrap_or_default();
             let values: Vec<f64> = values.split_whitespace().map(number).collect::<Result<_, _>>()?;
+            let announced =
+                array.and_then(|array| array.attribute("count")).map_or(values.len().to_string(), str::to_owned);
+            if announced.trim().parse() != Ok(values.len()) {
+                return Err(format!("{announced} numbers are announced, {} are there", values.len()));
+            }
             let accessor = child(source, "technique_common").and_then(|common| child(common, "accessor"));
             let count = |name, default| {
                 let value = accessor.and_then(|accessor| accessor.attribute(name));
@@ -196,9 +191,13 @@ fn moved((linear, offset): &Transform, point: [f64; 3]) -> [f64; 3] {
 }
 
 fn numbers<const N: usize>(element: Node<'_, '_>) -> Result<[f64; N], String> {
-    let values: Vec<f64> =
-        element.text().unwrap_or_default().split_whitespace().take(N + 1).map(number).collect::<Result<_, _>>()?;
+    let values: Vec<f64> = text(element).split_whitespace().take(N + 1).map(number).collect::<Result<_, _>>()?;
     values.try_into().map_err(|_| format!("<{}> needs {N} numbers", element.tag_name().name()))
+}
+
+/// The text of an element, without the comments in it.
+fn text(element: Node<'_, '_>) -> String {
+    element.children().filter(Node::is_text).filter_map(|part| part.text()).collect()
 }
 
 fn number(word: &str) -> Result<f64, String> {

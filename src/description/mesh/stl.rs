@@ -13,13 +13,13 @@ pub(super) fn vertices(bytes: &[u8]) -> Result<Vec<[f64; 3]>, String> {
     Ok(scene.meshes.iter().flat_map(|mesh| &mesh.vertices).map(|vertex| vertex.map(f64::from)).collect())
 }
 
-/// ASCII in small letters, as some programs write it in capitals; binary without what follows its last triangle. A
-/// binary file that is cut short is refused: mesh-loader would read what is there.
+/// ASCII in small letters, as some programs write it in capitals; binary without what follows its last triangle, and not
+/// beginning with "solid", by which mesh-loader takes it for ASCII if a byte of its number of triangles is a line break
+/// (the feet of Solo and Bolt). A binary file that is cut short is refused: mesh-loader would read what is there.
 fn tidied(bytes: &[u8]) -> Result<Cow<'_, [u8]>, String> {
     let begin = bytes.trim_ascii_start();
-    let is_text =
-        begin.len() >= 5 && begin[..5].eq_ignore_ascii_case(b"solid") && bytes.is_ascii() && !bytes.contains(&0);
-    if is_text {
+    let begins_as_text = begin.len() >= 5 && begin[..5].eq_ignore_ascii_case(b"solid");
+    if begins_as_text && bytes.is_ascii() && !bytes.contains(&0) {
         return Ok(bytes.to_ascii_lowercase().into());
     }
     let Some(&[a, b, c, d]) = bytes.get(HEADER - 4..HEADER).and_then(|count| count.first_chunk()) else {
@@ -28,7 +28,13 @@ fn tidied(bytes: &[u8]) -> Result<Cow<'_, [u8]>, String> {
     let announced = u32::from_le_bytes([a, b, c, d]);
     let present = (bytes.len() - HEADER) / TRIANGLE;
     match usize::try_from(announced) {
-        Ok(count) if count <= present => Ok(bytes[..HEADER + count * TRIANGLE].into()),
+        Ok(count) if count <= present => {
+            let mut whole = Cow::from(&bytes[..HEADER + count * TRIANGLE]);
+            if begins_as_text {
+                whole.to_mut()[..HEADER - 4].fill(b' ');
+            }
+            Ok(whole)
+        }
         _ => Err(format!("{announced} triangles are announced, {present} are there")),
     }
 }

@@ -13,20 +13,12 @@ use csv::ByteRecord;
 use serde_json::value::RawValue;
 use std::borrow::Cow;
 
-/// Whether a line of JSON is a flat state; `None` if it is blank, or broken and looks like one.
+/// Whether a line of JSON is a flat state; `None` if it is blank or broken.
 pub fn is_flat(line: &[u8]) -> Option<bool> {
     let is_coordinate = |name: &str| name.starts_with("q_") || name.starts_with("v_");
-    match fields(line) {
-        _ if line.trim_ascii().is_empty() => None,
-        Ok(fields) => {
-            let any = |wanted: &dyn Fn(&str) -> bool| fields.iter().any(|(key, _)| wanted(key));
-            Some(any(&is_coordinate) && !any(&|key| matches!(key, "position" | "velocity")))
-        }
-        Err(_) => {
-            let mut words = line.split(|&byte| byte == b'"').filter_map(|word| str::from_utf8(word).ok());
-            if words.any(is_coordinate) { None } else { Some(false) }
-        }
-    }
+    let fields = fields(line).ok()?;
+    let any = |wanted: &dyn Fn(&str) -> bool| fields.iter().any(|(key, _)| wanted(key));
+    Some(any(&is_coordinate) && !any(&|key| matches!(key, "position" | "velocity")))
 }
 
 /// The keys of a line.

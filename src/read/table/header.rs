@@ -33,6 +33,21 @@ const OTHERS: [(&str, TableColumn); 5] = [
     ("time", TableColumn::Carried),
 ];
 
+/// Fields of a state for which a table has no columns.
+const OF_STATES: [&str; 11] = [
+    "position",
+    "velocity",
+    "ground",
+    "place",
+    "held",
+    "rotor_inertia",
+    "contacts",
+    "impulse",
+    "virtual",
+    "loops",
+    "uncertainty",
+];
+
 /// The most columns of a table: each name is compared with those of all coordinates.
 const COLUMN_LIMIT: usize = 100_000;
 
@@ -111,7 +126,8 @@ impl Header {
             return Err(Error::new(Reason::TooMany { what: "columns", limit: COLUMN_LIMIT }).on(1, 1));
         }
         if let Some(absent) = foreign.iter().find(|name| !names.contains(name)) {
-            let error = in_table(Reason::Missing(format!("column \"{}\", given as foreign,", short(absent))), "");
+            let error =
+                Error::new(Reason::Missing(format!("column \"{}\", given as foreign,", short(absent)))).on(1, 1);
             return Err(error.did_you_mean(absent, names.iter().map(String::as_str)));
         }
         let mut columns = Vec::with_capacity(names.len());
@@ -169,8 +185,16 @@ impl Header {
         positions.chain(velocities).map(|(_, name)| name).collect()
     }
 
-    /// Refuses a column that is carried through and resembles one that is missing, unless it is said to be foreign.
+    /// Refuses a column that is carried through and is called as a field of states or resembles one that is missing,
+    /// unless it is said to be foreign.
     fn check_foreign(&self, record: Record) -> Result<()> {
+        let mut carried = self.places(TableColumn::Carried).filter(|&at| !self.is_foreign(&self.names[at]));
+        if let Some(at) = carried.find(|&at| OF_STATES.contains(&self.names[at].as_str())) {
+            let name = &self.names[at];
+            let reason = format!("\"{name}\" is a field of states, and tables have no column for it");
+            let hint = format!("give the states as lines of JSON, or `foreign: {name}` to copy the column");
+            return Err(self.in_column(Error::new(Reason::Inconsistent(reason)).hint(hint), record, at));
+        }
         let others = OTHERS.iter().map(|(name, _)| *name).filter(|name| !self.names.iter().any(|given| given == name));
         let missing: Vec<&str> = self.missing.iter().map(String::as_str).chain(others).collect();
         let carried = self.places(TableColumn::Carried).filter(|&at| !self.is_foreign(&self.names[at]));
@@ -395,6 +419,9 @@ fn resembles(name: &str, known: &str) -> bool {
         return false;
     }
     let (name, known) = (plain(name), plain(known));
+    if known == "friction" && matches!(name.as_str(), "mu" | "friction_coefficient") {
+        return true;
+    }
     let words = match known.as_bytes() {
         [b'q', b'_', ..] => &["q", "pos", "position", "angle"][..],
         [b'v', b'_', ..] => &["v", "vel", "velocity", "dq", "qd", "qdot"],
