@@ -105,27 +105,36 @@ const MOST_MISSPELT: usize = 100;
 /// and that is not there.
 pub(super) fn misspelt(element: Node<'_, '_>, found: &mut Vec<String>) {
     let mut waiting = vec![element];
-    while let Some(element) = waiting.pop().filter(|_| found.len() < MOST_MISSPELT) {
+    while let Some(element) = waiting.pop() {
         let tag = element.tag_name().name();
         let Some((_, attributes, children)) = READ.iter().find(|(known, ..)| *known == tag) else { continue };
         let line = |node: Node| node.document().text_pos_at(node.range().start).row;
-        for name in element.attributes().filter(|own| own.namespace().is_none()).map(|own| own.name()) {
-            let meant = attributes.iter().find(|known| is_slip(name, known) && !element.has_attribute(**known));
-            found.extend(meant.map(|meant| format!("{name} of <{tag}> on line {} ({meant}?)", line(element))));
+        let given = || element.attributes().filter(|own| own.namespace().is_none()).map(|own| own.name());
+        for (name, meant) in misread(given, attributes).take(MOST_MISSPELT.saturating_sub(found.len())) {
+            found.push(format!("{name} of <{tag}> on line {} ({meant}?)", line(element)));
         }
-        let inside: Vec<_> = element.children().filter(Node::is_element).collect();
-        let has = |tag: &str| inside.iter().any(|child| child.tag_name().name() == tag);
-        for child in inside.iter().rev() {
-            let name = child.tag_name().name();
-            let meant = children.iter().find(|known| is_slip(name, known) && !has(known));
-            found.extend(meant.map(|meant| format!("<{name}> in <{tag}> on line {} (<{meant}>?)", line(*child))));
-            waiting.push(*child);
+        let inside = || element.children().filter(Node::is_element);
+        let tags = || inside().map(|child| child.tag_name().name());
+        for (name, meant) in misread(tags, children).take(MOST_MISSPELT.saturating_sub(found.len())) {
+            found.push(format!("<{name}> in <{tag}> on line {} (<{meant}>?)", line(element)));
         }
+        let first = waiting.len();
+        waiting.extend(inside());
+        waiting[first..].reverse();
     }
 }
 
-/// Whether a name is a letter away from another one that is known.
-fn is_slip(name: &str, known: &str) -> bool {
-    let is_near = name.len().abs_diff(known.len()) <= 1 && strsim::osa_distance(name, known) == 1;
-    name != known && (is_near || name.eq_ignore_ascii_case(known))
+/// Of the `given` names those that are not `known`, but may be meant as one that is and that is not given.
+fn misread<'a, I: Iterator<Item = &'a str>>(
+    given: impl Fn() -> I,
+    known: &'static [&'static str],
+) -> impl Iterator<Item = (&'a str, &'static str)> {
+    let absent: Vec<&str> = known.iter().copied().filter(|known| given().all(|name| name != *known)).collect();
+    let is_near = |name: &str, known: &str| {
+        name.eq_ignore_ascii_case(known)
+            || name.len().abs_diff(known.len()) <= 1 && strsim::osa_distance(name, known) == 1
+    };
+    given()
+        .filter(|name| !known.contains(name))
+        .filter_map(move |name| Some((name, *absent.iter().find(|known| is_near(name, known))?)))
 }

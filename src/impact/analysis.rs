@@ -171,8 +171,9 @@ impl Scratch {
             }
         }
         let F64Pass { mut regular, mut undecided, mut collected, .. } = pass;
-        let velocity = if !undecided.is_empty() && self.scale.is_slow() { source.velocity() } else { None };
-        let sharper = velocity.map(|velocity| problem.moving(&velocity));
+        // Slow contacts often lack only digits of their own velocities, and these are soon computed.
+        let is_blurred = !undecided.is_empty() && self.scale.is_slow() && !is_spent();
+        let sharper = if is_blurred { source.velocity() } else { None }.map(|velocity| problem.moving(&velocity));
         let (mut problem, mut errors, mut scale) = (problem, errors, &self.scale);
         let mut sharp_scale = Scale::default();
         if let Some((moving, off)) = &sharper {
@@ -184,9 +185,7 @@ impl Scratch {
             (collected.problem, collected.scale) = (problem, scale);
             let again = std::mem::take(&mut undecided);
             let mut pass = F64Pass { labels: &mut self.labels, shares: false, regular, undecided, collected };
-            for pending in again {
-                self.tableau.visit_one(&pending.modes, &mut pass);
-            }
+            again.iter().for_each(|pending| self.tableau.visit_one(&pending.modes, &mut pass));
             F64Pass { regular, undecided, collected, .. } = pass;
         }
         let is_asked = !(options.brief || self.tableau.without_slip);

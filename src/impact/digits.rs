@@ -28,8 +28,10 @@ use nalgebra::DMatrix;
 /// What a number of an outcome may be off by: 1e-10, with room for the quotient of two.
 pub const DIGITS: f64 = 4e-11;
 
-/// What the velocities of a problem may be off by, as part of their scale, before an outcome's numbers, in which that
-/// grows, likely lack digits.
+/// Less work has lost digits to underflow \[J\].
+const LEAST_WORK: f64 = f64::MIN_POSITIVE / f64::EPSILON;
+/// What the velocities of a problem may be off by, as part of their scale, before an outcome's numbers likely lack
+/// digits: an elimination of two contacts rarely makes more than this of it.
 const SLOW: f64 = DIGITS / 256.0;
 
 /// The scales of an outcome's numbers, per contact.
@@ -256,7 +258,9 @@ impl Candidate<'_> {
                 }
             }
         }
-        doubt <= DIGITS * f64::abs(work)
+        // Where products underflow, both may vanish.
+        let is_pressed = motion.impulse.as_flattened().iter().any(|&entry| entry != 0.0);
+        doubt <= DIGITS * f64::abs(work) && (!is_pressed || f64::abs(work) > LEAST_WORK)
     }
 
     /// As [`Candidate::serves`], entry by entry, with B that of the generators (Higham 2002, section 7.2).

@@ -347,7 +347,7 @@ pub struct Analysis {
     pub index_sum: Option<i32>,
     /// Rank of the Delassus matrix; `None` if it is not asked for or not known within the budget.
     pub rank: Option<usize>,
-    /// Condition number of the Delassus matrix scaled to a unit diagonal; `None` if it is singular, or not asked for.
+    /// Condition number of the Delassus matrix scaled to a unit diagonal; `None` if it is singular, or has no `rank`.
     pub condition: Option<f64>,
     /// Whether some outcome has no sliding contact; `None` if that depends on an undecided combination.
     pub no_slip_consistent: Option<bool>,

@@ -25,6 +25,9 @@ const CANCELED: f64 = 1e-4;
 /// Numbers with so many significant digits were rounded to them; with fewer they are meant, with more they are f64.
 const ROUNDED: RangeInclusive<usize> = 6..=15;
 
+/// The last place of a number of f32, relative to it, at most.
+const ULP_OF_F32: f64 = f32::EPSILON as f64;
+
 /// What the note on a resting contact says behind its name, before the speeds.
 pub(crate) const AT_REST: &str = " is taken as exactly at rest";
 
@@ -192,26 +195,31 @@ fn length(pair: Pair<f64>) -> f64 {
 }
 
 /// Half a unit in the last decimal place to which each number was rounded: its own if it has six to fifteen significant
-/// digits (in the shortest decimal that is the number); if it has fewer, the finest of the others, because the zeros at
-/// its end are lost; else 0.
+/// digits (in the shortest decimal that is the number), or its rounding to f32, if that is greater and the number is one
+/// of these; if it has fewer, the finest of the others, because the zeros at its end are lost; else 0.
 fn half_units(numbers: &[f64]) -> Vec<f64> {
     let last_places: Vec<(usize, i32)> = numbers.iter().map(|&number| last_place(number)).collect();
     let finest = last_places.iter().filter(|(digits, _)| ROUNDED.contains(digits)).map(|&(_, place)| place).min();
     let half = |place: i32| 0.5 * libm::exp10(f64::from(place));
-    let half_unit = |&(digits, place): &(usize, i32)| match finest {
+    let half_unit = |(&number, &(digits, place)): (&f64, &(usize, i32))| match finest {
+        Some(_) if ROUNDED.contains(&digits) && is_single(number) => half(place).max(0.5 * ULP_OF_F32 * number.abs()),
         Some(_) if ROUNDED.contains(&digits) => half(place),
         Some(finest) if digits < *ROUNDED.start() => half(finest),
         _ => 0.0,
     };
-    last_places.iter().map(half_unit).collect()
+    numbers.iter().zip(&last_places).map(half_unit).collect()
+}
+
+/// Whether a number is one of f32, to which it was rounded then, whatever digits it has in f64.
+fn is_single(number: f64) -> bool {
+    f64::from(number as f32) == number
 }
 
 /// How many significant digits a number has in the shortest decimal of its precision, and the power of ten of the last
 /// one.
 fn last_place(number: f64) -> (usize, i32) {
-    let (mut buffer, single) = (zmij::Buffer::new(), number as f32);
-    // A number of f32 was rounded there, whatever digits it has in f64.
-    let text = if f64::from(single) == number { buffer.format(single) } else { buffer.format(number) };
+    let mut buffer = zmij::Buffer::new();
+    let text = if is_single(number) { buffer.format(number as f32) } else { buffer.format(number) };
     let (decimal, exponent) = text.split_once('e').unwrap_or((text, "0"));
     let exponent = exponent.parse().unwrap_or(0);
     let decimal = decimal.trim_end_matches('0');
@@ -252,7 +260,8 @@ mod tests {
     #[test]
     fn numbers_of_f32_were_rounded_to_it() {
         let widened = [0.339_661_72_f32, -1.191_566_f32, 0.5].map(f64::from);
-        assert_eq!(half_units(&widened), [5e-9, 5e-7, 5e-9]);
+        let half = f64::exp2(-24.0);
+        assert_eq!(half_units(&widened), [widened[0] * half, 5e-7, 5e-9]);
     }
 
     #[test]

@@ -5,7 +5,7 @@ use super::legs::OBLIQUE;
 use super::plane::Plane;
 use super::reading::{FreezeReason, FrozenJoint};
 use super::reference_pose::ReferencePose;
-use crate::description::{Description, Geometry, Inertial, JointKind, Matrix, Mesh, UrdfLink, apply, turn};
+use crate::description::{Description, Geometry, Inertial, JointKind, Matrix, Mesh, UrdfJoint, UrdfLink, apply, turn};
 use std::f64::consts::TAU;
 
 /// An axis up to this far off the normal \[rad\] may have been meant to be parallel to it.
@@ -124,6 +124,25 @@ pub(super) fn about_lengths(description: &Description) -> Option<String> {
     })
 }
 
+/// The caution about joints that are held where they cannot be, as in degrees.
+pub(super) fn about_held(description: &Description, frozen: &[(usize, FrozenJoint)]) -> Option<String> {
+    let odd = frozen.iter().filter_map(|(index, joint)| {
+        let FreezeReason::Asked { value } = joint.reason else { return None };
+        let UrdfJoint { kind, limits, .. } = &description.joints[*index];
+        match limits {
+            Some([lower, upper]) if value < *lower || value > *upper => {
+                Some(format!("{} = {value} is outside [{lower}, {upper}]", joint.name))
+            }
+            None if *kind != JointKind::Prismatic && value.abs() > TAU => {
+                Some(format!("{} = {value} rad is more than a turn", joint.name))
+            }
+            _ => None,
+        }
+    });
+    let odd: Vec<String> = odd.collect();
+    (!odd.is_empty()).then(|| format!("held beyond limits, or in degrees: {}", names(odd.iter().map(String::as_str))))
+}
+
 /// The caution about rotations of more than a turn, as degrees taken for radians.
 pub(super) fn about_angles(description: &Description) -> Option<String> {
     let of_links = description.links.iter().flat_map(|link| {
@@ -184,8 +203,7 @@ pub(super) fn about_meshes(description: &Description) -> Option<String> {
         if left_out.len() == 1 { "1 collision mesh is" } else { &format!("{} collision meshes are", left_out.len()) };
     (!left_out.is_empty()).then(|| {
         format!(
-            "{what} left out, so that nothing touches there ({}{}): name the folder of its package by `package_path`, or \
-             a foot by `feet: LINK:X,Y,Z`",
+            "{what} left out, so that nothing touches there ({}{}): give the file, or name a foot by `feet: LINK:X,Y,Z`",
             left_out[0],
             if left_out.len() == 1 { "" } else { ", and others" },
         )

@@ -68,6 +68,7 @@ impl Robot {
         let seen = caution::Seen { description, pose: &pose, plane, legs: &legs };
         let mut cautions = caution::about_frozen(&seen, &frozen, tree.joints.len() + tree.mimic_joints.len());
         cautions.extend(found.caution);
+        cautions.extend(caution::about_held(description, &frozen));
         cautions.extend(caution::about_outside(description, &outside));
         cautions.extend(caution::about_meshes(description));
         cautions.extend(caution::about_spelling(description));

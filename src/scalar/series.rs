@@ -33,8 +33,8 @@ pub(super) fn cos_sin<N: Enclosure>(angle: f64, halvings: u32, bits: u32) -> [N;
         order += 2.0;
         reached += fewer + f64::from(libm::frexp(order * (order - 1.0)).1 - 1);
     }
-    // All terms times the factorial of the last, by which the sum is divided once; with those left out the last is between
-    // 1 - x^2 and 1.
+    // All terms times the factorial of the last, by which the sum is divided once; with those left out the last is
+    // between 1 - x^2 and 1.
     let last = N::one().widened(square);
     let ([mut cos, mut sin], mut factorials) = ([last; 2], [N::one(); 2]);
     while order > 0.0 {

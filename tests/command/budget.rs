@@ -48,6 +48,15 @@ fn resting_on_many_points() -> Value {
 }
 
 #[test]
+fn a_rank_that_is_not_known_is_not_printed() {
+    let arguments = ["impact", BLOCK, "-", "--no-reduction=merge", "--format", "json", "--budget"];
+    let rank = |budget| ends(&[&arguments[..], &[budget]].concat(), &resting_on_many_points().to_string()).line();
+    assert!(rank("0")["rank"].is_null());
+    // A rigid body in the plane.
+    assert_eq!(rank("infinite")["rank"], json!(3));
+}
+
+#[test]
 fn a_batch_counts_what_its_budget_leaves_open() {
     let state = resting_on_many_points();
     let summary = place("summary.json");

@@ -162,8 +162,8 @@ fn missing_mesh_is_named_by_impact_too() {
     let mut impact = command();
     let run = finished(impact.arg("impact").arg(&urdf).args(["-", "--friction", "1"]).write_stdin("{}")).well();
     let words = "note: 1 collision mesh is left out, so that nothing touches there (package://gone/sole.stl of foot: \
-                 package gone is not here: name the folder that holds it by --package-path): name the folder of its \
-                 package by --package-path, or a foot by --contact LINK:X,Y,Z";
+                 package gone is not here: name the folder that holds it by --package-path): give the file, or name a \
+                 foot by --contact LINK:X,Y,Z";
     assert!(run.stderr.contains(words), "{}", run.stderr);
 }
 

@@ -89,7 +89,7 @@ fn shown(error: &Error) -> String {
 #[test]
 fn headers_that_do_not_fit_are_refused() {
     let bolted = reduced(&leg_urdf(), &Reduction { base: Some(Base::Fixed), ..Reduction::default() });
-    let with_rates: [&[u8]; 16] = [
+    let with_rates: [&[u8]; 18] = [
         b"q_kne,v_knee",
         b"id,\"a,b\",v_base_y",
         b"q_base_qw,q_base_qy,q_base_qx,q_base_qz,v_knee,time",
@@ -104,6 +104,8 @@ fn headers_that_do_not_fit_are_refused() {
         b"q_Knee,v_knee",
         b"Q_KNEE,v_knee,restituion,tau_knee",
         b"x,knee",
+        b"v_knee,held",
+        b"v_knee,mu",
         b"v_knee,v_after_knee",
         b"v_knee,\"note",
     ];

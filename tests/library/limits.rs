@@ -1,9 +1,10 @@
 //! Joints outside the limits of the robot's file: noted, or refused where that is asked for.
 
-use crate::support::impact::{robot, try_impact};
+use crate::support::impact::{reduced, robot, try_impact};
 use crate::support::urdf::{self, Axis, HINGE, joint, link};
 use heelstrike::Robot;
 use heelstrike::pipeline::Options;
+use heelstrike::robot::{Base, Reduction};
 use serde_json::json;
 
 /// A body with the joint `hip`, whose limit is `limit`, and `calf`, which mimics it threefold.
@@ -81,16 +82,26 @@ fn a_deep_foot_of_a_pose_in_degrees_is_no_riddle() {
 }
 
 #[test]
+fn a_bolted_robot_is_not_told_to_raise_its_base() {
+    let reduction = Reduction { base: Some(Base::Fixed), ..Reduction::default() };
+    let error = try_impact(&reduced(include_str!("../../urdf/ramone.urdf"), &reduction), Options::default(), json!({}))
+        .expect_err("in the ground");
+    assert!(error.remedy().is_some_and(|remedy| remedy.starts_with("the robot is bolted to the world: ")));
+}
+
+#[test]
 fn laws_of_links_without_a_foot_are_noted() {
     let robot = limited(HINGE, "");
     let notes = |scene: serde_json::Value| {
         let impact = try_impact(&robot, Options::default(), scene).expect("an answer");
         impact.notes.into_iter().filter(|note| note.contains("no effect")).collect::<Vec<_>>()
     };
-    let given = json!({"friction": {"default": 1, "leg": 0.5}, "restitution": {"tail": 0.5}});
+    let given = json!({"friction": {"default": 1, "leg": 0.5}, "restitution": {"tail": 0.5},
+        "uncertainty": {"friction": {"tail": 0.1}}});
     let expected = [
         "friction is given to leg, which has no foot: it has no effect",
         "restitution is given to tail, which has no foot: it has no effect",
+        "uncertainty of friction is given to tail, which has no foot: it has no effect",
     ];
     assert_eq!(notes(given), expected);
     let named = json!({"friction": {"default": 1, "leg": 0.5}, "contacts": [{"link": "leg"}]});

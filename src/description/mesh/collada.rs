@@ -129,10 +129,10 @@ impl<'a, 'input: 'a> Shown<'a, 'input> {
             let array = child(source, "float_array");
             let values = array.map(text).unwrap_or_default();
             let values: Vec<f64> = values.split_whitespace().map(number).collect::<Result<_, _>>()?;
-            let announced =
-                array.and_then(|array| array.attribute("count")).map_or(values.len().to_string(), str::to_owned);
-            if announced.trim().parse() != Ok(values.len()) {
-                return Err(format!("{announced} numbers are announced, {} are there", values.len()));
+            if let Some(count) = array.and_then(|array| array.attribute("count"))
+                && count.trim().parse() != Ok(values.len())
+            {
+                return Err(format!("{count} numbers are announced, {} are there", values.len()));
             }
             let accessor = child(source, "technique_common").and_then(|common| child(common, "accessor"));
             let count = |name, default| {

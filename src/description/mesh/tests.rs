@@ -115,6 +115,8 @@ fn every_format_gives_the_same_vertices() {
     // Texts keep their digits.
     assert_eq!(vertices("a.obj", "v 0.1 0.2 -0.3\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")[1], [0.1, 0.2, -0.3]);
     assert_eq!(vertices("a.dae", dae("", "", &[[0.1, 0.2, -0.3]])), [[0.1, 0.2, -0.3]]);
+    let commented = dae("", "", &[[0.1, 0.2, -0.3]]).replacen("0.2", "<!-- y --> 0.2", 1);
+    assert_eq!(vertices("a.dae", commented), [[0.1, 0.2, -0.3]]);
 }
 
 #[test]
@@ -164,6 +166,11 @@ fn files_that_cannot_be_read_have_a_reason() {
         ("a.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 1 2".into(), "cannot be read: "),
         ("a.obj", "v 0 0 0\nf 1 2 3\n".into(), "cannot be read: "),
         ("a.dae", "<COLLADA>".into(), "cannot be read: "),
+        (
+            "a.dae",
+            dae("", "", &PYRAMID).replacen("count=\"15\"", "count=\"18\"", 1).into(),
+            "cannot be read: 18 numbers are announced, 15 are there",
+        ),
         ("a.dae", "<robot/>".into(), "cannot be read: "),
         ("a.dae", dae("<unit meter=\"x\"/>", "", &PYRAMID).into(), "cannot be read: "),
         ("a.dae", in_scene("<node><instance_geometry url=\"#hand\"/></node>").into(), "cannot be read: "),

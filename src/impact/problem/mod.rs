@@ -248,8 +248,8 @@ impl ContactProblem {
         self.complete()
     }
 
-    /// The same problem for the nearest f64 of another `velocity` before, which nothing was applied to, and what it is off
-    /// by \[m/s\].
+    /// The same problem, without applied impulses, for the nearest f64 of another `velocity` before, and what these are
+    /// off by \[m/s\].
     pub(super) fn moving(&self, velocity: &[Pair<Ball<DoubleDouble>>]) -> (Self, Vec<Pair<f64>>) {
         let nearest: Vec<Pair<f64>> = velocity.iter().map(|c| c.map(Ordered::to_f64)).collect();
         let off = velocity.iter().map(|c| c.map(Ball::error_of_nearest)).collect();

@@ -2,7 +2,8 @@
 //!
 //! ```text
 //!     f64 with an error bound --> plain balls --> balls --> balls around pairs of f64 --> intervals of 256, 1024, 4096 bits
-//!          (again with c from pairs of f64, if the robot is slow; and balls around it)
+//!       ├── again with c from pairs of f64, if contacts are slow
+//!       └── balls around it
 //! ```
 //!
 //! From the balls on, each number also has a residue that shows whether it is exactly zero (see
@@ -25,7 +26,7 @@ pub trait Source {
     /// What the f64 problem may be off by.
     fn errors(&self) -> Errors<'_>;
 
-    /// c- by itself, which is also c_free, far more closely than `errors` says; `None` if that takes as long as all else.
+    /// c- alone, far more closely than `errors` says; `None` if it needs M^-1 or is not c_free.
     fn velocity(&self) -> Option<Vec<Pair<Ball<DoubleDouble>>>> {
         None
     }

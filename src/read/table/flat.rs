@@ -13,9 +13,12 @@ use csv::ByteRecord;
 use serde_json::value::RawValue;
 use std::borrow::Cow;
 
-/// Whether a line of JSON is a flat state; `None` if it is blank or broken.
+/// Whether a line of JSON is a flat state; `None` if it is blank or broken. A line of a list is none.
 pub fn is_flat(line: &[u8]) -> Option<bool> {
     let is_coordinate = |name: &str| name.starts_with("q_") || name.starts_with("v_");
+    if line.trim_ascii_start().starts_with(b"[") {
+        return Some(false);
+    }
     let fields = fields(line).ok()?;
     let any = |wanted: &dyn Fn(&str) -> bool| fields.iter().any(|(key, _)| wanted(key));
     Some(any(&is_coordinate) && !any(&|key| matches!(key, "position" | "velocity")))

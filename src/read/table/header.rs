@@ -34,7 +34,7 @@ const OTHERS: [(&str, TableColumn); 5] = [
 ];
 
 /// Fields of a state for which a table has no columns.
-const OF_STATES: [&str; 11] = [
+const OF_STATES: [&str; 13] = [
     "position",
     "velocity",
     "ground",
@@ -43,6 +43,8 @@ const OF_STATES: [&str; 11] = [
     "rotor_inertia",
     "contacts",
     "impulse",
+    "gravity",
+    "torque",
     "virtual",
     "loops",
     "uncertainty",
@@ -185,7 +187,7 @@ impl Header {
         positions.chain(velocities).map(|(_, name)| name).collect()
     }
 
-    /// Refuses a column that is carried through and is called as a field of states or resembles one that is missing,
+    /// Refuses a column that is carried through and is named like a field of a state or resembles one that is missing,
     /// unless it is said to be foreign.
     fn check_foreign(&self, record: Record) -> Result<()> {
         let mut carried = self.places(TableColumn::Carried).filter(|&at| !self.is_foreign(&self.names[at]));

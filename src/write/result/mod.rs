@@ -243,7 +243,7 @@ impl<'a> Report<'a> {
             no_slip_consistent: known.map(|analysis| analysis.no_slip_consistent),
             explain: explained.map(|analysis| analysis.explanation.as_ref().map(Cow::Borrowed)),
             index_sum: known.map(|analysis| analysis.index_sum),
-            condition: known.map(|analysis| analysis.condition),
+            condition: known.filter(|analysis| analysis.rank.is_some()).map(|analysis| analysis.condition),
             rank: known.and_then(|analysis| analysis.rank),
             contacts,
             ..Self::default()
@@ -267,9 +267,9 @@ const ILL_CONDITIONED: f64 = 1e14;
 fn notes(problem: &Problem, analysis: &Analysis) -> Cow<'static, [String]> {
     let keep = "give mass_matrix, contact_jacobian and velocity to keep what rounding loses";
     let repaired = || {
-        let rank = analysis.rank.unwrap_or_default();
+        let rank = analysis.rank.map_or(String::new(), |rank| format!(", of rank {rank},"));
         format!(
-            "the Delassus matrix is indefinite by its rounding: the nearest semidefinite one, of rank {rank}, was taken; {keep}"
+            "the Delassus matrix is indefinite by its rounding: the nearest semidefinite one{rank} was taken; {keep}"
         )
     };
     let ill = |condition: f64| {

@@ -258,16 +258,17 @@ impl<'w> Writer<'w> {
                 "In every outcome some contact slides.\n"
             });
         }
-        if let (true, Some(rank)) = (struck, self.report.rank) {
-            let condition = match self.report.condition.flatten() {
-                Some(condition) => format!(", condition {}", number(condition)),
-                None => format!(" of {}, redundant", 2 * self.report.contacts.len()),
+        if struck && let Some(is_proven) = self.report.proven {
+            let rank = match (self.report.rank, self.report.condition.flatten()) {
+                (Some(rank), Some(condition)) => format!("{rank}, condition {}", number(condition)),
+                (Some(rank), None) => format!("{rank} of {}, redundant", 2 * self.report.contacts.len()),
+                (None, _) => "not known".to_owned(),
             };
             let hidden = if self.report.verdict == Some(Verdict::Undecided) { "unknown" } else { "hidden by a border" };
             let sum = self.report.index_sum.map(|sum| sum.map_or(hidden.to_owned(), |sum| sum.to_string()));
             let sum = sum.map_or(String::new(), |sum| format!("; sum of indices {sum}"));
-            let proven = if self.report.proven == Some(true) { "proven" } else { "not proven" };
-            writeln!(self.out, "Contacts: rank {rank}{condition}{sum}; {proven}.")?;
+            let proven = if is_proven { "proven" } else { "not proven" };
+            writeln!(self.out, "Contacts: rank {rank}{sum}; {proven}.")?;
         }
         if !struck && !self.report.notes.is_empty() {
             self.out.push('\n');

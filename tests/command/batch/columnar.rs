@@ -7,6 +7,7 @@ use arrow_array::{
     Array, ArrayRef, BooleanArray, DictionaryArray, Float32Array, Float64Array, Int64Array, NullArray, RecordBatch,
     StringArray, TimestampSecondArray,
 };
+use arrow_cast::cast;
 use arrow_cast::display::array_value_to_string;
 use arrow_ipc::reader::{FileReader, StreamReader};
 use arrow_ipc::writer::{FileWriter, StreamWriter};
@@ -120,6 +121,25 @@ fn columns_are_answered_as_flat_lines_are() {
     let always = ["batch", RAMONE, "-", "--friction", "0.6", "--input-format", "arrow"];
     let expected = heelstrike(&["batch", RAMONE, &lines, "--friction", "0.6"]).well();
     assert!(heelstrike_reads(&always, stream).well().stdout == expected.stdout);
+}
+
+#[test]
+fn feet_rest_in_columns_of_f32_as_in_those_of_f64() {
+    let walk: Vec<_> =
+        walk_columns().into_iter().filter(|(_, column)| column.data_type() == &DataType::Float64).collect();
+    let verdicts = |file: &str, to: DataType| -> Vec<Value> {
+        let column = |(name, column): &'_ (String, ArrayRef)| (name.clone(), cast(column, &to).expect("numbers"));
+        let columns: Vec<(String, ArrayRef)> = walk.iter().map(column).collect();
+        let columns: Vec<(&str, ArrayRef)> = columns.iter().map(|(name, own)| (&**name, Arc::clone(own))).collect();
+        let options = ["--friction", "0.6", "--contact-tolerance", "1e-4", "--brief"];
+        let answers = heelstrike(&[&["batch", RAMONE, &written(file, &columns)], &options[..]].concat()).well().lines();
+        answers.into_iter().map(|mut answer| answer["verdict"].take()).collect()
+    };
+    let [double, single] =
+        [("d.parquet", DataType::Float64), ("s.parquet", DataType::Float32)].map(|(file, to)| verdicts(file, to));
+    let differing = double.iter().zip(&single).filter(|(double, single)| double != single).count();
+    // Those of f32 are farther from rest than their digits say in few.
+    assert!(double.len() > 100 && differing < 5, "{differing} of {}", double.len());
 }
 
 fn texts(texts: &[Option<&str>]) -> ArrayRef {

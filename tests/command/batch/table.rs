@@ -214,6 +214,29 @@ fn flat_lines_of_json_are_a_table() {
 }
 
 #[test]
+fn fields_of_states_are_columns_or_refused() {
+    let schema = parsed(&heelstrike(&["schema", "state"]).text());
+    let fields: Vec<&String> = schema["properties"].as_object().expect("fields").keys().collect();
+    assert!(fields.len() > 15, "{fields:?}");
+    for field in fields.into_iter().filter(|field| !["id", "friction", "restitution", "stance"].contains(&&***field)) {
+        let table = format!("q_base_z,v_base_z,{field}\n1,-1,0\n");
+        let run = heelstrike_reads(&["batch", RAMONE, "-", "--input-format", "csv", "--friction", "0.6"], table);
+        assert!(run.stderr.contains(&format!("\"{field}\" is a field of states")), "{field}: {}", run.stderr);
+    }
+}
+
+#[test]
+fn a_line_before_flat_ones_is_refused_alone() {
+    let (_, lines) = walk();
+    let arguments = ["batch", RAMONE, "-", "--friction", "0.6", "--brief", "--input-format", "ndjson"];
+    let run = heelstrike_reads(&arguments, format!("12:00:01 recording started{lines}"));
+    let answers = run.lines();
+    assert_eq!(answers.len(), lines.trim().lines().count() + 1, "{}", run.stderr);
+    assert_eq!(answers.iter().filter(|answer| !answer["error"].is_null()).count(), 1);
+    assert!(!answers[0]["error"].is_null());
+}
+
+#[test]
 fn broken_flat_lines_are_refused_in_their_place() {
     let lines = "{\"id\": 0, \"q_base_z\": 0.5, oops\n\
         {\"id\":1,\"q_base_z\":0.5,\"v_base_z\":-1.0,\"note\":\"a, \\\"b\\\"\",\"n\":3,\"friction\":null}\n\n\

@@ -268,6 +268,32 @@ fn missing_axis_is_named_with_its_line() {
 }
 
 #[test]
+fn a_joint_held_in_degrees_is_named() {
+    let text = massive(&[PITCH, PITCH]);
+    let caution = |value| {
+        let held = Reduction { hold: vec![(0, value)], ..Reduction::default() };
+        reduce(&text, &held).reading.cautions
+    };
+    assert_eq!(caution(1.5), [""; 0]);
+    assert_eq!(caution(90.0), ["held beyond limits, or in degrees: j = 90 rad is more than a turn"]);
+}
+
+#[test]
+fn misspelt_names_are_named_with_their_lines() {
+    let text = massive(&[PITCH]);
+    let caution = |from: &str, to: &str| {
+        let changed = text.replacen(from, to, 1);
+        assert_ne!(changed, text);
+        load(&changed).reading.cautions.into_iter().find(|caution| caution.contains("misspelt"))
+    };
+    assert_eq!(caution("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 1 0\" rpy=\"0\"/>"), None);
+    let misspelt = caution("<origin ", "<orign ").unwrap();
+    assert!(misspelt.starts_with("not read, and perhaps misspelt: <orign> in <"), "{misspelt}");
+    let misspelt = caution("<axis xyz=", "<axis xzy=").unwrap();
+    assert!(misspelt.contains("xzy of <axis> on line ") && misspelt.contains(" (xyz?)"), "{misspelt}");
+}
+
+#[test]
 fn link_without_inertial_is_named_when_m_is_singular() {
     let text = chain(&[1.0, 1.0, 0.0], &[PITCH, PITCH]);
     let error = crate::support::impact::try_impact(&load(&text), Default::default(), "{}").expect_err("singular");
