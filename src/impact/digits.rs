@@ -30,8 +30,8 @@ pub const DIGITS: f64 = 4e-11;
 
 /// Less work has lost digits to underflow \[J\].
 const LEAST_WORK: f64 = f64::MIN_POSITIVE / f64::EPSILON;
-/// What the velocities of a problem may be off by, as part of their scale, before an outcome's numbers likely lack
-/// digits: an elimination of two contacts rarely makes more than this of it.
+/// What the velocities of a problem may be off by, as part of their scale, before an outcome's numbers may lack digits,
+/// with room for what an elimination makes of it.
 const SLOW: f64 = DIGITS / 256.0;
 
 /// The scales of an outcome's numbers, per contact.
