@@ -382,7 +382,7 @@ impl Pipeline<'_> {
         let velocity = lowest.filter(|foot| self.robot.links[foot.link].name == *link).map(|foot| foot.velocity);
         let hint = match (state.scene.stance, error.remedy()) {
             _ if !self.assembly.plan.floating => {
-                "the robot is bolted to the world: correct its joints or the height of the ground, or give `base: floating`"
+                "the robot is bolted to the world: correct its joints, lower the ground by a profile, or give `base: floating`"
                     .to_owned()
             }
             (Some(_), _) | (_, None) => format!(
