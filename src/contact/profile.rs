@@ -60,7 +60,7 @@ pub(super) fn touching(
             let height = if stands(corner) { places[corner].z } else { tolerance };
             on_segment(terrain, segment, &outline, corner, Closeness { tolerance: tolerance.max(height), rounding })
         });
-        touches.extend(outer(found.collect(), |touch| face.tangent.dot(place(placement, touch))));
+        touches.extend(outer(found.collect(), |touch| face.tangent.dot(place(placement, touch)), foot.bumps));
     }
     let on_segments = touches.len();
     for corner in corners_of(&near).filter(|&corner| terrain.is_convex(corner)) {
@@ -82,12 +82,15 @@ pub(super) fn touching(
     Ok(touches)
 }
 
-/// The rearmost and the foremost of a foot's contacts on one segment; of several at one end the lowest.
-fn outer(touches: Vec<Touch>, along: impl Fn(&Touch) -> f64) -> Vec<Touch> {
+/// The rearmost and the foremost of a foot's contacts on one segment; of several at one end, or no farther than `bumps`
+/// \[m\] apart, the lowest.
+fn outer(touches: Vec<Touch>, along: impl Fn(&Touch) -> f64, bumps: f64) -> Vec<Touch> {
     let lower = |a: &&Touch, b: &&Touch| a.gap.total_cmp(&b.gap);
     let end = |way: f64| touches.iter().min_by(|a, b| (way * along(a)).total_cmp(&(way * along(b))).then(lower(a, b)));
     match (end(1.0), end(-1.0)) {
-        (Some(rear), Some(front)) if rear == front => vec![*rear],
+        (Some(rear), Some(front)) if along(front) - along(rear) <= bumps => {
+            touches.iter().min_by(lower).copied().into_iter().collect()
+        }
         (Some(&rear), Some(&front)) => vec![rear, front],
         _ => touches,
     }

@@ -6,7 +6,7 @@
 //! ```
 //!
 //! The sole of a mesh is never quite flat: its facets are a micrometer apart, and which of them is lowest means
-//! nothing. A straight ground pushes back through the rearmost and the foremost corner that stand on it.
+//! nothing. Nor are corners that are as close to each other along the ground, as on a wheel, a sole. A straight ground pushes back through the rearmost and the foremost corner that stand on it.
 
 use crate::planar::Vector;
 
@@ -15,7 +15,8 @@ const LEVEL: f64 = 1e-3;
 
 /// The rearmost and the foremost corner that stands, of an outline whose `count` corners are at the (t, n) `place` \[m\],
 /// counter-clockwise: those from one to the other stand. Sides of 45 degrees and more are no sole. A corner is on the
-/// ground up to the height `highest`; the rest of an almost level sole, up to `bumps` above the lowest corner \[m\].
+/// ground up to the height `highest`; the rest of an almost level sole, up to `bumps` above the lowest corner \[m\]. A
+/// sole no longer than `bumps` is its lowest corner.
 pub(super) fn sole(count: usize, place: impl Fn(usize) -> Vector<f64>, highest: f64, bumps: f64) -> Option<[usize; 2]> {
     let low = (0..count).map(|at| (at, place(at))).filter(|(_, place)| place.z <= highest);
     let (lowest, least) = low.min_by(|(_, a), (_, b)| a.z.total_cmp(&b.z))?;
@@ -37,5 +38,7 @@ pub(super) fn sole(count: usize, place: impl Fn(usize) -> Vector<f64>, highest: 
             (at, from) = (next, to);
         }
     };
-    Some([(count - 1, -1.0), (1, 1.0)].map(end))
+    let [rear, front] = [(count - 1, -1.0), (1, 1.0)].map(end);
+    let is_point = place(front).x - place(rear).x <= bumps;
+    Some(if is_point { [lowest; 2] } else { [rear, front] })
 }

@@ -1,6 +1,6 @@
 //! XML elements -> links and joints: checked and located.
 
-use super::elements::{ByName, EXPAND, IgnoredCount, WORLD, misspelt, undefined_world};
+use super::elements::{ByName, EXPAND, IgnoredCount, WORLD, limits, misspelt, undefined_world};
 use super::repair::Repaired;
 use super::xml::{self, Cursor, MOST_LINKS, Unparsed};
 use super::{Collision, Description, JointKind, UrdfJoint, UrdfLink, joint_place, link_place, values};
@@ -208,18 +208,10 @@ fn read_joint(
         }
     }
     let (has_axis, axis) = (axis.is_some(), axis.unwrap_or_default().xyz.0);
-    let limits = limits(element).filter(|_| matches!(kind, JointKind::Revolute | JointKind::Prismatic));
+    let limits = element.children().find(|&child| tag(element, child) == Some("limit")).and_then(limits);
+    let limits =
+        limits.filter(|[lower, upper]| lower < upper && matches!(kind, JointKind::Revolute | JointKind::Prismatic));
     Ok(UrdfJoint { name: name.into(), kind, parent, child, origin, axis, has_axis, mimic, limits, location })
-}
-
-/// The ends of a joint's `<limit>`, of which one that is not given is 0. They are no part of the mechanics, so that
-/// what cannot be read is no limit.
-fn limits(element: Node<'_, '_>) -> Option<[f64; 2]> {
-    let limit = element.children().find(|&child| tag(element, child) == Some("limit"))?;
-    let [lower, upper] =
-        ["lower", "upper"].map(|end| limit.attribute(end).map_or(Some(0.0), |text| text.trim().parse().ok()));
-    let limits: [f64; 2] = [lower?, upper?];
-    (limits[0] < limits[1] && limits.iter().all(|end| end.is_finite())).then_some(limits)
 }
 
 /// The joint's type.

@@ -98,11 +98,19 @@ const READ: [(&str, &[&str], &[&str]); 16] = [
     ("mesh", &["filename", "scale"], &[]),
 ];
 
+/// The ends of a `<limit>`, of which one that is not given is 0. They are no part of the mechanics, so that what is no
+/// number is no limit.
+pub(super) fn limits(limit: Node<'_, '_>) -> Option<[f64; 2]> {
+    let end = |name| limit.attribute(name).map_or(Some(0.0), |text| text.trim().parse().ok());
+    let limits: [f64; 2] = [end("lower")?, end("upper")?];
+    (!limits.iter().any(|end| end.is_nan())).then_some(limits)
+}
+
 /// The most misspelt names that are kept.
 const MOST_MISSPELT: usize = 100;
 
 /// Adds the names of attributes and elements in a link or a joint that are not read, but a letter away from one that is
-/// and that is not there.
+/// and that is not there, and limits with nothing between them.
 pub(super) fn misspelt(element: Node<'_, '_>, found: &mut Vec<String>) {
     let mut waiting = vec![element];
     while let Some(element) = waiting.pop() {
@@ -118,6 +126,10 @@ pub(super) fn misspelt(element: Node<'_, '_>, found: &mut Vec<String>) {
         for (name, meant) in misread(tags, children).take(MOST_MISSPELT.saturating_sub(found.len())) {
             found.push(format!("<{name}> in <{tag}> on line {} (<{meant}>?)", line(element)));
         }
+        if tag == "limit" && limits(element).is_none_or(|[lower, upper]| lower > upper) && found.len() < MOST_MISSPELT {
+            let [lower, upper] = ["lower", "upper"].map(|end| element.attribute(end).unwrap_or("0"));
+            found.push(format!("<limit> on line {} (from {lower} to {upper}?)", line(element)));
+        }
         let first = waiting.len();
         waiting.extend(inside());
         waiting[first..].reverse();
@@ -129,12 +141,12 @@ fn misread<'a, I: Iterator<Item = &'a str>>(
     given: impl Fn() -> I,
     known: &'static [&'static str],
 ) -> impl Iterator<Item = (&'a str, &'static str)> {
-    let absent: Vec<&str> = known.iter().copied().filter(|known| given().all(|name| name != *known)).collect();
     let is_near = |name: &str, known: &str| {
         name.eq_ignore_ascii_case(known)
             || name.len().abs_diff(known.len()) <= 1 && strsim::osa_distance(name, known) == 1
     };
-    given()
-        .filter(|name| !known.contains(name))
-        .filter_map(move |name| Some((name, *absent.iter().find(|known| is_near(name, known))?)))
+    given().filter(|name| !known.contains(name)).filter_map(move |name| {
+        let is_meant = |meant: &&&str| is_near(name, meant) && given().all(|other| other != **meant);
+        Some((name, *known.iter().find(is_meant)?))
+    })
 }

@@ -47,7 +47,8 @@ pub struct Description {
     pub root: usize,
     /// Elements that were passed over, in the order in which they first occur.
     pub ignored: Vec<Ignored>,
-    /// Attributes and elements that are not read and perhaps misspelt, each with its line and what may be meant.
+    /// Attributes and elements that are not read and perhaps misspelt, and limits with nothing between them, each with
+    /// its line.
     pub misspelt: Vec<String>,
 }
 
@@ -125,7 +126,8 @@ pub struct UrdfJoint {
     pub has_axis: bool,
     /// The joint that it mimics, if any.
     pub mimic: Option<Mimic>,
-    /// The least and the greatest coordinate \[rad or m\]; `None` if the file has none, or none that leave room.
+    /// The least and the greatest coordinate \[rad or m\], perhaps infinite; `None` if the file has none, or none that leave
+    /// room.
     pub limits: Option<[f64; 2]>,
     /// Where its element begins.
     pub location: Location,

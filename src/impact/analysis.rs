@@ -14,7 +14,7 @@ use super::collected::{
 use super::enumerate::{Labels, Tableau};
 use super::explanation::explanation;
 use super::families::FamiliesPass;
-use super::outcome::{Analysis, OpenCombinations, Outcome, Verdict};
+use super::outcome::{Analysis, Explanation, OpenCombinations, Outcome, Verdict};
 use super::passes::{F64Pass, UndecidedPass};
 use super::problem::{ContactProblem, Errors, Precision, PrecisionTask, Remembered, Source, escalate};
 use super::rank::rank_and_condition;
@@ -91,7 +91,7 @@ impl Scratch {
             rank,
             condition: condition.flatten(),
             no_slip_consistent: no_slip_consistent(&outcomes, open.as_ref()),
-            explanation: if is_explained { explanation(problem, &self.scale) } else { None },
+            explanation: if is_explained { self.explain(problem, source) } else { None },
             outcomes,
             open,
             families,
@@ -99,6 +99,13 @@ impl Scratch {
             unlisted,
             effort,
         })
+    }
+
+    /// beta, gamma and regions, of the velocities of slow contacts in the digits that decide their outcomes.
+    fn explain<S: Source>(&self, problem: &ContactProblem, source: &S) -> Option<Explanation> {
+        let velocity = if self.scale.is_slow() { source.velocity() } else { None };
+        let moving = velocity.map(|velocity| problem.moving(&velocity).0);
+        explanation(moving.as_ref().unwrap_or(problem), &self.scale)
     }
 
     /// The friction with which no contact would have to slide; `None` if one slides whatever the friction is.

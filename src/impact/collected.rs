@@ -2,7 +2,7 @@
 
 use super::combination::Solved;
 use super::digits::Numbers;
-use super::outcome::{AtZero, Border, Effort, Family, Motion, Outcome, Rejection};
+use super::outcome::{AtZero, Border, Effort, Family, Motion, Outcome, Range, Rejection};
 use super::problem::ContactProblem;
 use super::reading::CombinationReading;
 use super::singular::SingularOutcome;
@@ -188,10 +188,7 @@ impl<'a> Collected<'a> {
                 self.add_regular(number, modes.clone(), reading, index, numbers);
             }
             Solved::Rejected(rejection) => self.reject(number, modes, || rejection),
-            Solved::Singular(own) => {
-                let outcome = self.singular_outcome(own);
-                self.push(number, outcome);
-            }
+            Solved::Singular(own) => self.add_singular(number, own),
             Solved::Family => self.pending_families.push(pending.clone()),
         }
     }
@@ -215,17 +212,16 @@ impl<'a> Collected<'a> {
         index: i8,
         numbers: Numbers,
     ) {
-        let mut outcome = self.outcome(modes, numbers, &reading.at_zero);
-        outcome.index = reading.at_zero.is_empty().then_some(index);
-        outcome.margin = reading.margin.map(|margin| margin + 0.0);
-        self.push(number, outcome);
+        let index = reading.at_zero.is_empty().then_some(index);
+        let margin = reading.margin.map(|margin| margin + 0.0);
+        self.push(number, modes, numbers, Solution { index, margin, range: None, at_zero: &reading.at_zero });
         reading.at_zero.clear();
         self.memory.at_zero = reading.at_zero;
     }
 
-    fn push(&mut self, number: u64, outcome: Outcome) {
-        self.memory.numbers.push(number);
-        self.memory.outcomes.push(outcome);
+    fn add_singular(&mut self, number: u64, own: SingularOutcome) {
+        let SingularOutcome { modes, numbers, index, margin, range, at_zero } = own;
+        self.push(number, modes, numbers, Solution { index, margin, range, at_zero: &at_zero });
     }
 
     /// Counts a combination that no precision decided, and lists one of the first with zeros for the impulses that are
@@ -238,8 +234,10 @@ impl<'a> Collected<'a> {
         let velocity_after = self.problem.velocity_free().to_vec();
         let motion = Motion { impulse: vec![[0.0; 2]; modes.len()], velocity_after };
         let numbers = Numbers::of_motion(motion, &modes, self.problem, Vec::new());
-        let outcome = Outcome { decided: false, proven: false, ..self.outcome(modes, numbers, &[]) };
-        self.push(number, outcome);
+        self.push(number, modes, numbers, Solution { index: None, margin: None, range: None, at_zero: &[] });
+        if let Some(outcome) = self.memory.outcomes.last_mut() {
+            (outcome.decided, outcome.proven) = (false, false);
+        }
     }
 
     /// Adds a rejected combination, if it is to be listed.
@@ -264,8 +262,7 @@ impl<'a> Collected<'a> {
             let place = match corner {
                 Corner::Isolated(place) => place,
                 Corner::OfFamily(number, own) => {
-                    let outcome = self.singular_outcome(own);
-                    self.push(number, outcome);
+                    self.add_singular(number, own);
                     self.memory.outcomes.len() - 1
                 }
             };
@@ -316,25 +313,17 @@ impl<'a> Collected<'a> {
         }
     }
 
-    fn singular_outcome(&self, own: SingularOutcome) -> Outcome {
-        Outcome {
-            index: own.index,
-            margin: own.margin,
-            impulse_unique: own.range.is_none(),
-            impulse_range: own.range,
-            ..self.outcome(own.modes, own.numbers, &own.at_zero)
-        }
-    }
-
-    /// A decided outcome with a unique impulse; the caller sets index and margin.
-    fn outcome(&self, modes: Vec<Mode>, numbers: Numbers, at_zero: &[(usize, Inequality)]) -> Outcome {
+    /// Adds a decided outcome, where it stays: what is large and was just written is slow to move.
+    fn push(&mut self, number: u64, modes: Vec<Mode>, numbers: Numbers, own: Solution) {
         let Numbers { motion, energy_loss, friction_needed, are_sharp } = numbers;
+        let Solution { index, margin, range, at_zero } = own;
         let border = match self.options.brief {
             true => None,
             false => border(&modes, self.problem.laws(), at_zero, &motion, self.name),
         };
         let Motion { impulse, velocity_after } = motion.unsigned();
-        Outcome {
+        self.memory.numbers.push(number);
+        self.memory.outcomes.push(Outcome {
             modes,
             impulse,
             velocity_after,
@@ -342,18 +331,27 @@ impl<'a> Collected<'a> {
             joint_velocity_after: None,
             loop_impulse: None,
             energy_loss: energy_loss + 0.0,
-            impulse_unique: true,
-            impulse_range: None,
+            impulse_unique: range.is_none(),
+            impulse_range: range,
             friction_needed,
-            index: None,
-            margin: None,
+            index,
+            margin,
             border,
             family: false,
             proven: self.options.prove && are_sharp,
             decided: true,
             next: None,
-        }
+        });
     }
+}
+
+/// What there is to say of an outcome beside its numbers.
+struct Solution<'a> {
+    index: Option<i8>,
+    margin: Option<f64>,
+    /// Of an impulse that is not unique.
+    range: Option<Vec<[Range; 2]>>,
+    at_zero: &'a [(usize, Inequality)],
 }
 
 /// The border of an outcome whose impulse inequalities `at_zero` are zero; `None` if none is.

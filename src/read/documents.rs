@@ -38,7 +38,7 @@ pub fn documents(text: &str) -> impl Iterator<Item = Document<'_>> {
 const UTF_16: &str = "save it as UTF-8, or turn it by iconv -f UTF-16 -t UTF-8";
 
 /// First bytes of other formats, the reason and the hint.
-const FOREIGN: [(&[u8], &str, &str); 9] = [
+const FOREIGN: [(&[u8], &str, &str); 10] = [
     (b"\xFF\xFE", "the text is UTF-16", UTF_16),
     (b"\xFE\xFF", "the text is UTF-16", UTF_16),
     (b"\x1F\x8B", "the input is packed by gzip", "unpack it: gunzip -c FILE | heelstrike ... with - for FILE"),
@@ -48,6 +48,11 @@ const FOREIGN: [(&[u8], &str, &str); 9] = [
     (b"PK\x03\x04", "the input is a zip archive, as spreadsheets are", "unpack it, or save the sheet as CSV"),
     (b"PAR1", "the input is a Parquet file", "`heelstrike batch` reads it under a name that ends in .parquet"),
     (b"ARROW1", "the input is an Arrow file", "`heelstrike batch` reads it under a name that ends in .arrow"),
+    (
+        b"\xFF\xFF\xFF\xFF",
+        "the input is an Arrow stream",
+        "`heelstrike batch` reads it under a name that ends in .arrows",
+    ),
 ];
 
 /// Refuses an input whose first bytes show that it is compressed, a spreadsheet or the like.

@@ -14,6 +14,9 @@ use std::borrow::Cow;
 /// The most samples of all parameters together.
 const SAMPLE_LIMIT: usize = 1_000_000;
 
+/// What stands beside the parameters in the record and in the rows of a sample.
+const OF_SAMPLES: [&str; 2] = ["result", "region"];
+
 /// The most constants; a study has some ten.
 const CONSTANT_LIMIT: usize = 256;
 
@@ -230,6 +233,10 @@ fn parameter(entry: Node, constants: &Names) -> Result<Parameter> {
     if constants.iter().any(|constant| constant == name) {
         let error = entry.refuse_name(entry.key(), Reason::Duplicate { what: "name", name });
         return Err(error.hint("it is a constant already"));
+    }
+    if OF_SAMPLES.contains(&name.as_str()) {
+        let reason = Reason::Inconsistent(format!("\"{name}\" is a field or column of every sample"));
+        return Err(entry.refuse_name(&name, reason).hint("give the parameter another name"));
     }
     let [from, to, steps] = entry.object("Parameter", ["from", "to", "steps"])?;
     let example = "a parameter is {\"from\": 0, \"to\": 1, \"steps\": 50}";

@@ -29,7 +29,9 @@ impl State {
         });
         own.chain(mimics).filter_map(|(joint, position)| {
             let limits = joint.limits?;
-            let slack = ROUNDING * limits[0].abs().max(limits[1].abs());
+            // An infinite end is none.
+            let slack =
+                limits.iter().filter(|end| end.is_finite()).fold(0.0, |most: f64, end| most.max(ROUNDING * end.abs()));
             let outside = position < limits[0] - slack || position > limits[1] + slack;
             outside.then_some(OutsideLimits { joint, position, limits })
         })

@@ -48,6 +48,8 @@ pub struct Map {
     pub curves: Vec<BorderCurve>,
     /// Whether contacts depend on each other somewhere: combinations without a unique solution are not followed.
     pub dependent: bool,
+    /// What is odd about the joints in the middle and at the ends of the ranges, in sentences.
+    pub odd_joints: Vec<String>,
 }
 
 /// Where one regime holds.
@@ -247,7 +249,7 @@ impl Map {
                 }
             }
         }
-        Self { curves, areas, dependent }
+        Self { curves, areas, dependent, odd_joints: model.odd_joints() }
     }
 
     /// Refuses a study whose grid does not fit into the memory that a map may take.

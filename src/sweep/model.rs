@@ -72,6 +72,28 @@ pub const WATCHED_CONTACTS: usize = 4;
 const RECENT: usize = 16;
 
 impl RobotStudy<'_> {
+    /// What is odd about the joints in the middle and at the ends of the ranges, in sentences, each joint once.
+    pub(super) fn odd_joints(&self) -> Vec<String> {
+        let parameters = self.study.parameters();
+        let mut solver = Solver::new(self);
+        let mut found: Vec<String> = Vec::new();
+        // Three places along each parameter.
+        for at in 0..3_usize.pow(parameters.len() as u32) {
+            let place = |index: u32| 0.5 * (at / 3_usize.pow(index) % 3) as f64;
+            let along = parameters.iter().zip(0..).map(|(parameter, index)| (parameter, place(index)));
+            let point: Vec<f64> = along.map(|(own, part)| own.from + part * own.range()).collect();
+            // Where a state is refused, its region says why.
+            let odd = solver.at(&point, |robot, state, _| Ok(state.odd_joints(robot).collect::<Vec<_>>()));
+            for sentence in odd.unwrap_or_default() {
+                let joint = |sentence: &str| sentence.split(" = ").next().map(str::to_owned);
+                if !found.iter().any(|known| joint(known) == joint(&sentence)) {
+                    found.push(sentence);
+                }
+            }
+        }
+        found
+    }
+
     /// The options for what the study asks.
     fn asked(&self) -> Options {
         Options { aspect: self.study.question(), ..self.options.clone() }

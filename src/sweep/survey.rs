@@ -19,6 +19,8 @@ pub struct Survey {
     pub borders: Vec<RegionBorder>,
     /// Whether contacts depend on each other somewhere: combinations without a unique solution are not followed.
     pub dependent: bool,
+    /// What is odd about the joints in the middle and at the ends of the range, in sentences.
+    pub odd_joints: Vec<String>,
 }
 
 /// A stretch of the parameter with one set of outcomes.
@@ -86,7 +88,8 @@ impl Survey {
             RegionBorder { at: bracket.at(), transition: Transition::at(solver, bracket, |at| vec![at]) }
         };
         let quiet = Workers { done: &|| (), ..workers };
-        Self { regions, borders: quiet.map(brackets.len(), begin, border), dependent }
+        let borders = quiet.map(brackets.len(), begin, border);
+        Self { regions, borders, dependent, odd_joints: model.odd_joints() }
     }
 
     /// How many pieces of work a survey of `model` has.

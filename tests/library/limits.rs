@@ -110,12 +110,14 @@ fn laws_of_links_without_a_foot_are_noted() {
 
 #[test]
 fn strict_limits_refuse_with_place_and_remedy() {
-    let robot = limited(HINGE, r#"lower="-2" upper="2.5""#);
-    let options = Options { strict_limits: true, ..Options::default() };
-    let state = |hip: f64| json!({"position": {"joints": {"hip": hip}}});
-    let error = try_impact(&robot, options.clone(), state(-2.25)).expect_err("outside");
-    assert_eq!(error.place(), Some("position.joints.hip"));
-    assert_eq!(error.reason().to_string(), "hip = -2.25 rad is outside [-2, 2.5]");
-    assert!(error.remedy().is_some_and(|remedy| remedy.contains("`strict_limits`")));
-    assert!(try_impact(&robot, options, state(2.25)).is_ok());
+    for upper in ["2.5", "inf"] {
+        let robot = limited(HINGE, &format!(r#"lower="-2" upper="{upper}""#));
+        let options = Options { strict_limits: true, ..Options::default() };
+        let state = |hip: f64| json!({"position": {"joints": {"hip": hip}}});
+        let error = try_impact(&robot, options.clone(), state(-2.25)).expect_err("outside");
+        assert_eq!(error.place(), Some("position.joints.hip"));
+        assert_eq!(error.reason().to_string(), format!("hip = -2.25 rad is outside [-2, {upper}]"));
+        assert!(error.remedy().is_some_and(|remedy| remedy.contains("`strict_limits`")));
+        assert!(try_impact(&robot, options, state(2.25)).is_ok());
+    }
 }

@@ -148,7 +148,7 @@ mod tests {
             }
             x += width;
         }
-        Map { areas, curves, dependent: false }
+        Map { areas, curves, ..Map::default() }
     }
 
     /// The letters of strips and their leaders, in px.

@@ -71,7 +71,7 @@ impl ContactProblem {
         let shape = |place: &'static str, matrix: &[Vec<f64>], rows: usize| {
             if matrix.len() != rows || matrix.iter().any(|row| row.len() != dofs) {
                 let reason = Reason::Inconsistent(format!("{place} must have {rows} rows of {dofs} numbers"));
-                return Err(Error::new(reason).at(place).hint("its columns are the entries of `velocity`"));
+                return Err(Error::new(reason).at(place).hint("its columns are the entries of \"velocity\""));
             }
             let mut entries = matrix.iter().flatten();
             entries.try_for_each(|&entry| finite(entry, || format!("an entry of {place}")).map(drop))

@@ -35,7 +35,7 @@ pub struct Sweep<'a> {
     pub regions: Vec<RegionRecord<'a>>,
     /// The border between each two of them.
     pub borders: &'a [RegionBorder],
-    /// Limits of the search, as sentences.
+    /// Limits of the search, and joints beyond their limits, as sentences.
     pub notes: Vec<String>,
     /// How many samples there are.
     #[serde(skip)]
@@ -147,7 +147,7 @@ impl<'a> Sweep<'a> {
             parameter: &parameter.name,
             regions: survey.regions.iter().map(region).collect(),
             borders: &survey.borders,
-            notes: not_guaranteed(contacts, survey.dependent),
+            notes: [not_guaranteed(contacts, survey.dependent), survey.odd_joints.clone()].concat(),
             steps: parameter.steps,
         }
     }
@@ -167,7 +167,7 @@ pub struct MapSweep<'a> {
     pub regions: Vec<MapRegion<'a>>,
     /// The borders between them.
     pub borders: &'a [BorderCurve],
-    /// Limits of the search, as sentences.
+    /// Limits of the search, and joints beyond their limits, as sentences.
     pub notes: Vec<String>,
     /// How many samples there are.
     #[serde(skip)]
@@ -209,6 +209,7 @@ impl<'a> MapSweep<'a> {
              cells is not found"
             ));
         }
+        notes.extend_from_slice(&map.odd_joints);
         Self {
             question: study.question(),
             parameters: parameters.iter().map(|parameter| parameter.name.as_str()).collect(),

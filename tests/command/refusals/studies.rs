@@ -23,6 +23,7 @@ const PARAMETERS: &str = r#"
 "2a": {"from": 0, "to": 1, "steps": 5}
 "": {"from": 0, "to": 1, "steps": 5}
 "α": {"from": 0, "to": 1, "steps": 5}
+"region": {"from": 0, "to": 1, "steps": 5}
 "#;
 
 /// Friction, a line each.

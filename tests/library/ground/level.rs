@@ -207,6 +207,25 @@ fn a_leg_without_mass_or_friction_is_refused_by_name() {
     assert!(error.to_string().contains("leg"), "{error}");
 }
 
+/// A foot that turns back as fast as the body turns about the same axle moves as the axle does, but for rounding.
+#[test]
+fn the_explanation_of_a_slow_contact_has_its_digits() {
+    let robot = crate::support::impact::robot(&crate::support::urdf::robot(&[
+        link("body", 2.0, [0.1, 0.3], 0.4, ""),
+        link("foot", 1.0, [0.1, -0.2], 0.1, &collision([0.23, -0.57], "sphere radius=\"0\"")),
+        joint("axle", HINGE, ["body", "foot"], [0.0; 2], ""),
+    ]));
+    let gamma = |rate: f64| {
+        let options = Options { explain_up_to: 1, ..Options::default() };
+        let state = json!({"position": {"base": {"pitch": 0.7}, "joints": {"axle": 0.4}}, "friction": "infinite",
+            "velocity": {"base": {"x": 1e-11, "z": -2e-11, "pitch": rate}, "joints": {"axle": -rate}}, "place": "lowest"});
+        let found = try_impact(&robot, options, state).unwrap();
+        assert!(!found.resting[0], "{rate}");
+        found.analysis.and_then(|analysis| analysis.explanation).expect("an explanation").gamma[0]
+    };
+    assert!((gamma(97.3) - gamma(0.0)).abs() < 1e-12, "{} is not {}", gamma(97.3), gamma(0.0));
+}
+
 #[test]
 fn slow_contacts_rest_only_where_asked() {
     assert_eq!(impact(&sole(), at(0.1, 1e-3)).velocity_before[0], [0.0, -1e-3]);

@@ -85,6 +85,25 @@ fn a_stance_rests_on_the_corners_that_touch() {
     }
 }
 
+/// The corners of a wheel's mesh often come in pairs that are micrometers apart, as those of Unitree's B2-W do.
+#[test]
+fn corners_that_all_but_coincide_are_one_contact() {
+    let tip = [[0.0, -0.05 + 1e-9], [4e-6, -0.05]];
+    let touching = |options: &Options, profile: bool| {
+        let mut state = falling();
+        if profile {
+            state["ground"] = json!({"profile": [[-1.0, 0.0], [1.0, 0.0]]});
+        }
+        let found = try_impact(&biped(&tip, &EVEN), options.clone(), state).expect("an answer");
+        found.contacts[..found.contacts.len() - 2].iter().map(|own| own.point.x).collect::<Vec<_>>()
+    };
+    let given = Options { contact_tolerance: Some(1e-6), ..Options::default() };
+    for profile in [false, true] {
+        assert_eq!(touching(&Options::default(), profile), [4e-6]);
+        assert_eq!(touching(&given, profile), [0.0, 4e-6]);
+    }
+}
+
 #[test]
 fn a_tolerance_that_is_given_is_meant() {
     let within = |tolerance: f64| {

@@ -291,6 +291,11 @@ fn misspelt_names_are_named_with_their_lines() {
     assert!(misspelt.starts_with("not read, and perhaps misspelt: <orign> in <"), "{misspelt}");
     let misspelt = caution("<axis xyz=", "<axis xzy=").unwrap();
     assert!(misspelt.contains("xzy of <axis> on line ") && misspelt.contains(" (xyz?)"), "{misspelt}");
+    let limits = |limits: &str| caution("<axis ", &format!("<limit {limits}/><axis "));
+    for (given, named) in [("lower=\"2\" upper=\"-1\"", "2 to -1"), ("upper=\"1,5\"", "0 to 1,5")] {
+        assert!(limits(given).is_some_and(|caution| caution.ends_with(&format!(" (from {named}?)"))), "{given}");
+    }
+    assert_eq!(limits("effort=\"1\" velocity=\"x\""), None);
 }
 
 #[test]

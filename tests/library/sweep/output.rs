@@ -64,6 +64,20 @@ fn text_is_for_people() {
     insta::assert_snapshot!("minimalistic", run.stdout);
 }
 
+#[test]
+fn joints_beyond_a_turn_are_noted_once() {
+    let angles = json!({"from": 45, "to": 46, "steps": 2});
+    let state = json!({"position": {"joints": {"left_hip": "a"}}, "place": "lowest", "friction": 1});
+    let one = json!({"parameters": {"a": angles}, "state": state});
+    let two = json!({"parameters": {"a": angles, "b": {"from": 0, "to": 1, "steps": 2}}, "state": state});
+    for study in [one, two] {
+        let found: Value = written("urdf/ramone.urdf", &study, &[]);
+        let notes = found["notes"].as_array().expect("a list").iter().filter_map(Value::as_str);
+        let odd: Vec<&str> = notes.filter(|note| note.contains("degrees?")).collect();
+        assert_eq!(odd, ["left_hip = 45 rad is more than a turn; degrees?"]);
+    }
+}
+
 /// Above 0.3 the cone's half-angle has no value; below, nothing touches.
 fn partly_refused() -> Value {
     json!({
