@@ -35,6 +35,8 @@ class Joint:
     v: int
     unit_circle: bool = False
     """Whether q holds the cosine and the sine of its angle."""
+    zero: float = 0.0
+    """What q holds where its coordinate is zero [rad, m]."""
 
 
 @dataclass
@@ -84,6 +86,8 @@ class Layout:
         velocities: list[Array] = []
         if len(joints) < len(names):
             positions, velocities = self._planar(robot, given_q, given_v, tolerance)
+        elif self.base is not None:
+            self._refuse_base(self.base, given_q, given_v, tolerance)
         for name in joints:
             positions.append(self._angle(given_q, self.joints[name]))
             velocities.append(given_v[:, self.joints[name].v])
@@ -98,14 +102,14 @@ class Layout:
         return rows
 
     def _is_floating(self, robot: Robot) -> bool:
-        floating = bool(robot.inspect()["base"] == "floating")
+        floating: bool = robot.inspect()["base"] == "floating"
         if floating and self.base is None:
             raise ValueError("the robot has a floating base and the model has none: add a free joint to the model")
         return floating
 
     @staticmethod
     def _angle(q: Array, joint: Joint) -> Array:
-        return np.arctan2(q[:, joint.q + 1], q[:, joint.q]) if joint.unit_circle else q[:, joint.q]
+        return np.arctan2(q[:, joint.q + 1], q[:, joint.q]) if joint.unit_circle else q[:, joint.q] - joint.zero
 
     def _planar(self, robot: Robot, q: Array, v: Array, tolerance: float) -> tuple[list[Array], list[Array]]:
         """x, z, pitch of the base and their rates."""
@@ -138,6 +142,14 @@ class Layout:
         _refuse("the base turns out of the plane", tilt, "rad/s", tolerance)
         origin = q[:, base.position]
         return [origin @ forward, origin @ up, pitch], [linear @ forward, linear @ up, angular @ normal]
+
+    @staticmethod
+    def _refuse_base(base: Base, q: Array, v: Array, tolerance: float) -> None:
+        what = "the base, which is fixed in the planar robot,"
+        off = np.linalg.norm(np.hstack([q[:, base.position], 2 * q[:, base.quaternion[1:]]]), axis=1)
+        rate = np.linalg.norm(np.hstack([v[:, base.linear], v[:, base.angular]]), axis=1)
+        _refuse(f"{what} is off", off, "m or rad", tolerance)
+        _refuse(f"{what} moves", rate, "m/s or rad/s", tolerance)
 
     def _refuse_others(self, robot: Robot, q: Array, v: Array, tolerance: float) -> None:
         inspection = robot.inspect()
@@ -177,6 +189,11 @@ def from_pinocchio(model: Any) -> Layout:
         q, v = model.idx_qs[at], model.idx_vs[at]
         match model.nqs[at], model.nvs[at]:
             case 7, 6 if layout.base is None:
+                if not model.jointPlacements[at].isIdentity(1e-12):
+                    raise ValueError(
+                        f"the base's joint {model.names[at]} is not placed at the world's origin, so that its numbers are "
+                        "not those of the base: set its entry of model.jointPlacements to the identity"
+                    )
                 quaternion = [q + 6, q + 3, q + 4, q + 5]
                 layout.base = Base(slice(q, q + 3), quaternion, slice(v, v + 3), slice(v + 3, v + 6), True, True)
             case 1 | 2 as size, 1:
@@ -198,7 +215,7 @@ def from_mujoco(model: Any) -> Layout:
             quaternion = list(range(q + 3, q + 7))
             layout.base = Base(slice(q, q + 3), quaternion, slice(v, v + 3), slice(v + 3, v + 6), False, True)
         elif kind in (2, 3):
-            layout.joints[joint.name] = Joint(q, v)
+            layout.joints[joint.name] = Joint(q, v, zero=float(model.qpos0[q]))
         else:
             raise ValueError(f"joint {joint.name} is a ball joint or a second free one, which no planar robot has")
     return layout

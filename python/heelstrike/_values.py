@@ -53,7 +53,11 @@ def to_json(value: Any) -> str:
     """JSON of a dictionary, or of the file of a path; text that begins with a brace is JSON already."""
     if isinstance(value, str):
         return value if value.lstrip().startswith("{") else _text(value)
-    return _text(value) if isinstance(value, os.PathLike) else json.dumps(value, default=_plain)
+    if isinstance(value, os.PathLike):
+        return _text(value)
+    if isinstance(value, Mapping) and "friction" in value:
+        value = {**value, "friction": _friction(value["friction"])}
+    return json.dumps(value, default=_plain)
 
 
 def from_json(text: bytes, drawn: Any) -> Any:
@@ -65,19 +69,22 @@ def from_json(text: bytes, drawn: Any) -> Any:
 
 
 def _friction(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {name: _friction(entry) for name, entry in value.items()}
+    value = value.tolist() if hasattr(value, "tolist") else value
     if isinstance(value, (list, tuple)):
         return [_friction(entry) for entry in value]
-    return "infinite" if isinstance(value, float) and math.isinf(value) and value > 0 else value
+    return "infinite" if value == "inf" or isinstance(value, float) and value == math.inf else value
 
 
 def problem(delassus: Any, velocity: Any, friction: Any, restitution: Any) -> str:
-    velocity, friction = (value.tolist() if hasattr(value, "tolist") else value for value in (velocity, friction))
+    velocity = velocity.tolist() if hasattr(velocity, "tolist") else velocity
     for name, value in (("G", delassus), ("c", velocity)):
         if not isinstance(value, (list, tuple)) and not hasattr(value, "shape"):
             raise TypeError(f"{name} is an array or a list, not a {type(value).__name__}")
-    if velocity and not isinstance(velocity[0], (list, tuple)):
+    if velocity and not isinstance(velocity[0], (list, tuple)) and not hasattr(velocity[0], "shape"):
         velocity = [velocity[at : at + 2] for at in range(0, len(velocity), 2)]
-    fields = {"delassus": delassus, "velocity_before": velocity, "friction": _friction(friction)}
+    fields = {"delassus": delassus, "velocity_before": velocity, "friction": friction}
     return to_json(fields if restitution is None else {**fields, "restitution": restitution})
 
 

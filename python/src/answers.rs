@@ -137,6 +137,8 @@ impl Answers {
         let make = || {
             let array = PyArray1::from_vec(py, self.with(|arrays| std::mem::take(list(arrays))));
             let array = if shape.len() == 1 { array.into_any() } else { array.reshape(shape.to_vec())?.into_any() };
+            // What is made of them later relies on them.
+            array.getattr("flags")?.setattr("writeable", false)?;
             Ok::<_, PyErr>(array.unbind())
         };
         made.get_or_try_init(py, make).map(|array| array.clone_ref(py))
@@ -219,7 +221,8 @@ impl Answers {
         )
     }
 
-    /// Of each outcome and contact [tangential, normal] [N s], (m, contacts, 2); NaN if the contact is not closed.
+    /// Of each outcome and contact [tangential, normal] [N s], (m, contacts, 2); NaN if the contact is not closed or the
+    /// outcome is not decided.
     #[getter]
     fn impulse(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.of(Aspect::Impact, "impulse")?;
@@ -231,7 +234,8 @@ impl Answers {
         )
     }
 
-    /// Of each outcome and contact [tangential, normal] [N], (m, contacts, 2); NaN if the contact is not closed.
+    /// Of each outcome and contact [tangential, normal] [N], (m, contacts, 2); NaN if the contact is not closed or the
+    /// outcome is not decided.
     #[getter]
     fn force(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.of(Aspect::Forces, "force")?;
@@ -243,7 +247,7 @@ impl Answers {
         )
     }
 
-    /// Of each outcome v after the impact, (m, nq) in the order of `coordinates` [m/s, rad/s].
+    /// Of each outcome v after the impact, (m, nq) in the order of `coordinates` [m/s, rad/s]; NaN if it is not decided.
     #[getter]
     fn velocity_after(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.of(Aspect::Impact, "velocity_after")?;
@@ -255,7 +259,7 @@ impl Answers {
         )
     }
 
-    /// Of each outcome the rate of v, (m, nq) in the order of `coordinates` [m/s^2, rad/s^2].
+    /// Of each outcome the rate of v, (m, nq) in the order of `coordinates` [m/s^2, rad/s^2]; NaN if it is not decided.
     #[getter]
     fn acceleration(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.of(Aspect::Forces, "acceleration")?;

@@ -3,7 +3,7 @@
 use crate::answers::{Answers, Table};
 use crate::rows::{Asker, Rows, rough};
 use crate::study::limit;
-use crate::values::{choice, from_json, refused, to_json};
+use crate::values::{choice, from_json, refused, to_json, warn};
 use crate::watch::{budget, without_python};
 use crate::{picture, study};
 use heelstrike::cli::{BASES, DIFFERENCES, Meshes, PLANES, ROWS, RecordingOptions, Seconds, from_zero};
@@ -11,9 +11,9 @@ use heelstrike::gait::Touching;
 use heelstrike::pipeline::{Aspect, Options};
 use heelstrike::read::documents::utf8;
 use heelstrike::reductions::Reductions;
-use heelstrike::robot::Reduction;
+use heelstrike::robot::{FreezeReason, Reduction};
 use heelstrike::state::NamedContact;
-use heelstrike::write::append_line;
+use heelstrike::write::{append_line, notes};
 use heelstrike::{Defaults, Description, Detail, Error, Friction, Inspection, Pipeline, Reason, Report, State};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -172,7 +172,7 @@ impl Robot {
     fn new(py: Python<'_>, path: PathBuf, options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
         let bytes = py.import("heelstrike._values")?.call_method1("read", (&path,))?;
         let text = utf8(bytes.extract()?).map_err(refused);
-        let robot = text.and_then(|text| Self::of(text, &path, options));
+        let robot = text.and_then(|text| Self::of(py, text, &path, options));
         robot.map_err(|error| {
             // As a message of the command has it.
             let named = error.value(py).setattr("file", &path);
@@ -183,8 +183,8 @@ impl Robot {
     /// A robot from the text of a URDF file; meshes are looked for in the current folder.
     #[staticmethod]
     #[pyo3(signature = (text, **options))]
-    fn from_string(text: &str, options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
-        Self::of(text, Path::new(""), options)
+    fn from_string(py: Python<'_>, text: &str, options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
+        Self::of(py, text, Path::new(""), options)
     }
 
     /// The robot's name in its file.
@@ -205,20 +205,15 @@ impl Robot {
         self.model.robot.reading.plane.name()
     }
 
-    /// Values of joints that `hold` fixed, and of those that mimic them; all others without a coordinate are at zero.
+    /// Values of joints that `hold` fixed, and of those that follow joints without a coordinate; all others without a
+    /// coordinate are at zero.
     #[getter]
-    fn held(&self) -> PyResult<HashMap<&str, f64>> {
-        let Model { description, reduction, .. } = &*self.model;
-        let ends = description.mimicked().map_err(refused)?;
-        let value = |joint: usize| reduction.hold.iter().find(|held| held.0 == joint).map(|held| held.1);
-        let held = ends.iter().enumerate().filter_map(|(joint, end)| {
-            let value = match end {
-                Some(end) => end.multiplier * value(end.joint)? + end.offset,
-                None => value(joint)?,
-            };
-            Some((&*description.joints[joint].name, value))
+    fn held(&self) -> HashMap<&str, f64> {
+        let held = self.model.robot.reading.frozen.iter().filter_map(|joint| match joint.reason {
+            FreezeReason::Asked { value } | FreezeReason::Follows { value, .. } => Some((&*joint.name, value)),
+            _ => None,
         });
-        Ok(held.collect())
+        held.collect()
     }
 
     /// What was read: plane, masses [kg], links, joints, feet, what was left out; as `heelstrike inspect --format
@@ -364,8 +359,8 @@ impl Robot {
 
     #[staticmethod]
     #[pyo3(signature = (text, path, options))]
-    fn _again(text: &str, path: PathBuf, options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
-        Self::of(text, &path, options)
+    fn _again(py: Python<'_>, text: &str, path: PathBuf, options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
+        Self::of(py, text, &path, options)
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
@@ -381,13 +376,24 @@ impl Robot {
 }
 
 impl Robot {
-    fn of(text: &str, path: &Path, options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
+    fn of(py: Python<'_>, text: &str, path: &Path, options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
         let model = Model::read(text, path, options)?;
+        warn(py, model.robot.reading.cautions.iter().cloned())?;
         let asker = |aspect| Asker::new(&model.robot, Table::new(aspect, &model.robot, &model.options.feet, &[]));
-        let options = options.map(|options| options.copy().map(Bound::unbind)).transpose()?;
-        // Another process may run in another folder.
-        let folder = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-        let source = (text.to_owned(), folder, options);
+        // Another process may run in another folder, and lists and dictionaries may change until it is asked for.
+        let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        let copied = |options| {
+            let copy = py.import("copy")?.call_method1("deepcopy", (options,))?;
+            Ok::<_, PyErr>(copy.cast_into::<PyDict>()?)
+        };
+        let options = options.map(copied).transpose()?;
+        if let Some(options) = &options
+            && let Some(folders) = options.get_item("package_path")?
+        {
+            let folders: Vec<PathBuf> = folders.extract()?;
+            options.set_item("package_path", folders.iter().map(|own| absolute(own)).collect::<Vec<_>>())?;
+        }
+        let source = (text.to_owned(), absolute(path), options.map(Bound::unbind));
         Ok(Self { impacts: asker(Aspect::Impact), forces: asker(Aspect::Forces), model: Arc::new(model), source })
     }
 
@@ -404,7 +410,12 @@ impl Robot {
         let friction = mu.map(friction).transpose()?;
         let asked = Asked { aspect, friction, detail, next };
         let model = &slf.get().model;
-        let (out, ()) = without_python(py, || model.answer(&text, asked, |_, _, _| ()))?.map_err(refused)?;
+        let answered = || {
+            let is_other = |state: &State| friction.is_some() && state.scene.friction.default != friction;
+            model.answer(&text, asked, |state, _, _| is_other(state))
+        };
+        let (out, has_own) = without_python(py, answered)?.map_err(refused)?;
+        warn(py, notes::own_friction(has_own.into(), "state"))?;
         let kind = if aspect == Aspect::Impact { "impact" } else { "forces" };
         let mu = friction.map(|own| own.to_string());
         from_json(py, &out, Some((slf, kind, text, mu).into_pyobject(py)?.into_any()))

@@ -8,7 +8,7 @@ use heelstrike::batch::{Sink, TaskSource, run};
 use heelstrike::budget::TotalBudget;
 use heelstrike::cli::threads;
 use heelstrike::pipeline::Options;
-use heelstrike::state::NamedContact;
+use heelstrike::state::{Ground, NamedContact};
 use heelstrike::write::Arrays;
 use heelstrike::{Defaults, Error, Friction, Pipeline, Reason, State};
 use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
@@ -105,6 +105,9 @@ impl Given<'_> {
 /// The array as f64 in C order, with this many numbers in each of its rows; it is copied only if it is something else.
 fn array<'py>(what: &str, value: &Bound<'py, PyAny>, columns: Option<usize>) -> PyResult<(usize, Given<'py>)> {
     let py = value.py();
+    let is_masked = value.cast_exact::<PyArrayDyn<f64>>().is_err() && value.hasattr("filled")?;
+    let filled = || value.call_method1("astype", ("float64",))?.call_method1("filled", (f64::NAN,));
+    let value = &if is_masked { filled()? } else { value.clone() };
     let own = value.cast::<PyArrayDyn<f64>>().ok().filter(|own| own.is_c_contiguous() && own.is_aligned()).cloned();
     let own = match own {
         Some(own) => own,
@@ -162,12 +165,25 @@ impl Asker {
             let named: Vec<&str> = named.iter().map(String::as_str).collect();
             Arc::new(Table::new(self.plain.table.aspect, &model.robot, &model.options.feet, &named))
         };
-        let table = state.scene.contacts.as_deref().map_or_else(|| Arc::clone(&self.plain.table), of_contacts);
+        // On a profile every foot may touch twice, as in a notch.
+        let twice = |link: usize| [(); 2].map(|()| NamedContact { link, offset: [0.0; 3], radius: 0.0 });
+        let on_profile =
+            || (0..model.robot.links.len()).filter(|&link| has_foot(model, link)).flat_map(twice).collect::<Vec<_>>();
+        let table = match (&state.scene.contacts, &state.scene.ground) {
+            (Some(contacts), _) => of_contacts(contacts),
+            (None, Ground::Profile(_)) => of_contacts(&on_profile()),
+            (None, Ground::Slope(_)) => Arc::clone(&self.plain.table),
+        };
         let fields = Some(py.import("copy")?.call_method1("deepcopy", (fields,))?.unbind());
         let common = Arc::new(Common { fields, state, table });
         *self.last.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::clone(&common));
         Ok(common)
     }
+}
+
+/// Whether a link has a shape of the file or one that was added.
+fn has_foot(model: &Model, link: usize) -> bool {
+    !model.robot.links[link].shapes.is_empty() || model.options.feet.iter().any(|foot| foot.link == link)
 }
 
 /// Whether both are the same and of Python's own types.

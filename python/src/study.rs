@@ -158,7 +158,8 @@ fn found(
     let dropped = dropped.into_inner().unwrap_or_default();
     let of_table = notes::missing(&header).into_iter().chain(notes::left_out(&header, &dropped));
     let nothing = (summary.states == 0).then(|| recording.nothing_found(thresholds, &lowest));
-    let notes = of_table.chain(notes::own_friction(summary.own_friction, "state")).chain(nothing).collect();
+    let of_states = notes::own_friction(summary.own_friction, "state").into_iter().chain(notes::early(summary.early));
+    let notes = of_table.chain(of_states).chain(nothing).collect();
     let lines: Vec<&[u8]> = lines.trim_ascii_end().split(|&byte| byte == b'\n').collect();
     Ok(([b"[", &*lines.join(&b','), b"]"].concat(), notes))
 }

@@ -248,3 +248,63 @@ def test_other_models_are_refused_by_name(package, robot):
         package.layout(other, *state)
     with pytest.raises(ValueError, match="the model needs"):
         package.layout(robot, state[0][1:], state[1])
+
+
+FLOATING = """<robot name="hopper"><link name="world"/>
+  <joint name="free" type="floating"><parent link="world"/><child link="body"/><origin xyz="0.2 0 0.7"/></joint>
+  <link name="body"><inertial><mass value="5"/>
+    <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial></link></robot>"""
+
+
+def test_base_that_pinocchio_counts_from_elsewhere_is_refused():
+    model = peer("pinocchio").buildModelFromXML(FLOATING)
+    with pytest.raises(ValueError, match="the base's joint free is not placed at the world's origin"):
+        heelstrike.from_pinocchio(model)
+
+
+def test_motion_of_a_base_that_the_robot_has_fixed_is_refused():
+    other = Pinocchio()
+    fixed = heelstrike.Robot.from_string(URDF, base="fixed")
+    q, v = other.pin.neutral(other.model), np.zeros(other.model.nv)
+    assert other.layout(fixed, q, v)[0].shape == (1, 4)
+    v[0] = 3
+    with pytest.raises(ValueError, match="the base, which is fixed in the planar robot, moves by 3.000e\\+00 m/s"):
+        other.layout(fixed, q, v)
+    q[2], v[0] = 1, 0
+    with pytest.raises(ValueError, match="the base, which is fixed in the planar robot, is off by 1"):
+        other.layout(fixed, q, v)
+
+
+def test_angles_of_mujoco_count_from_its_reference():
+    mujoco = peer("mujoco")
+    spec = mujoco.MjSpec.from_string(URDF)
+    spec.compiler.fusestatic = False
+    spec.body("torso").add_freejoint()
+    spec.joint("left_hip").ref = 0.5
+    model = spec.compile()
+    robot = heelstrike.Robot.from_string(URDF)
+    q, _ = heelstrike.from_mujoco(model)(robot, model.qpos0, np.zeros(model.nv))
+    assert q[0, robot.coordinates.index("left_hip")] == 0
+
+
+def test_joint_that_follows_a_frozen_one_is_where_its_law_puts_it():
+    pin = peer("pinocchio")
+    inertial = """<inertial><origin xyz="0 0 -0.2"/><mass value="1"/>
+        <inertia ixx="0.02" ixy="0" ixz="0" iyy="0.02" iyz="0" izz="0.02"/></inertial>"""
+    limit = '<limit lower="-6" upper="6" effort="1" velocity="1"/>'
+    text = f"""<robot name="b"><link name="body">{inertial}</link><link name="thigh">{inertial}</link>
+      <link name="la">{inertial}</link><link name="lb">{inertial}</link>
+      <joint name="hip" type="revolute">{limit}<parent link="body"/><child link="thigh"/><axis xyz="0 1 0"/></joint>
+      <joint name="a" type="revolute">{limit}<origin xyz="0 0 -0.4"/><parent link="thigh"/><child link="la"/>
+        <axis xyz="1 0 0"/></joint>
+      <joint name="b" type="revolute">{limit}<mimic joint="a" multiplier="0.5" offset="0.3"/>
+        <origin xyz="0 0 -0.4"/><parent link="la"/><child link="lb"/><axis xyz="0 1 0"/></joint></robot>"""
+    robot = heelstrike.Robot.from_string(text)
+    assert robot.held == {"b": 0.3}
+    model = pin.buildModelFromXML(text, pin.JointModelFreeFlyer())
+    q, data = pin.neutral(model), model.createData()
+    q[model.idx_qs[model.getJointId("b")]] = 0.3
+    heelstrike.from_pinocchio(model)(robot, q, np.zeros(model.nv))
+    at = model.idx_vs[model.getJointId("hip")]
+    result = robot.impact({"friction": 1, "position": {"base": {"z": 3}}}, matrices=True)
+    assert result["mass_matrix"][3][3] == pytest.approx(pin.crba(model, data, q)[at, at], rel=1e-12)

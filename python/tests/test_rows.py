@@ -110,6 +110,54 @@ def test_refused_row_is_a_value(ramone, walk):
     assert "friction" in silent.error[0] and f"first refusal: {silent.error[0]}" in repr(silent)
 
 
+def test_arrays_cannot_be_changed(ramone, walk):
+    answers = ramone.impacts(*walk(3), friction=1, place="lowest")
+    for array in (answers.verdict, answers.offsets, answers.modes, answers.impulse, answers.velocity_after):
+        with pytest.raises(ValueError, match="read-only"):
+            array[...] = 9
+    assert len(answers.to_pandas()) == len(answers.margin)
+
+
+def test_masked_numbers_are_refused(ramone, walk):
+    q, v = walk(3)
+    masked = np.ma.masked_array(q, mask=np.arange(21).reshape(3, 7) == 10)
+    answers = ramone.impacts(masked, v, friction=1, place="lowest")
+    assert (answers.verdict == Verdict.REFUSED).tolist() == [False, True, False]
+
+
+def test_infinite_friction_may_be_written_as_numbers_are(ramone, walk):
+    q, v = walk(30)
+    expected = ramone.impacts(q, v, friction="infinite", place="lowest")
+    for infinite in (np.inf, "inf", np.float64("inf"), {"default": np.inf}, {"left_foot": "inf", "right_foot": np.inf}):
+        answers = ramone.impacts(q, v, friction=infinite, place="lowest")
+        assert answers.impulse.tobytes() == expected.impulse.tobytes(), infinite
+
+
+def test_numbers_that_are_not_decided_are_nan(walk):
+    robot = heelstrike.Robot(ROOT / "urdf/ramone.urdf", budget=0)
+    spots = [(link, x) for link in ("left_shank", "right_shank", "torso") for x in (0.1, -0.1)]
+    contacts = [{"link": link, "offset": [x, 0, -0.2]} for link, x in spots]
+    answers = robot.impacts(*walk(20), friction=0.5, contacts=contacts)
+    undecided = np.flatnonzero(answers.verdict == Verdict.UNDECIDED)
+    rows = [row for at in undecided for row in range(answers.offsets[at], answers.offsets[at + 1])]
+    rows = [row for row in rows if not answers.proven[row]]
+    assert rows
+    for row in rows:
+        assert np.isnan(answers.impulse[row]).all() and np.isnan(answers.velocity_after[row]).all()
+
+
+def test_foot_in_a_notch_has_two_contacts():
+    text = """<robot name="ball"><link name="ball"><inertial><mass value="1"/>
+        <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial>
+        <collision><geometry><sphere radius="0.1"/></geometry></collision></link></robot>"""
+    ball = heelstrike.Robot.from_string(text)
+    notch = {"profile": [[-1, 1], [0, 0], [1, 1]]}
+    q, v = np.array([[0, 0.1 * np.sqrt(2), 0]]), np.array([[0.0, -1, 0]])
+    answers = ball.impacts(q, v, friction=0, ground=notch)
+    assert (answers.contacts, answers.error) == (["ball", "ball/0", "ball/1"], [None])
+    assert answers.velocity_after.tolist() == [pytest.approx([0, 0, 0], abs=1e-12)]
+
+
 def test_other_arrays_are_converted(ramone, walk):
     q, v = walk(20)
     expected = ramone.impacts(q, v, friction=0.5, place="lowest")

@@ -98,6 +98,29 @@ def test_robots_and_results_go_into_other_processes(ramone):
         heelstrike.plot(other)
 
 
+def test_pickled_robot_is_the_same_whatever_happens_around_it(tmp_path, monkeypatch):
+    text = URDF.read_text().replace('<sphere radius="0.02815"/>', '<mesh filename="package://ramone/foot.obj"/>')
+    (tmp_path / "meshes/ramone").mkdir(parents=True)
+    (tmp_path / "meshes/ramone/foot.obj").write_text("v 0 0 0\nv 0.1 0.1 0\nv 0 0.1 0.1\nf 1 2 3\n")
+    monkeypatch.chdir(tmp_path)
+    hold, feet = {"left_knee": -0.5}, [{"link": "torso"}]
+    robot = heelstrike.Robot.from_string(text, hold=hold, feet=feet, package_path=["meshes"])
+    data, inspected = pickle.dumps(robot), robot.inspect()
+    hold["left_knee"] = 0.1
+    feet.clear()
+    monkeypatch.chdir("/")
+    again = pickle.loads(data)
+    assert (again.held, again.inspect()) == ({"left_knee": -0.5}, inspected)
+
+
+def test_cautions_and_unused_friction_are_warnings(ramone):
+    text = URDF.read_text().replace('<sphere radius="0.02815"/>', '<mesh filename="package://ramone/foot.obj"/>', 1)
+    with pytest.warns(UserWarning, match="1 collision mesh is left out"):
+        heelstrike.Robot.from_string(text)
+    with pytest.warns(UserWarning, match="`friction` is not used where a state has its own"):
+        ramone.impact(STATE, friction=0.1)
+
+
 def test_notes_of_the_command_are_warnings(ramone, tmp_path):
     rows = (ROOT / "examples/gait/ramone_walk.csv").read_text().splitlines()
     own = [f"{row},{'friction' if at == 0 else 0.5}" for at, row in enumerate(rows)]
@@ -174,7 +197,9 @@ def test_problem_is_that_of_the_command():
     expected = command("solve", "-", "--format", "json", input=text)
     assert heelstrike.solve(matrix, velocity, 0.5) == expected
     assert heelstrike.solve(matrix, velocity.ravel(), [0.5], 0.0) == expected
-    assert heelstrike.solve(matrix, velocity, math.inf)["verdict"] == "unique"
+    assert heelstrike.solve(matrix, list(velocity), 0.5) == expected
+    for infinite in (math.inf, "inf", np.array([math.inf])):
+        assert heelstrike.solve(matrix, velocity, infinite)["verdict"] == "unique"
     with pytest.raises(TypeError, match="c is an array or a list, not a float"):
         heelstrike.solve(matrix, 0.5, 0.5)
     with pytest.raises(heelstrike.Refused, match="friction"):

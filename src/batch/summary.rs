@@ -4,7 +4,7 @@ use crate::error::visible;
 use crate::impact::{Analysis, Outcome, Verdict};
 use crate::law::Mode;
 use crate::pipeline::{Aspect, Impact};
-use crate::write::words;
+use crate::write::{notes, words};
 use serde::{Serialize, Serializer};
 use serde_json::Value;
 use std::fmt;
@@ -315,10 +315,7 @@ impl fmt::Display for Summary {
                 visible(what)
             )?;
         }
-        if self.early > 0 {
-            let what = "touchdowns taken above the ground, from heights without noise";
-            writeln!(f, "{what}: {}; if they are of a simulation, give `simulated`", self.early)?;
-        }
+        notes::early(self.early).iter().try_for_each(|note| writeln!(f, "{note}"))?;
         let mut lists: Vec<&ModeCount> = self.modes.iter().filter(|list| !list.modes.is_empty()).collect();
         lists.sort_by_key(|list| std::cmp::Reverse(list.outcomes));
         for list in lists.iter().take(SHOWN) {

@@ -60,8 +60,8 @@ pub enum FreezeReason {
     /// It would lead out of the plane, and is frozen at zero: the angle from a revolute joint's axis to the plane's
     /// normal, or from a prismatic one's (which `slides`) to the plane \[rad\].
     OffPlane { angle: f64, slides: bool },
-    /// It mimics a joint that is frozen.
-    Follows { mimicked: String },
+    /// It mimics a joint that is frozen, which puts it at this value \[rad or m\].
+    Follows { mimicked: String, value: f64 },
     /// A joint of this kind is frozen at zero unless it is the base.
     Kind(JointKind),
     /// It is part of the floating base itself, whose coordinates are x, z and pitch.
@@ -105,7 +105,8 @@ impl fmt::Display for FreezeReason {
                 let wanted = if *slides { "the plane" } else { "the plane's normal" };
                 write!(f, "frozen at zero, its axis being {:.2} degrees off {wanted}", angle.to_degrees())
             }
-            Self::Follows { mimicked } => write!(f, "frozen like {mimicked}, which it follows"),
+            Self::Follows { mimicked, value: 0.0 } => write!(f, "frozen like {mimicked}, which it follows"),
+            Self::Follows { mimicked, value } => write!(f, "frozen at {value} by {mimicked}, which it follows"),
             Self::Kind(kind) => write!(f, "frozen at zero, being {}", kind.name()),
             Self::Base => f.write_str("part of the floating base"),
         }

@@ -54,10 +54,14 @@ impl Robot {
     /// normal; [`Reason::NotFinite`] where sizes or masses add up to more than an f64 holds.
     pub fn reduce(description: &Description, reduction: &Reduction) -> Result<Self> {
         let tolerance = reduction.axis_tolerance.unwrap_or(PARALLEL);
-        let pose = ReferencePose::new(description, &reduction.hold, tolerance)?;
+        let mut pose = ReferencePose::new(description, &reduction.hold, tolerance)?;
         let legs = legs(description, &pose);
         let (plane, plane_because) = find_plane(description, &pose, &legs, reduction.plane);
-        let mut roles = roles(description, &pose, plane);
+        let roles_in = |pose: &ReferencePose| roles(description, pose, plane);
+        let mut roles = roles_in(&pose);
+        while pose.follow(description, |joint| matches!(roles[joint], Role::Frozen(_))) {
+            roles = roles_in(&pose);
+        }
         let found = base::judge(description, &mut roles, reduction.base);
         let rotation = product(&plane.axes(), &pose.rotations[found.root]);
         let tree = Tree::grow(description, (&pose, &roles), found.root, rotation, reduction.reductions);

@@ -1,4 +1,4 @@
-//! The pose in which axes are judged: frozen joints at their values, all others at zero.
+//! The pose in which axes are judged: frozen joints, and those that follow them, at their values, all others at zero.
 //!
 //! ```text
 //!     R_child = R_parent R_origin turn(a, q)          axis in the root's axes = R_parent R_origin a
@@ -43,15 +43,39 @@ impl ReferencePose {
                 frozen[index] = frozen[joint].map(|value| multiplier * value + offset);
             }
         }
-        let mut axes = vec![[0.0; 3]; joints.len()];
-        let mut rotations = vec![Pose::default().rotation(); description.links.len()];
+        let axes = vec![[0.0; 3]; joints.len()];
+        let rotations = vec![Pose::default().rotation(); description.links.len()];
+        let mut pose = Self { frozen, mimicked, axes, rotations, tolerance };
+        pose.turn(description);
+        Ok(pose)
+    }
+
+    /// Finds axes and rotations.
+    fn turn(&mut self, description: &Description) {
+        let Self { frozen, axes, rotations, .. } = self;
         for index in description.outward(description.root) {
-            let joint = &joints[index];
+            let joint = &description.joints[index];
             let origin = product(&rotations[joint.parent], &joint.origin.rotation());
             axes[index] = unit(apply(&origin, unit(joint.axis)));
             rotations[joint.child] = frozen[index].map_or(origin, |value| product(&origin, &frozen_turn(joint, value)));
         }
-        Ok(Self { frozen, mimicked, axes, rotations, tolerance })
+    }
+
+    /// Moves joints that follow one which is frozen at zero to where that puts them; whether there are any.
+    pub(super) fn follow(&mut self, description: &Description, is_frozen: impl Fn(usize) -> bool) -> bool {
+        let mut moved = false;
+        for (index, mimicked) in self.mimicked.iter().enumerate() {
+            let Some(&Mimic { joint, offset, .. }) = mimicked.as_ref() else { continue };
+            let has_place = self.frozen[index].is_some() || offset == 0.0 || !description.joints[index].kind.has_axis();
+            if !has_place && is_frozen(index) && is_frozen(joint) {
+                self.frozen[index] = Some(offset);
+                moved = true;
+            }
+        }
+        if moved {
+            self.turn(description);
+        }
+        moved
     }
 }
 

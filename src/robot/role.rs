@@ -37,7 +37,8 @@ pub(super) fn roles(description: &Description, pose: &ReferencePose, plane: Plan
     let mut roles = alone.clone();
     for (index, mimicked) in pose.mimicked.iter().enumerate() {
         let Some(mimicked) = mimicked else { continue };
-        let follows = || Role::Frozen(FreezeReason::Follows { mimicked: joints[mimicked.joint].name.clone() });
+        let value = pose.frozen[index].unwrap_or(0.0);
+        let follows = || Role::Frozen(FreezeReason::Follows { mimicked: joints[mimicked.joint].name.clone(), value });
         match (&mut roles[index], &alone[mimicked.joint]) {
             (Role::Moves { mimicked: followed, .. }, Role::Moves { .. }) => *followed = Some(mimicked.clone()),
             (role @ Role::Moves { .. }, _) => *role = follows(),

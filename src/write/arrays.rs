@@ -24,9 +24,11 @@ pub struct Arrays {
     /// Per outcome and contact: the mode as a number, in the order of [`Mode`](crate::Mode); [`Arrays::OPEN`] without
     /// contact.
     pub modes: Vec<i8>,
-    /// Per outcome and contact: [tangential, normal] \[N s, of forces N\]; NaN without contact.
+    /// Per outcome and contact: [tangential, normal] \[N s, of forces N\]; NaN without contact, and where the outcome is
+    /// not decided.
     pub impulse: Vec<f64>,
-    /// Per outcome and coordinate: v after the impact \[m/s, rad/s\], of forces its rate \[m/s^2, rad/s^2\].
+    /// Per outcome and coordinate: v after the impact \[m/s, rad/s\], of forces its rate \[m/s^2, rad/s^2\]; NaN where
+    /// the outcome is not decided.
     pub velocity_after: Vec<f64>,
     /// Per outcome: the smallest slack; NaN if there is no inequality.
     pub margin: Vec<f64>,
@@ -165,13 +167,14 @@ impl Arrays {
         self.notes.push(self.verdict.len(), notes(&impact.notes));
         for (at, outcome) in analysis.outcomes.iter().enumerate() {
             let (row, start) = (self.margin.len(), self.modes.len());
+            let number = |entry| if outcome.decided { entry } else { f64::NAN };
             self.modes.resize(start + columns, Self::OPEN);
             self.impulse.resize(2 * (start + columns), f64::NAN);
             for ((&place, mode), impulse) in places.iter().zip(&outcome.modes).zip(&outcome.impulse) {
                 self.modes[start + place] = *mode as i8;
-                self.impulse[2 * (start + place)..][..2].copy_from_slice(impulse);
+                self.impulse[2 * (start + place)..][..2].copy_from_slice(&impulse.map(number));
             }
-            self.velocity_after.extend(outcome.velocity());
+            self.velocity_after.extend(outcome.velocity().map(number));
             self.margin.push(outcome.margin.unwrap_or(f64::NAN));
             self.index.push(outcome.index.unwrap_or(0));
             self.proven.push(outcome.proven);

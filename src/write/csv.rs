@@ -3,7 +3,7 @@
 use crate::contact::Feet;
 use crate::impact::{CONTACT_LIMIT, Family, Next};
 use crate::pipeline::{AT_REST, Aspect, Impact};
-use crate::read::table::{Carried, Form, Header, prefixed};
+use crate::read::table::{Carried, Form, Header, in_columns};
 use crate::state::NamedContact;
 use crate::write::{Refused, Touchdown, words};
 use crate::{Error, Mode, Outcome, Reason, Result, Robot};
@@ -242,9 +242,7 @@ impl Columns {
             columns.push((format!("mode_{contact}"), Text));
             columns.extend(["t", "n"].map(|entry| (format!("{given}_{contact}_{entry}"), Number)));
         }
-        let coordinates = |part: &'static str| {
-            robot.coordinates().map(move |name| (format!("{part}_{}", prefixed(robot, name)), Number))
-        };
+        let coordinates = |part: &'static str| in_columns(robot).map(move |name| (format!("{part}_{name}"), Number));
         columns.extend(coordinates(taken));
         if kind == RowKind::Touchdown {
             let kinds = [Integer, Number, Text, Number, Text, Text];
@@ -439,14 +437,16 @@ impl Columns {
         cells
     }
 
-    fn outcome(&self, number: usize, outcome: &Outcome, places: &[usize], cells: &mut Cells) {
-        cells.0[self.named + 1] = Cell::Integer(number as i64);
+    fn outcome(&self, count: usize, outcome: &Outcome, places: &[usize], cells: &mut Cells) {
+        // Of what is not decided no number is known.
+        let number = |entry| if outcome.decided { Cell::Number(entry) } else { Cell::Empty };
+        cells.0[self.named + 1] = Cell::Integer(count as i64);
         cells.0[self.named + 2] = outcome.margin.map_or(Cell::Empty, Cell::Number);
         cells.0[self.named + 3] = Cell::Boolean(outcome.proven);
         for ((&place, mode), impulse) in places.iter().zip(&outcome.modes).zip(&outcome.impulse) {
             cells.text(place, mode.name());
             if !self.brief {
-                impulse.iter().zip(place + 1..).for_each(|(&entry, at)| cells.number(at, entry));
+                impulse.iter().zip(place + 1..).for_each(|(&entry, at)| cells.0[at] = number(entry));
             }
         }
         if let Some(Next { verdict, modes, .. }) = outcome.next.as_ref().filter(|_| self.next) {
@@ -456,7 +456,7 @@ impl Columns {
             cells.text(self.named + FIRST.len() + 1, modes.collect::<Vec<_>>().join("; "));
         }
         let velocities = outcome.velocity().take(self.coordinates);
-        velocities.zip(self.velocities()..).for_each(|(velocity, at)| cells.number(at, velocity));
+        velocities.zip(self.velocities()..).for_each(|(velocity, at)| cells.0[at] = number(velocity));
         if !self.brief {
             cells.text(self.last(), border(outcome));
         }

@@ -40,6 +40,12 @@ pub fn left_out(header: &Header, dropped: &Dropped) -> impl Iterator<Item = Stri
     not_read.into_iter().chain(projected)
 }
 
+/// How many touchdowns were taken above the ground, of feet whose heights have no noise.
+pub fn early(count: u64) -> Option<String> {
+    let what = "touchdowns taken above the ground, from heights without noise";
+    (count > 0).then(|| format!("{what}: {count}; if they are of a simulation, give `simulated`"))
+}
+
 /// Which parameters change nothing.
 pub fn unused(study: &Study) -> impl Iterator<Item = String> {
     study.unused().into_iter().map(|name| format!("nothing in the state or the robot depends on {name}"))

@@ -178,8 +178,8 @@ impl Header {
     /// Names of all columns of coordinates that the table could have and has not.
     fn absent(&self, robot: &Robot, rates: Rates) -> Vec<String> {
         let absent = |prefix: &'static str, moving: fn(usize) -> TableColumn| {
-            let absent = robot.coordinates().enumerate().filter(move |&(at, _)| self.place(moving(at)).is_none());
-            absent.map(move |(at, name)| (at, format!("{prefix}{}", prefixed(robot, name))))
+            let absent = in_columns(robot).enumerate().filter(move |&(at, _)| self.place(moving(at)).is_none());
+            absent.map(move |(at, name)| (at, format!("{prefix}{name}")))
         };
         // The quaternion has the pitch.
         let positions = absent("q_", TableColumn::Position).filter(|(at, _)| self.spatial.is_none() || *at != 2);
@@ -301,7 +301,7 @@ impl Header {
         let velocity = first(|column| matches!(column, TableColumn::Velocity(_)));
         let position = first(|column| matches!(column, TableColumn::Position(_) | TableColumn::Quaternion(_)));
         let missing = |what: &str, prefix: &str, hint: &str| {
-            let example = robot.coordinates().next().map_or("base_x".to_owned(), |name| prefixed(robot, name));
+            let example = in_columns(robot).next().unwrap_or("base_x".to_owned());
             Err(in_table(Reason::Missing(format!("a column of {what}, such as {prefix}{example},")), hint))
         };
         let has_time = self.time.is_some();
@@ -485,14 +485,15 @@ fn coordinate(prefix: &str, name: &str, robot: &Robot, moving: fn(usize) -> Tabl
         let hint = format!("write results with `brief`, or give `foreign: {prefix}{}` to copy the column", short(name));
         return Err(Error::new(reason).hint(hint));
     }
-    let known: Vec<String> = robot.coordinates().map(|known| format!("{prefix}{}", prefixed(robot, known))).collect();
+    let known: Vec<String> = in_columns(robot).map(|known| format!("{prefix}{known}")).collect();
     let unknown = Error::new(Reason::UnknownName { what: "coordinate", name: short(name) });
     Err(unknown.did_you_mean(&format!("{prefix}{}", short(name)), known.iter().map(String::as_str)))
 }
 
-/// A coordinate's name in columns, after `q_` and `v_`.
-pub(crate) fn prefixed(robot: &Robot, name: &str) -> String {
-    if robot.joint(name).is_some() { name.to_owned() } else { format!("base_{name}") }
+/// The coordinates' names in columns, after `q_` and `v_`.
+pub(crate) fn in_columns(robot: &Robot) -> impl Iterator<Item = String> {
+    let of_base = |at| if at < robot.base_dofs() { "base_" } else { "" };
+    robot.coordinates().enumerate().map(move |(at, name)| format!("{}{name}", of_base(at)))
 }
 
 /// A list of names that may be long, for messages.

@@ -28,7 +28,7 @@ mod columns;
 #[cfg(feature = "columnar")]
 pub use columns::{Part, Parts};
 pub use flat::is_flat;
-pub(crate) use header::prefixed;
+pub(crate) use header::in_columns;
 pub use header::{Header, Rates};
 pub use records::{Form, Quotes, Quoting};
 pub use rows::{Carried, CarriedValue, Row, Rows};

@@ -374,8 +374,8 @@ impl Row<'_> {
         };
         let what = "friction".to_owned();
         match value {
-            0.0..=f64::MAX => Ok(Some(Friction::Finite(value))),
-            f64::INFINITY => Err(self.refuse(at, Reason::NotFinite { what, value }).hint("did you mean infinite?")),
+            // Columns of numbers have no other way to say it.
+            0.0..=f64::INFINITY => Ok(Some(value.into())),
             _ if value.is_nan() => Err(self.refuse(at, Reason::NotFinite { what, value })),
             _ => Err(self.refuse(at, Reason::OutOfRange { what, allowed: "0 or more", value })),
         }

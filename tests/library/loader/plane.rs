@@ -332,9 +332,11 @@ fn a_mimic_joint_of_a_frozen_joint_is_frozen_with_it() {
     };
     let robot = load(&mimic("1 0 0"));
     assert!(robot.joints.is_empty() && robot.mimic_joints.is_empty());
-    // At zero, whatever its offset.
-    assert_eq!(still(&robot, "k"), &FreezeReason::Follows { mimicked: "j".into() });
-    assert_eq!(robot.links[2].point::<f64>([0.0, 0.0, -1.0]), [0.0, -3.0]);
+    // At its offset, as the mimicked one is at zero.
+    let frozen = still(&robot, "k");
+    assert_eq!(frozen, &FreezeReason::Follows { mimicked: "j".into(), value: 0.1 });
+    assert_eq!(frozen.to_string(), "frozen at 0.1 by j, which it follows");
+    assert_at(robot.links[2].point::<f64>([0.0, 0.0, -1.0]), [-0.1_f64.sin(), -2.0 - 0.1_f64.cos()]);
 
     // A mimicked joint that is frozen at a value takes its mimic joint along: 2 * 0.2 + 0.1.
     let robot = holding(&mimic("0 1 0"), &[(0, 0.2)]);
