@@ -207,7 +207,7 @@ fn rows_that_do_not_fit_are_refused_with_their_place() {
 /// A column of numbers has no word.
 #[test]
 fn infinite_friction_is_a_word_or_a_number() {
-    let found = states(b"q_knee,friction\n0,inf\n0,infinite\n0,1e999\n", &leg());
+    let found = states(b"q_knee,v_knee,friction\n0,0,inf\n0,0,infinite\n0,0,1e999\n", &leg());
     let friction: Vec<_> = found.iter().map(|state| state.as_ref().unwrap().scene.friction.default).collect();
     assert_eq!(friction, [Some(Friction::Infinite); 3]);
 }
