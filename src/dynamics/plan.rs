@@ -321,6 +321,12 @@ impl<T: Real> Plan<T> {
         std::iter::successors(Some(body), |&body| self.bodies[body].parent).map(|body| (body, &self.bodies[body]))
     }
 
+    /// The body that moves a body and that no other moves in between: itself unless its joint is fixed or braked.
+    pub(crate) fn rigid_body(&self, body: usize) -> usize {
+        let moves = |&(_, own): &(usize, &PlanBody<T>)| own.column.is_some() || own.parent.is_none();
+        self.way_to_root(body).find(moves).map_or(body, |(index, _)| index)
+    }
+
     /// Number of columns: the coordinates whose joints are not braked.
     pub fn columns(&self) -> usize {
         self.coordinates.len()

@@ -14,7 +14,7 @@ use crate::dynamics::{
     Closed, Constraints, ContactPoint, Loop, Motion, PointImpulse, Spring, SpringLoad, SpringPoint, Workspace,
     add_articulated_impulse, add_impulse, articulated_acceleration, articulated_delassus, articulated_inertias, bias,
     close, contact_jacobian, delassus, demands, eliminate_loops, factorize, kinematics, loop_impulse, mass_matrix,
-    orthogonalize, point_velocity,
+    orthogonalize, point_velocity, settle,
 };
 use crate::planar::{Pair, Vector};
 use crate::robot::Robot;
@@ -215,6 +215,17 @@ impl<T: Real> Assembly<T> {
     /// J and c. The contact `stance` is exactly at rest.
     pub fn contact_jacobian(&mut self, velocity: &[T], stance: Option<usize>) {
         contact_jacobian(&self.plan, &self.points, velocity, stance, &mut self.workspace);
+    }
+
+    /// Takes c of contacts of a body of which another one is `resting` as if that did not move (see [`settle`]).
+    pub fn settle(
+        &mut self,
+        velocity: &[T],
+        resting: &[bool],
+        stance: Option<usize>,
+        settled: impl FnMut(usize, usize),
+    ) {
+        settle(&self.plan, &self.points, velocity, (resting, stance), &mut self.workspace, settled);
     }
 
     /// G, without what the constraints do not let move.

@@ -136,6 +136,7 @@ impl<'a> ExactState<'a> {
         assembly.constrain(foot);
         assembly.close(velocity);
         assembly.contact_jacobian(velocity, self.stance);
+        assembly.settle(velocity, self.resting, self.stance, |_, _| {});
     }
 
     /// What the applied impulses change in v, by coordinate, once M^-1 is prepared.
@@ -283,7 +284,7 @@ impl Source for ExactState<'_> {
     fn shared_tangent(&self, contact: usize) -> Option<usize> {
         let &Level { with, .. } = self.levels.get(contact)?.as_ref()?;
         // Accelerations differ by what the body's turn brings along.
-        (matches!(self.asked, Asked::Impact) && self.resting[contact] == self.resting[with]).then_some(with)
+        matches!(self.asked, Asked::Impact).then_some(with)
     }
 }
 

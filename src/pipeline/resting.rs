@@ -73,7 +73,6 @@ impl Pipeline<'_> {
             if let Some(because) = because {
                 resting[index] = true;
                 self.assembly.workspace.contact_velocity[index] = [0.0; 2];
-                self.bounds.velocity[index] = [0.0; 2];
                 if !self.options.brief && (slow > 0.0 || self.options.resting_speed.is_none()) {
                     notes.push(format!("{name}{AT_REST} although it moves at {slow:.1e} m/s ({because})"));
                 }
@@ -84,6 +83,12 @@ impl Pipeline<'_> {
                 ));
             }
         }
+        // Contacts that depend on each other have impulses only for velocities that do, too.
+        let bounds = &mut self.bounds.velocity;
+        self.assembly.settle(velocity, resting, place, |index, rest| {
+            bounds[index] = [length(bounds[index]) + length(bounds[rest]); 2];
+        });
+        bounds.iter_mut().zip(&*resting).filter(|(_, rests)| **rests).for_each(|(bound, _)| *bound = [0.0; 2]);
     }
 
     /// Why a contact is taken as resting whose speed, or one component of it, is `slow`, rounded by up to `bound`; `None`

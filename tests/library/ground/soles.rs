@@ -189,6 +189,52 @@ fn circles_on_a_profile_are_not_level_with_points() {
     assert_eq!(analysis.verdict, Verdict::Ambiguous);
 }
 
+/// A foot turns about its heel, which rests but for rounding, or for the digits of the rates, and its toe lands: the
+/// answer is that of a heel that stands.
+#[test]
+fn a_toe_lands_about_a_heel_that_rests_to_rounding() {
+    let robot = one_legged([0.0; 2]);
+    let joints = ["hip", "ankle"];
+    for seed in 0..60 {
+        let mut random = Random::new(seed);
+        let mut number = || random.between(-1.0, 1.0);
+        let (pitch, hip, rates) = (number(), number(), [number(), number(), number()]);
+        let turn = rates.iter().sum::<f64>();
+        let friction = &[json!("infinite"), json!(0.8), json!(0.1)][seed as usize % 3];
+        let state = |digits: Option<usize>, base: Option<[f64; 2]>| {
+            let written = |rate: f64| digits.map_or(rate, |digits| format!("{rate:.digits$}").parse().unwrap());
+            let mut state = json!({
+                "position": {"base": {"pitch": pitch}, "joints": {"hip": hip, "ankle": -(pitch + hip)}},
+                "velocity": {"base": {"pitch": written(rates[0])},
+                    "joints": {joints[0]: written(rates[1]), joints[1]: written(rates[2])}},
+                "friction": friction,
+            });
+            match base.map(|base| base.map(written)) {
+                None => state["stance"] = json!("foot"),
+                Some([x, z]) => {
+                    state["place"] = json!("lowest");
+                    (state["velocity"]["base"]["x"], state["velocity"]["base"]["z"]) = (json!(x), json!(z));
+                }
+            }
+            state
+        };
+        let options = Options { matrices: true, ..Options::default() };
+        let standing = try_impact(&robot, options, state(None, None)).expect("an answer");
+        let jacobian = &standing.matrices.as_ref().expect("asked for").contact_jacobian;
+        // The base's x and z come first, and move the heel as they are.
+        let along = |row: &Vec<f64>| -row[2..].iter().zip(&rates).map(|(own, rate)| own * rate).sum::<f64>();
+        let base = [along(&jacobian[0]), along(&jacobian[1])];
+        for (digits, within) in [(None, 1e-12), (Some(9), 1e-7)] {
+            let resting = impact(&robot, state(digits, Some(base)));
+            assert!(resting.resting[0] && resting.analysis.as_ref().is_some_and(|analysis| analysis.proven));
+            assert_eq!(modes(&resting), modes(&standing), "seed {seed}, {digits:?}, turning at {turn}");
+            for (one, other) in velocities_after(&resting).iter().zip(velocities_after(&standing)) {
+                assert!(near(one, &other, within * largest(one).max(1.0)), "seed {seed}: {one:?} is not {other:?}");
+            }
+        }
+    }
+}
+
 /// A sole that the angles' rounding tilts by 1e-16 rad has no impulses of 1e16 N s: the answer is that of a sole that
 /// no rounding tilts.
 #[test]
