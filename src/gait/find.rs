@@ -5,7 +5,7 @@ use super::carry::Interpolation;
 use super::clip::{Clock, ClockStep};
 use super::noise::MEASURED;
 use super::points::Points;
-use super::strike::{Strike, Way};
+use super::strike::{CLEAN, Strike, Way};
 use super::window::{Frame, SMOOTH, Window};
 use super::{At, Heights, Landing, Sample, Sampled, Thresholds, Touching};
 use crate::contact::Feet;
@@ -172,11 +172,17 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
                 if height <= 0.0 {
                     strikes.push(strike);
                 } else if falling && height >= last {
-                    // It stops a rounding above the ground, or has bounced since the row before or the one before that.
-                    let bounced = [row.checked_sub(1), Some(row)].into_iter().flatten();
-                    let bounced = bounced.filter(|&row| self.onward_height(point, row) <= 0.0).min();
-                    let stops = (last <= self.level).then_some(Strike { height: None, ..strike });
-                    strikes.extend(stops.or(bounced.map(|row| Strike { row, smooth: row, ..strike })));
+                    // It has bounced since the row before or the one before that, or it stops a rounding above the
+                    // ground: in a row to which those before lead it has not been stopped yet.
+                    let stops = last <= self.level;
+                    let before = row.checked_sub(1);
+                    let fall = before.map_or(0.0, |before| self.window.height(point, before) - last);
+                    let over = if stops { self.level + CLEAN * fall } else { 0.0 };
+                    let bounced = before.filter(|&row| self.onward_height(point, row) <= -over);
+                    let bounced =
+                        bounced.or_else(|| Some(row).filter(|&row| !stops && self.onward_height(point, row) <= 0.0));
+                    let stops = stops.then_some(Strike { height: None, ..strike });
+                    strikes.extend(bounced.map(|row| Strike { row, smooth: row, ..strike }).or(stops));
                 }
             }
             let falling = height < last;
@@ -267,7 +273,9 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
             let also: Vec<usize> = also.iter().map(|strike| strike.point).collect();
             let (window, heights, level) = (&self.window, self.heights, self.level);
             let mut sample = Arrival { window, points: &mut self.points, at, heights, level }.sample(&first);
-            let (shift_z, striking) = self.points.touch(&mut sample.state, first.point, &also, touching, together);
+            let level = (heights == Heights::True).then_some(level);
+            let (shift_z, striking) =
+                self.points.touch(&mut sample.state, (first.point, &also), touching, (together, level));
             let noise = self.window.measured(first.point);
             let is_clean = noise.is_some_and(|noise| noise <= EXACT * self.thresholds.above);
             let is_early = heights == Heights::Recorded && first.is_soft() && is_clean;

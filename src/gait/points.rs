@@ -74,15 +74,14 @@ impl<'r> Points<'r> {
     }
 
     /// Shifts `state` along z so that the point `striking` is at z = 0, and names its contacts, those that strike as
-    /// well (`also`) among them, `together` as in [`Points::is_free`]; gives the shift \[m\] and the striking one's
-    /// name.
+    /// well (`also`) among them, `together` as in [`Points::is_free`]. Where heights are true, standing points touch that
+    /// are no higher than `level` above it \[m\], of whatever body. Gives the shift \[m\] and the striking one's name.
     pub fn touch(
         &mut self,
         state: &mut State,
-        striking: usize,
-        also: &[usize],
+        (striking, also): (usize, &[usize]),
         touching: Touching,
-        together: f64,
+        (together, level): (f64, Option<f64>),
     ) -> (f64, String) {
         let placement = self.placement(&state.position);
         let places: Vec<_> = self.points.iter().map(|&(_, point)| HalfPlane::LEVEL.lowest(&placement, point)).collect();
@@ -92,9 +91,16 @@ impl<'r> Points<'r> {
         match touching {
             Touching::Strike => {}
             Touching::Slow { speed, height } => {
+                let stands = |point: usize, height: f64| {
+                    above(point) <= height && self.speed(point, &placement, &state.velocity) < speed
+                };
                 let mut feet = self.lowest_of_other_bodies(&closed, &places);
-                feet.retain(|&point| above(point) <= height && self.speed(point, &placement, &state.velocity) < speed);
+                feet.retain(|&point| stands(point, height));
                 closed.append(&mut feet);
+                let all = 0..level.map_or(0, |_| places.len());
+                let on_the_ground =
+                    all.filter(|&point| stands(point, level.unwrap_or(0.0)) && !closed.contains(&point));
+                closed.extend(on_the_ground.collect::<Vec<_>>());
             }
             Touching::Near { height } => {
                 let free = |point: &usize| above(*point) <= height && self.is_free(*point, &places, together);

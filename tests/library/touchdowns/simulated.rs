@@ -173,6 +173,48 @@ fn slow_rows_are_kept_as_long_as_fast_ones() {
 }
 
 #[test]
+fn a_body_may_rest_a_rounding_above_the_ground() {
+    let rests: [fn(f64) -> [Vec<f64>; 2]; 4] = [
+        |_| [vec![0.1], vec![0.0]],
+        |_| [vec![0.1 + 1e-16], vec![0.0]],
+        |_| [vec![0.1 + 1e-12], vec![0.0]],
+        |_| [vec![0.1 + 1e-9], vec![0.0]],
+    ];
+    for (at, after) in rests.into_iter().enumerate() {
+        let motion = Motion { after, ..ball() };
+        for phase in [0.0, 0.3, 0.6, 0.9] {
+            let found = motion.found(&motion.table(0.01, phase, true, 1.0), true, At::Crossing);
+            let [Sample { time, state, .. }] = &found[..] else { panic!("{at}, phase {phase}: {}", found.len()) };
+            assert!((time - motion.strikes).abs() < 1e-8, "{at}, phase {phase}: {time}");
+            assert!((state.velocity[1] + G * time).abs() < 1e-8, "{at}, phase {phase}: {}", state.velocity[1]);
+        }
+    }
+}
+
+#[test]
+fn a_standing_heel_takes_part_when_its_toe_strikes() {
+    let pivot = |time: f64| {
+        let (sin, cos) = (time - 0.5).sin_cos();
+        let position = [0.2 * cos + 0.1 * sin, 0.1 * cos - 0.2 * sin, time - 0.5];
+        [position.to_vec(), vec![0.1 * cos - 0.2 * sin, -0.1 * sin - 0.2 * cos, 1.0]]
+    };
+    let motion = Motion {
+        robot: robot(&urdf::body(1.0, &(point_at(-0.2, -0.1) + &point_at(0.2, -0.1)))),
+        columns: ["q_base_x,q_base_z,q_base_pitch", "v_base_x,v_base_z,v_base_pitch"],
+        strikes: 0.5,
+        before: pivot,
+        after: |_| [vec![0.2, 0.1, 0.0], vec![0.0; 3]],
+    };
+    let found = motion.found(&motion.table(0.005, 0.4, true, 1.0), true, At::Crossing);
+    let [touchdown] = &found[..] else { panic!("{} touchdowns", found.len()) };
+    let answer = impact(&motion.robot, touchdown.state.to_json(&motion.robot));
+    assert_eq!(answer.contacts.len(), 2);
+    for outcome in &answer.analysis.expect("an analysis").outcomes {
+        assert!(outcome.velocity_after.iter().all(|[_, normal]| *normal >= -1e-12), "{outcome:?}");
+    }
+}
+
+#[test]
 fn a_simulation_that_ends_aloft_has_no_touchdown() {
     let motion = ball();
     // The last row is 0.4 mm above the ground, where a recorded foot of this size would have touched.
