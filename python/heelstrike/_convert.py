@@ -70,7 +70,7 @@ class Layout:
 
         Raises ValueError if the motion leaves the robot's plane by more than `tolerance` [rad, m/s, rad/s], a joint
         that the planar robot does not have moves, or one does not follow the joint that it mimics; the message says by
-        how much. A row with a number that is not finite becomes NaN, which `Robot.impacts` refuses.
+        how much. A row with a number that is not finite or masked becomes NaN, which `Robot.impacts` refuses.
         """
         given_q, given_v = self._rows("q", q, self.nq), self._rows("v", v, self.nv)
         if len(given_q) != len(given_v):
@@ -96,7 +96,7 @@ class Layout:
 
     @staticmethod
     def _rows(what: str, values: ArrayLike, columns: int) -> Array:
-        rows = np.atleast_2d(np.asarray(values, dtype=float))
+        rows = np.atleast_2d(np.ma.asarray(values, dtype=float).filled(np.nan))
         if rows.ndim != 2 or rows.shape[1] != columns:
             raise ValueError(f"{what} has the shape {np.shape(values)}, and the model needs (n, {columns})")
         return rows

@@ -10,6 +10,8 @@ import os
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
 from ._core import Answers, Robot
 
 
@@ -82,7 +84,7 @@ def problem(delassus: Any, velocity: Any, friction: Any, restitution: Any) -> st
     for name, value in (("G", delassus), ("c", velocity)):
         if not isinstance(value, (list, tuple)) and not hasattr(value, "shape"):
             raise TypeError(f"{name} is an array or a list, not a {type(value).__name__}")
-    if velocity and not isinstance(velocity[0], (list, tuple)) and not hasattr(velocity[0], "shape"):
+    if velocity and np.ndim(velocity[0]) == 0:
         velocity = [velocity[at : at + 2] for at in range(0, len(velocity), 2)]
     fields = {"delassus": delassus, "velocity_before": velocity, "friction": friction}
     return to_json(fields if restitution is None else {**fields, "restitution": restitution})

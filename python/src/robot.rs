@@ -172,7 +172,7 @@ impl Robot {
     fn new(py: Python<'_>, path: PathBuf, options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
         let bytes = py.import("heelstrike._values")?.call_method1("read", (&path,))?;
         let text = utf8(bytes.extract()?).map_err(refused);
-        let robot = text.and_then(|text| Self::of(py, text, &path, options));
+        let robot = text.and_then(|text| Self::of(py, text, &path, options)).and_then(|robot| robot.cautioned(py));
         robot.map_err(|error| {
             // As a message of the command has it.
             let named = error.value(py).setattr("file", &path);
@@ -184,7 +184,7 @@ impl Robot {
     #[staticmethod]
     #[pyo3(signature = (text, **options))]
     fn from_string(py: Python<'_>, text: &str, options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
-        Self::of(py, text, Path::new(""), options)
+        Self::of(py, text, Path::new(""), options)?.cautioned(py)
     }
 
     /// The robot's name in its file.
@@ -376,12 +376,20 @@ impl Robot {
 }
 
 impl Robot {
+    /// The robot, once Python was warned with its cautions.
+    fn cautioned(self, py: Python<'_>) -> PyResult<Self> {
+        warn(py, self.model.robot.reading.cautions.iter().cloned())?;
+        Ok(self)
+    }
+
     fn of(py: Python<'_>, text: &str, path: &Path, options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
         let model = Model::read(text, path, options)?;
-        warn(py, model.robot.reading.cautions.iter().cloned())?;
         let asker = |aspect| Asker::new(&model.robot, Table::new(aspect, &model.robot, &model.options.feet, &[]));
         // Another process may run in another folder, and lists and dictionaries may change until it is asked for.
-        let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        let absolute = |path: &Path| {
+            let here = |_| std::env::current_dir().map(|folder| folder.join("robot.urdf"));
+            std::path::absolute(path).or_else(here).unwrap_or_else(|_| path.to_owned())
+        };
         let copied = |options| {
             let copy = py.import("copy")?.call_method1("deepcopy", (options,))?;
             Ok::<_, PyErr>(copy.cast_into::<PyDict>()?)

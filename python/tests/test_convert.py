@@ -256,6 +256,14 @@ FLOATING = """<robot name="hopper"><link name="world"/>
     <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial></link></robot>"""
 
 
+def test_masked_numbers_become_nan():
+    other = Pinocchio()
+    robot = heelstrike.Robot.from_string(URDF)
+    q, v = other.pin.neutral(other.model), np.zeros(other.model.nv)
+    masked = np.ma.masked_array(np.stack([q, q]), mask=np.arange(2 * len(q)).reshape(2, -1) == 2)
+    assert np.isnan(other.layout(robot, masked, np.stack([v, v]))[0]).all(axis=1).tolist() == [True, False]
+
+
 def test_base_that_pinocchio_counts_from_elsewhere_is_refused():
     model = peer("pinocchio").buildModelFromXML(FLOATING)
     with pytest.raises(ValueError, match="the base's joint free is not placed at the world's origin"):

@@ -99,9 +99,12 @@ def test_robots_and_results_go_into_other_processes(ramone):
 
 
 def test_pickled_robot_is_the_same_whatever_happens_around_it(tmp_path, monkeypatch):
-    text = URDF.read_text().replace('<sphere radius="0.02815"/>', '<mesh filename="package://ramone/foot.obj"/>')
+    text = URDF.read_text()
+    for name in ("package://ramone/foot.obj", "foot.obj"):
+        text = text.replace('<sphere radius="0.02815"/>', f'<mesh filename="{name}"/>', 1)
     (tmp_path / "meshes/ramone").mkdir(parents=True)
     (tmp_path / "meshes/ramone/foot.obj").write_text("v 0 0 0\nv 0.1 0.1 0\nv 0 0.1 0.1\nf 1 2 3\n")
+    (tmp_path / "foot.obj").write_text("v 0 0 0\nv 0.2 0.1 0\nv 0 0.1 0.1\nf 1 2 3\n")
     monkeypatch.chdir(tmp_path)
     hold, feet = {"left_knee": -0.5}, [{"link": "torso"}]
     robot = heelstrike.Robot.from_string(text, hold=hold, feet=feet, package_path=["meshes"])
@@ -197,7 +200,8 @@ def test_problem_is_that_of_the_command():
     expected = command("solve", "-", "--format", "json", input=text)
     assert heelstrike.solve(matrix, velocity, 0.5) == expected
     assert heelstrike.solve(matrix, velocity.ravel(), [0.5], 0.0) == expected
-    assert heelstrike.solve(matrix, list(velocity), 0.5) == expected
+    for same in (list(velocity), list(velocity.ravel()), tuple(velocity.ravel())):
+        assert heelstrike.solve(matrix, same, 0.5) == expected
     for infinite in (math.inf, "inf", np.array([math.inf])):
         assert heelstrike.solve(matrix, velocity, infinite)["verdict"] == "unique"
     with pytest.raises(TypeError, match="c is an array or a list, not a float"):

@@ -6,7 +6,8 @@
 //! ```
 //!
 //! The sole of a mesh is never quite flat: its facets are a micrometer apart, and which of them is lowest means
-//! nothing. Nor are corners that are as close to each other along the ground, as on a wheel, a sole. A straight ground pushes back through the rearmost and the foremost corner that stand on it.
+//! nothing. Nor are corners that are as close to each other along the ground, as on a wheel, a sole. A straight ground
+//! pushes back through the rearmost and the foremost corner that stand on it.
 
 use crate::planar::Vector;
 

@@ -47,7 +47,7 @@ pub struct Description {
     pub root: usize,
     /// Elements that were passed over, in the order in which they first occur.
     pub ignored: Vec<Ignored>,
-    /// Attributes and elements that are not read and perhaps misspelt, and limits with nothing between them, each with
+    /// Attributes and elements that are not read and perhaps misspelt, and limits that are none, each with
     /// its line.
     pub misspelt: Vec<String>,
 }

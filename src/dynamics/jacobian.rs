@@ -83,7 +83,7 @@ pub fn contact_jacobian<T: Real>(
 }
 
 /// c of a contact whose body turns about `rest`, a contact of the same body \[m/s\].
-fn about<T: Real>(
+pub fn about<T: Real>(
     plan: &Plan<T>,
     rest: &ContactPoint<T>,
     contact: &ContactPoint<T>,
@@ -93,41 +93,6 @@ fn about<T: Real>(
     let arm = contact.arm(workspace) - rest.arm(workspace);
     let across = arm.perpendicular() * spin(plan, rest.body, velocity);
     contact.axes().map(|axis| axis.dot(across))
-}
-
-/// Takes c of contacts of a body of which another one is `resting`, all of them rigid on it, as if that did not move,
-/// whatever its own velocity is, so that c remains one of a motion of that body; reports each of these with the one that
-/// it turns about. What rests, the `stance` and what is rigid with it stays as it is.
-pub fn settle<T: Real>(
-    plan: &Plan<T>,
-    contacts: &[ContactPoint<T>],
-    velocity: &[T],
-    (resting, stance): (&[bool], Option<usize>),
-    workspace: &mut Workspace<T>,
-    mut settled: impl FnMut(usize, usize),
-) {
-    if !resting.contains(&true) {
-        return;
-    }
-    let rigid = |contact: usize| plan.rigid_body(contacts[contact].body);
-    for index in (0..contacts.len()).filter(|&index| !resting[index]) {
-        let stands = stance.is_some_and(|stance| rigid(stance) == rigid(index));
-        let Some(at) = (0..contacts.len()).find(|&other| resting[other] && rigid(other) == rigid(index)) else {
-            continue;
-        };
-        if stands {
-            continue;
-        }
-        let (rest, own) = (contacts[at], contacts[index]);
-        workspace.contact_velocity[index] = if rest.body == own.body {
-            about(plan, &rest, &own, velocity, workspace)
-        } else {
-            let [moving, base] =
-                [own, rest].map(|point| point_velocity(plan, point.body, point.arm(workspace), velocity, workspace));
-            own.axes().map(|axis| axis.dot(moving - base))
-        };
-        settled(index, at);
-    }
 }
 
 /// Velocity of the point at `arm` from the origin of `body`, in the world's axes \[m/s\].

@@ -321,10 +321,16 @@ impl<T: Real> Plan<T> {
         std::iter::successors(Some(body), |&body| self.bodies[body].parent).map(|body| (body, &self.bodies[body]))
     }
 
-    /// The body that moves a body and that no other moves in between: itself unless its joint is fixed or braked.
-    pub(crate) fn rigid_body(&self, body: usize) -> usize {
-        let moves = |&(_, own): &(usize, &PlanBody<T>)| own.column.is_some() || own.parent.is_none();
-        self.way_to_root(body).find(moves).map_or(body, |(index, _)| index)
+    /// The bodies on the way from one body to another, that at which it turns outward the last; parents come before
+    /// their children.
+    pub(crate) fn way(&self, from: usize, to: usize) -> impl Iterator<Item = usize> {
+        let mut ends = Some([from, to]);
+        std::iter::from_fn(move || {
+            let [one, other] = ends?;
+            let (far, near) = (one.max(other), one.min(other));
+            ends = if far == near { None } else { self.bodies[far].parent.map(|parent| [parent, near]) };
+            Some(far)
+        })
     }
 
     /// Number of columns: the coordinates whose joints are not braked.

@@ -7,6 +7,7 @@ use crate::dynamics::{ContactPoint, Workspace, kinematics, point_velocity};
 use crate::planar::{Rotation, Vector};
 use crate::robot::{Base, Robot};
 use crate::state::{NamedContact, State};
+use std::cmp::Ordering;
 
 /// Ground and soles that are taken for level are so up to this slope.
 const SLOPE: f64 = 0.15;
@@ -98,9 +99,16 @@ impl<'r> Points<'r> {
                 feet.retain(|&point| stands(point, height));
                 closed.append(&mut feet);
                 let all = 0..level.map_or(0, |_| places.len());
-                let on_the_ground =
-                    all.filter(|&point| stands(point, level.unwrap_or(0.0)) && !closed.contains(&point));
-                closed.extend(on_the_ground.collect::<Vec<_>>());
+                let mut ground: Vec<usize> = all.filter(|&point| stands(point, level.unwrap_or(0.0))).collect();
+                ground.extend(closed.iter().filter(|point| !ground.contains(point)).copied().collect::<Vec<_>>());
+                // As of a sole, the outer two of each body.
+                let is_outer = |&point: &usize| {
+                    let ways = ground.iter().filter(|&&other| self.body(other) == self.body(point));
+                    let ways = ways.map(|&other| places[other].x.total_cmp(&places[point].x));
+                    ways.clone().all(Ordering::is_le) || ways.clone().all(Ordering::is_ge)
+                };
+                let outer: Vec<usize> = ground.iter().copied().filter(is_outer).collect();
+                closed.extend(outer.into_iter().filter(|point| !closed.contains(point)).collect::<Vec<_>>());
             }
             Touching::Near { height } => {
                 let free = |point: &usize| above(*point) <= height && self.is_free(*point, &places, together);

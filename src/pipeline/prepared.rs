@@ -410,8 +410,10 @@ impl Pipeline<'_> {
     /// Notes that nothing touches, and a foot that comes down just above the ground.
     fn note_near_miss(&self, contacts: &[Contact], nearest: Option<NearestFoot>, notes: &mut Vec<String>) {
         let Some(NearestFoot { link, height, velocity }) = nearest else {
+            let why =
+                if self.feet.iter().next().is_none() { "the robot has no feet" } else { "no foot is above the ground" };
             if contacts.is_empty() {
-                notes.push("the robot has no feet: name contact points by `contacts` in the state or by `feet`".into());
+                notes.push(format!("{why}: name contact points by `contacts` in the state or by `feet`"));
             }
             return;
         };

@@ -67,7 +67,10 @@ impl ReferencePose {
         for (index, mimicked) in self.mimicked.iter().enumerate() {
             let Some(&Mimic { joint, offset, .. }) = mimicked.as_ref() else { continue };
             let has_place = self.frozen[index].is_some() || offset == 0.0 || !description.joints[index].kind.has_axis();
-            if !has_place && is_frozen(index) && is_frozen(joint) {
+            // One on the way to the joint that it follows would turn that, which may then not be frozen any more.
+            let inward = |&joint: &usize| description.links[description.joints[joint].parent].joint;
+            let mut way = std::iter::successors(Some(joint), inward);
+            if !has_place && is_frozen(index) && is_frozen(joint) && !way.any(|before| before == index) {
                 self.frozen[index] = Some(offset);
                 moved = true;
             }

@@ -4,6 +4,7 @@ use super::*;
 use crate::support::random::Random;
 use crate::support::scaled::largest;
 use heelstrike::description::Description;
+use heelstrike::reductions::Reductions;
 use heelstrike::robot::Reduction;
 
 /// A biped whose feet, hinged at the ends of straight legs 0.9 m long, have soles through these points \[m\] of an OBJ.
@@ -230,6 +231,60 @@ fn a_toe_lands_about_a_heel_that_rests_to_rounding() {
             assert_eq!(modes(&resting), modes(&standing), "seed {seed}, {digits:?}, turning at {turn}");
             for (one, other) in velocities_after(&resting).iter().zip(velocities_after(&standing)) {
                 assert!(near(one, &other, within * largest(one).max(1.0)), "seed {seed}: {one:?} is not {other:?}");
+            }
+        }
+    }
+}
+
+/// The same of a foot with a hinged toe: three points of two bodies, of which the last one lands. If the toe is held, it
+/// is part of the foot, whether its column is left out or not.
+#[test]
+fn a_hinged_toe_lands_while_the_heel_rests_to_rounding() {
+    let point = |x: f64| urdf::collision([x, -0.05], urdf::POINT);
+    let robot = robot(&urdf::robot(&[
+        urdf::link("torso", 8.0, [0.0, 0.2], 0.3, ""),
+        urdf::link("leg", 1.0, [0.0, -0.4], 0.05, ""),
+        urdf::link("foot", 0.5, [0.02, 0.0], 0.002, &(point(-0.07) + &point(0.1))),
+        urdf::link("toe", 0.1, [0.02, -0.03], 0.0002, &point(0.06)),
+        urdf::joint("hip", urdf::HINGE, ["torso", "leg"], [0.0; 2], ""),
+        urdf::joint("ankle", urdf::HINGE, ["leg", "foot"], [0.0, -0.8], ""),
+        urdf::joint("ball", urdf::HINGE, ["foot", "toe"], [0.1, 0.0], ""),
+    ]));
+    for seed in 0..60 {
+        let mut random = Random::new(seed);
+        let mut number = || random.between(-1.0, 1.0);
+        let (pitch, hip, rates) = (number(), number(), [number(), number(), 1.5 - number(), number()]);
+        let held = if seed % 2 == 0 { json!([]) } else { json!(["ball"]) };
+        let state = |base: Option<[f64; 2]>| {
+            let mut state = json!({
+                "position": {"base": {"pitch": pitch}, "joints": {"hip": hip, "ankle": -(pitch + hip)}},
+                "velocity": {"base": {"pitch": rates[0]},
+                    "joints": {"hip": rates[1], "ankle": rates[2], "ball": rates[3]}},
+                "friction": if seed % 3 == 0 { json!(0.8) } else { json!("infinite") }, "held": held,
+            });
+            match base {
+                None => state["stance"] = json!("foot"),
+                Some([x, z]) => {
+                    state["place"] = json!("lowest");
+                    (state["velocity"]["base"]["x"], state["velocity"]["base"]["z"]) = (json!(x), json!(z));
+                }
+            }
+            state
+        };
+        for kept in [false, true] {
+            let mut options = Options { matrices: true, ..Options::default() };
+            options.reductions.held = !kept;
+            // Every column is there, to find the base's velocity with which the heel rests.
+            let whole = Options { reductions: Reductions { held: false, ..Reductions::ALL }, ..options.clone() };
+            let jacobian = try_impact(&robot, whole, state(None)).expect("an answer").matrices.expect("asked for");
+            let along = |row: &[f64]| -row[2..].iter().zip(&rates).map(|(own, rate)| own * rate).sum::<f64>();
+            let base = [0, 1].map(|row| along(&jacobian.contact_jacobian[row]));
+            let standing = try_impact(&robot, options.clone(), state(None)).expect("an answer");
+            let resting = try_impact(&robot, options, state(Some(base))).expect("an answer");
+            assert!(resting.resting[0], "seed {seed}");
+            assert_eq!(modes(&resting), modes(&standing), "seed {seed}, kept {kept}");
+            for (one, other) in velocities_after(&resting).iter().zip(velocities_after(&standing)) {
+                assert!(near(one, &other, 1e-11 * largest(one).max(1.0)), "seed {seed}: {one:?} is not {other:?}");
             }
         }
     }

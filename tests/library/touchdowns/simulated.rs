@@ -174,14 +174,10 @@ fn slow_rows_are_kept_as_long_as_fast_ones() {
 
 #[test]
 fn a_body_may_rest_a_rounding_above_the_ground() {
-    let rests: [fn(f64) -> [Vec<f64>; 2]; 4] = [
-        |_| [vec![0.1], vec![0.0]],
-        |_| [vec![0.1 + 1e-16], vec![0.0]],
-        |_| [vec![0.1 + 1e-12], vec![0.0]],
-        |_| [vec![0.1 + 1e-9], vec![0.0]],
-    ];
-    for (at, after) in rests.into_iter().enumerate() {
-        let motion = Motion { after, ..ball() };
+    let exact = Motion { after: |_| [vec![0.1], vec![0.0]], ..ball() };
+    let rounded = Motion { after: |_| [vec![0.1 + 1e-16], vec![0.0]], ..ball() };
+    let higher = Motion { after: |_| [vec![0.1 + 1e-9], vec![0.0]], ..ball() };
+    for (at, motion) in [exact, rounded, higher].into_iter().enumerate() {
         for phase in [0.0, 0.3, 0.6, 0.9] {
             let found = motion.found(&motion.table(0.01, phase, true, 1.0), true, At::Crossing);
             let [Sample { time, state, .. }] = &found[..] else { panic!("{at}, phase {phase}: {}", found.len()) };
