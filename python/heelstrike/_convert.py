@@ -96,7 +96,7 @@ class Layout:
 
     @staticmethod
     def _rows(what: str, values: ArrayLike, columns: int) -> Array:
-        rows = np.atleast_2d(np.ma.asarray(values, dtype=float).filled(np.nan))
+        rows: Array = np.atleast_2d(np.ma.asarray(values, dtype=float).filled(np.nan))
         if rows.ndim != 2 or rows.shape[1] != columns:
             raise ValueError(f"{what} has the shape {np.shape(values)}, and the model needs (n, {columns})")
         return rows

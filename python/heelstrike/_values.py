@@ -10,8 +10,6 @@ import os
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-
 from ._core import Answers, Robot
 
 
@@ -84,7 +82,8 @@ def problem(delassus: Any, velocity: Any, friction: Any, restitution: Any) -> st
     for name, value in (("G", delassus), ("c", velocity)):
         if not isinstance(value, (list, tuple)) and not hasattr(value, "shape"):
             raise TypeError(f"{name} is an array or a list, not a {type(value).__name__}")
-    if velocity and np.ndim(velocity[0]) == 0:
+    # Numbers, of NumPy or not, or pairs of them.
+    if velocity and not hasattr(velocity[0], "__len__"):
         velocity = [velocity[at : at + 2] for at in range(0, len(velocity), 2)]
     fields = {"delassus": delassus, "velocity_before": velocity, "friction": friction}
     return to_json(fields if restitution is None else {**fields, "restitution": restitution})

@@ -99,8 +99,9 @@ def convert(path: str) -> str:
             axis = joint.revolute_axis() if kind == "revolute" else joint.translation_axis()
             ET.SubElement(element, "axis", xyz=_numbers(axis))
             [lower], [upper] = joint.position_lower_limits(), joint.position_upper_limits()
-            limits = [max(lower, -1e9), min(upper, 1e9)]
-            ET.SubElement(element, "limit", lower=repr(limits[0]), upper=repr(limits[1]), effort="0", velocity="0")
+            # NumPy's numbers have a text of their own.
+            lower, upper = repr(float(max(lower, -1e9))), repr(float(min(upper, 1e9)))
+            ET.SubElement(element, "limit", lower=lower, upper=upper, effort="0", velocity="0")
     ET.indent(robot)
     return ET.tostring(robot, encoding="unicode") + "\n"
 

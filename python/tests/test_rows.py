@@ -148,7 +148,7 @@ def test_numbers_that_are_not_decided_are_nan(walk):
 
 def test_foot_in_a_notch_has_two_contacts():
     text = """<robot name="ball"><link name="ball"><inertial><mass value="1"/>
-        <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial>
+        <inertia ixx="0.004" ixy="0" ixz="0" iyy="0.004" iyz="0" izz="0.004"/></inertial>
         <collision><geometry><sphere radius="0.1"/></geometry></collision></link></robot>"""
     ball = heelstrike.Robot.from_string(text)
     notch = {"profile": [[-1, 1], [0, 0], [1, 1]]}
