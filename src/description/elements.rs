@@ -110,7 +110,7 @@ pub(super) fn limits(limit: Node<'_, '_>) -> Option<[f64; 2]> {
 const MOST_MISSPELT: usize = 100;
 
 /// Adds the names of attributes and elements in a link or a joint that are not read, but a letter away from one that is
-/// and that is not there, and limits that are none.
+/// and that is not there, and limits that cannot be.
 pub(super) fn misspelt(element: Node<'_, '_>, found: &mut Vec<String>) {
     let mut waiting = vec![element];
     while let Some(element) = waiting.pop() {

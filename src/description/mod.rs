@@ -47,8 +47,8 @@ pub struct Description {
     pub root: usize,
     /// Elements that were passed over, in the order in which they first occur.
     pub ignored: Vec<Ignored>,
-    /// Attributes and elements that are not read and perhaps misspelt, and limits that are none, each with
-    /// its line.
+    /// Attributes and elements that are not read and perhaps misspelt, and limits that cannot be, each with its
+    /// line.
     pub misspelt: Vec<String>,
 }
 

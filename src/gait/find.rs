@@ -175,12 +175,10 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
                     // It has bounced since the row before or the one before that, or it stops a rounding above the
                     // ground: in a row to which those before lead it has not been stopped yet.
                     let stops = last <= self.level;
-                    let before = row.checked_sub(1);
-                    let fall = before.map_or(0.0, |before| self.window.height(point, before) - last);
+                    let fall = row.checked_sub(1).map_or(0.0, |before| self.window.height(point, before) - last);
                     let over = if stops { self.level + CLEAN * fall } else { 0.0 };
-                    let bounced = before.filter(|&row| self.onward_height(point, row) <= -over);
-                    let bounced =
-                        bounced.or_else(|| Some(row).filter(|&row| !stops && self.onward_height(point, row) <= 0.0));
+                    let mut rows = [row.checked_sub(1), (!stops).then_some(row)].into_iter().flatten();
+                    let bounced = rows.find(|&row| self.onward_height(point, row) <= -over);
                     let stops = stops.then_some(Strike { height: None, ..strike });
                     strikes.extend(bounced.map(|row| Strike { row, smooth: row, ..strike }).or(stops));
                 }

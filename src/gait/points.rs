@@ -98,17 +98,19 @@ impl<'r> Points<'r> {
                 let mut feet = self.lowest_of_other_bodies(&closed, &places);
                 feet.retain(|&point| stands(point, height));
                 closed.append(&mut feet);
-                let all = 0..level.map_or(0, |_| places.len());
-                let mut ground: Vec<usize> = all.filter(|&point| stands(point, level.unwrap_or(0.0))).collect();
-                ground.extend(closed.iter().filter(|point| !ground.contains(point)).copied().collect::<Vec<_>>());
-                // As of a sole, the outer two of each body.
-                let is_outer = |&point: &usize| {
-                    let ways = ground.iter().filter(|&&other| self.body(other) == self.body(point));
-                    let ways = ways.map(|&other| places[other].x.total_cmp(&places[point].x));
-                    ways.clone().all(Ordering::is_le) || ways.clone().all(Ordering::is_ge)
-                };
-                let outer: Vec<usize> = ground.iter().copied().filter(is_outer).collect();
-                closed.extend(outer.into_iter().filter(|point| !closed.contains(point)).collect::<Vec<_>>());
+                if let Some(level) = level {
+                    // As of a sole, the outer two of each body.
+                    let on_it = |&point: &usize| closed.contains(&point) || stands(point, level);
+                    let ground: Vec<usize> = (0..places.len()).filter(on_it).collect();
+                    let is_outer = |point: usize| {
+                        let others = ground.iter().filter(|&&other| self.body(other) == self.body(point));
+                        let mut ways = others.map(|&other| places[other].x.total_cmp(&places[point].x));
+                        ways.clone().all(Ordering::is_le) || ways.all(Ordering::is_ge)
+                    };
+                    let is_new = |&point: &usize| !closed.contains(&point) && is_outer(point);
+                    let mut outer: Vec<usize> = ground.iter().copied().filter(is_new).collect();
+                    closed.append(&mut outer);
+                }
             }
             Touching::Near { height } => {
                 let free = |point: &usize| above(*point) <= height && self.is_free(*point, &places, together);

@@ -283,8 +283,11 @@ impl Source for ExactState<'_> {
 
     fn shared_tangent(&self, contact: usize) -> Option<usize> {
         let &Level { with, .. } = self.levels.get(contact)?.as_ref()?;
+        // One that moves turns about one that rests, and only about this one if no other does.
+        let turns_about = || self.stance.is_none() && self.resting.iter().filter(|rests| **rests).count() == 1;
+        let is_alike = self.resting[contact] == self.resting[with] || turns_about();
         // Accelerations differ by what the body's turn brings along.
-        matches!(self.asked, Asked::Impact).then_some(with)
+        (matches!(self.asked, Asked::Impact) && is_alike).then_some(with)
     }
 }
 

@@ -204,6 +204,15 @@ fn rows_that_do_not_fit_are_refused_with_their_place() {
     insta::assert_snapshot!("rows", refusals);
 }
 
+#[test]
+fn columns_of_the_base_are_not_those_of_joints_of_its_names() {
+    let text = leg_urdf().replace("\"knee\"", "\"x\"");
+    let columns = Columns::new(&robot(&text), &[], None, RowKind::Touchdown);
+    for name in ["v_after_base_x", "v_after_x", "q_base_x", "q_x", "v_base_x", "v_x"] {
+        assert_eq!(columns.names().iter().filter(|own| *own == name).count(), 1, "{name}");
+    }
+}
+
 /// A column of numbers has no word.
 #[test]
 fn infinite_friction_is_a_word_or_a_number() {

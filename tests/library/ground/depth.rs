@@ -22,6 +22,8 @@ fn over_a_gap_and_beyond_an_end_there_is_nothing() {
     assert_eq!(beyond.notes, ["body reaches beyond the end of the ground's profile at x = 1.0 m: there is no ground"]);
     let above = impact(&sole(), state([1.1, 0.2, 0.0], FALLING, 1, &gap));
     assert!(above.contacts.is_empty() && above.notes.len() == 1, "{:?}", above.notes);
+    let aside = impact(&sole(), state([3.0, -1.0, 0.0], FALLING, 1, &gap));
+    assert!(aside.notes.iter().any(|note| note.starts_with("no foot is above the ground: ")), "{:?}", aside.notes);
 }
 
 #[test]

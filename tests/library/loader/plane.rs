@@ -344,6 +344,12 @@ fn a_mimic_joint_of_a_frozen_joint_is_frozen_with_it() {
     let expected = [-first.sin() - both.sin(), -1.0 - first.cos() - both.cos()];
     assert_at(robot.links[2].point::<f64>([0.0, 0.0, -1.0]), expected);
 
+    // One on the way to the joint that it mimics does not turn that into the plane, where it would move.
+    let quarter = "joint=\"l\" offset=\"1.5707963267948966\"";
+    let robot = load(&with_mimic(&massive(&[PITCH, ROLL, ("revolute", "0 0 1")]), "k", quarter));
+    assert_eq!(names(&robot), ["j"]);
+    assert!(["k", "l"].iter().all(|name| matches!(still(&robot, name), FreezeReason::OffPlane { .. })));
+
     // A mimic joint off the plane is frozen as such; the mimicked one stays.
     let robot = load(&with_mimic(&massive(&[PITCH, ROLL]), "k", "joint=\"j\""));
     assert_eq!((names(&robot), robot.mimic_joints.len()), (vec!["j"], 0));
