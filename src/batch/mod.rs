@@ -268,7 +268,10 @@ impl Answerer<'_> {
         });
         block.summary.early += u64::from(around.landing.is_some_and(|landing| landing.is_early));
         let place = || StateRef { id: state.id.clone().map(short_id), line: around.line };
-        if let Some(what) = state.odd_joints(robot).next() {
+        // They are noted first.
+        if !impact.notes.is_empty()
+            && let Some(what) = state.odd_joints(robot).next()
+        {
             let first = Some(OddJoint { state: place(), what });
             block.summary.odd_joints.add(OddJoints { states: 1, first });
         }

@@ -54,7 +54,7 @@ impl Footing<'_> {
             }
         };
         let rise = match self.surface {
-            Surface::HalfPlane(plane) => Some(-gap(self.placement) / plane.normal().z),
+            Surface::HalfPlane(plane) => Some(-gap(self.placement) / plane.normal.z),
             Surface::Profile(_) => first_above(|rise| gap(&self.placement.raised(rise)), self.feet.size()),
         };
         rise.filter(|rise| rise.is_finite()).ok_or_else(|| {

@@ -15,50 +15,53 @@ use crate::planar::{Rotation, Vector};
 /// Solid ground below a line through the world's origin.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct HalfPlane {
-    /// Turn from the world's axes to the ground's (tangent, normal).
+    /// Turn from the world's axes to the ground's (tangent, normal), and these.
     ground: Rotation<f64>,
+    tangent: Vector<f64>,
+    pub(super) normal: Vector<f64>,
 }
 
 impl HalfPlane {
-    pub const LEVEL: Self = Self { ground: Rotation { cos: 1.0, sin: 0.0 } };
+    pub const LEVEL: Self = Self {
+        ground: Rotation { cos: 1.0, sin: 0.0 },
+        tangent: Vector { x: 1.0, z: 0.0 },
+        normal: Vector { x: 0.0, z: 1.0 },
+    };
 
     /// The ground of this slope \[rad\], uphill toward +x, which is a turn against the pitch.
     pub fn sloped(slope: f64) -> Self {
-        Self { ground: Rotation::by(-slope) }
+        Self::turned(Rotation::by(-slope))
     }
 
     pub(super) fn turned(ground: Rotation<f64>) -> Self {
-        Self { ground }
-    }
-
-    pub(super) fn normal(&self) -> Vector<f64> {
-        self.ground.apply(Vector::new(0.0, 1.0))
+        let [tangent, normal] = Vector::axes().map(|axis| ground.apply(axis));
+        Self { ground, tangent, normal }
     }
 
     pub fn circle(&self, placement: &Placement, point: Point) -> Circle {
-        placement.circle(point, self.normal())
+        placement.circle(point, self.normal)
     }
 
     /// The world's point of a rim about a corner that is lowest along the normal.
     pub fn lowest(&self, placement: &Placement, point: Point) -> Vector<f64> {
         let Circle { body, center, radius, .. } = self.circle(placement, point);
-        placement.world(body, center) - self.normal() * radius
+        placement.world(body, center) - self.normal * radius
     }
 
     pub(super) fn height(&self, placement: &Placement, point: Point) -> f64 {
-        self.normal().dot(self.lowest(placement, point))
+        self.normal.dot(self.lowest(placement, point))
     }
 
     /// How far a world's point lies along the tangent \[m\].
     pub(super) fn along(&self, point: Vector<f64>) -> f64 {
-        self.ground.apply(Vector::new(1.0, 0.0)).dot(point)
+        self.tangent.dot(point)
     }
 
     /// How far heights are off by rounding alone: they are sums of a few terms of this size. On level ground it does
     /// not matter how far away the base is.
     pub(super) fn rounding(&self, placement: &Placement, size: f64) -> f64 {
         let Vector { x, z } = placement.base();
-        let Vector { x: along, z: up } = self.normal();
+        let Vector { x: along, z: up } = self.normal;
         16.0 * f64::EPSILON * (size + (along * x).abs() + (up * z).abs())
     }
 
@@ -69,7 +72,7 @@ impl HalfPlane {
     /// A height \[m\] that no point of a foot is below.
     pub(super) fn least_gap(&self, foot: &Foot, placement: &Placement) -> f64 {
         let (center, radius) = foot.bounding_circle;
-        self.normal().dot(placement.world(foot.body, center)) - radius
+        self.normal.dot(placement.world(foot.body, center)) - radius
     }
 
     /// The rearmost and the foremost corner on which a foot stands, if what is at most `highest` \[m\] above the plane
@@ -77,7 +80,7 @@ impl HalfPlane {
     pub(super) fn sole(&self, foot: &Foot, placement: &Placement, highest: f64) -> impl Iterator<Item = Point> {
         let place = |at: usize| {
             let lowest = self.lowest(placement, point(foot, at));
-            Vector::new(self.along(lowest), self.normal().dot(lowest))
+            Vector::new(self.along(lowest), self.normal.dot(lowest))
         };
         let ends = sole(foot.outline.corners().len(), place, highest, foot.bumps);
         let both = ends.map(|[rear, front]| [Some(rear), (front != rear).then_some(front)]);

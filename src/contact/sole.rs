@@ -40,6 +40,6 @@ pub(super) fn sole(count: usize, place: impl Fn(usize) -> Vector<f64>, highest: 
         }
     };
     let [rear, front] = [(count - 1, -1.0), (1, 1.0)].map(end);
-    let is_point = place(front).x - place(rear).x <= bumps;
+    let is_point = front == rear || place(front).x - place(rear).x <= bumps;
     Some(if is_point { [lowest; 2] } else { [rear, front] })
 }

@@ -61,46 +61,56 @@ pub struct RoundingBounds {
     /// What part of the bounds of G and of c the errors are likely to reach; see `LIKELY`.
     pub likely: [f64; 2],
     bodies: Vec<Stretched>,
-    contacts: Vec<Arm>,
-    /// sqrt((M^-1)_ii) per column.
-    ease: Vec<f64>,
+    /// How many roundings an entry of M or J may have, against its stretched magnitude.
+    roundings: f64,
     /// sqrt(K_i) per column.
     roots: Vec<f64>,
+    contacts: Vec<Arm>,
+    /// The speed of each contact, and of the foot of a stance, if no two terms of J v canceled each other \[m/s\].
+    terms: Vec<f64>,
+    /// sqrt((M^-1)_ii) per column.
+    ease: Vec<f64>,
     scratch: Vec<f64>,
     balance: Balance,
 }
 
 impl RoundingBounds {
-    /// Takes the lengths of a configuration and of its contacts; the others read them.
+    /// Takes the lengths of a configuration and of its contacts; the others read them. All have the same plan.
     pub fn stretch(&mut self, plan: &Plan, configuration: &Configuration, contacts: impl Iterator<Item = Arm>) {
         self.contacts.clear();
         self.contacts.extend(contacts);
+        // Turns change no length.
+        if !self.bodies.is_empty() && !plan.has_slides {
+            return;
+        }
         stretch(plan, configuration, &mut self.bodies);
-    }
-
-    /// How many roundings an entry of M or J may have, against its stretched magnitude.
-    fn entry_roundings(&self, plan: &Plan) -> f64 {
+        self.measure_moments(plan);
         let depth = self.bodies.iter().map(|body| body.depth).max().unwrap_or(0) + 1;
         // Where columns are shared, an entry may have a term for every body and every level.
         let terms = if plan.has_mimics { (depth + 1) * (self.bodies.len() + 1) } else { depth + self.bodies.len() };
-        ENTRY * terms as f64
+        self.roundings = ENTRY * terms as f64;
     }
 
     /// Bounds c = J v. The foot of a `stance` gives the base's velocity; the contacts that `rests` names are at rest.
     pub fn velocities(&mut self, plan: &Plan, velocity: &[f64], stance: Option<Arm>, rests: impl Fn(usize) -> bool) {
-        let mut bounds = std::mem::take(&mut self.velocity);
-        let roundings = self.entry_roundings(plan);
+        let roundings = self.roundings;
         let eta = roundings * UNIT_ROUNDOFF;
         // The bound of G counts every column, and doubles twice.
         self.likely = [LIKELY / (4.0 * plan.columns().max(1) as f64 * roundings), LIKELY / roundings];
         let base = stance.map_or(0.0, |foot| 2.0 * self.speed(plan, foot, velocity));
         self.base = eta * base;
-        bounds.clear();
-        bounds.extend(self.contacts.iter().enumerate().map(|(index, &contact)| {
-            let bound = if rests(index) { 0.0 } else { eta * (self.speed(plan, contact, velocity) + base) };
-            [bound; 2]
-        }));
-        self.velocity = bounds;
+        let mut terms = std::mem::take(&mut self.terms);
+        terms.clear();
+        terms.extend(self.contacts.iter().map(|&contact| self.speed(plan, contact, velocity) + base));
+        self.velocity.clear();
+        let bound = |(index, terms): (usize, &f64)| [if rests(index) { 0.0 } else { eta * terms }; 2];
+        self.velocity.extend(terms.iter().enumerate().map(bound));
+        self.terms = terms;
+    }
+
+    /// What the terms of the speed of a contact and twice those of a stance's foot add up to \[m/s\].
+    pub fn terms(&self, contact: usize) -> f64 {
+        self.terms[contact]
     }
 
     /// Bounds an `acceleration` a by coordinate without contact forces, and c' = J a + sigma of the contacts, after
@@ -114,7 +124,7 @@ impl RoundingBounds {
         (loads, more): (&[Magnitude], usize),
         whole: &[Pair<Magnitude>],
     ) -> (Vec<f64>, Vec<Pair<f64>>) {
-        let eta = (self.entry_roundings(plan) + 2.0 * more as f64) * UNIT_ROUNDOFF;
+        let eta = (self.roundings + 2.0 * more as f64) * UNIT_ROUNDOFF;
         let gamma = 2.0 * (plan.columns() + 2) as f64 * UNIT_ROUNDOFF;
         let columns = plan.coordinates.iter().zip(&self.roots);
         let pushed = columns.fold(0.0, |sum, (&coordinate, root)| sum + root * acceleration[coordinate].abs());
@@ -193,16 +203,10 @@ impl RoundingBounds {
         reach
     }
 
-    /// Bounds G, from the factorized mass matrix and the Delassus matrix.
-    pub fn delassus(&mut self, plan: &Plan, workspace: &Workspace) {
-        let nv = plan.columns();
-        let (eta, gamma) = (self.entry_roundings(plan) * UNIT_ROUNDOFF, 2.0 * (nv + 2) as f64 * UNIT_ROUNDOFF);
-        self.scratch.resize(nv, 0.0);
-        self.ease.clear();
-        let scratch = &mut self.scratch;
-        self.ease.extend((0..nv).map(|column| squared_ease(plan, &workspace.factor, column, scratch).sqrt()));
+    /// Takes the moments K of the stretched bodies.
+    fn measure_moments(&mut self, plan: &Plan) {
         self.roots.clear();
-        self.roots.resize(nv, 0.0);
+        self.roots.resize(plan.columns(), 0.0);
         for (body, stretched) in plan.bodies.iter().zip(&self.bodies) {
             let Some(column) = body.column else { continue };
             let moment = match body.motion {
@@ -216,6 +220,16 @@ impl RoundingBounds {
             };
             self.roots[column] += moment.sqrt();
         }
+    }
+
+    /// Bounds G, from the factorized mass matrix and the Delassus matrix.
+    pub fn delassus(&mut self, plan: &Plan, workspace: &Workspace) {
+        let nv = plan.columns();
+        let (eta, gamma) = (self.roundings * UNIT_ROUNDOFF, 2.0 * (nv + 2) as f64 * UNIT_ROUNDOFF);
+        self.scratch.resize(nv, 0.0);
+        self.ease.clear();
+        let scratch = &mut self.scratch;
+        self.ease.extend((0..nv).map(|column| squared_ease(plan, &workspace.factor, column, scratch).sqrt()));
         let tau = self.roots.iter().zip(&self.ease).fold(0.0, |tau, (root, ease)| tau + (root * ease) * (root * ease));
         let solve = gamma * (nv as f64 * tau).sqrt();
         let short = 1.0 - solve;

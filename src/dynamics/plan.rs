@@ -38,6 +38,8 @@ pub struct Plan<T = f64> {
     pub(crate) floating: bool,
     /// Whether some column moves more than one joint.
     pub(crate) has_mimics: bool,
+    /// Whether a joint slides, braked or not.
+    pub(crate) has_slides: bool,
     /// Whether a branch has so many columns that what grows faster than their number costs more than it saves: M and its
     /// factor, walks from each body to the root.
     pub(crate) is_long: bool,
@@ -166,6 +168,7 @@ impl<T: Real> Plan<T> {
             places: robot.dofs() + robot.mimic_joints.len(),
             floating,
             has_mimics: false,
+            has_slides: false,
             is_long: false,
         };
         // The column of each joint that has one, and of each body the greatest one on its way to the root.
@@ -234,6 +237,7 @@ impl<T: Real> Plan<T> {
                 rotor: if mimic.is_some() { number(multiplier) * number(multiplier) * rotor } else { rotor },
             });
         }
+        plan.has_slides = plan.bodies.iter().any(|body| matches!(body.motion, JointMotion::Prismatic { .. }));
         plan.is_long = (0..plan.columns()).any(|column| plan.branch(Some(column)).take(LONG).count() >= LONG);
         plan
     }

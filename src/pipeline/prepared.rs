@@ -12,7 +12,7 @@ use super::resting::Standing;
 use super::{CONTACT_TOLERANCE, Impact, Pipeline};
 use crate::contact::{Contact, Footing, Level, Merged, Placement, Surface, level};
 use crate::dynamics::plan::{Plan, PlanBody};
-use crate::dynamics::{Arm, Constraints, Workspace, has_balance, kinetic_energy, mass_diagonal};
+use crate::dynamics::{Arm, Constraints, RoundingBounds, Workspace, has_balance, kinetic_energy, mass_diagonal};
 use crate::error::{Error, Reason, Result, along_normal, finite, rounded};
 use crate::impact::problem::check_matrix_size;
 use crate::impact::{ContactProblem, Errors};
@@ -223,6 +223,7 @@ impl Pipeline<'_> {
             };
             self.assembly.plan = Plan::new(self.robot, without, &scene.rotor_inertia);
             self.stretched.plan = Plan::new(self.robot, without, &scene.rotor_inertia);
+            self.bounds = RoundingBounds::default();
             self.assembly.kept.clear();
             self.assembly.kept.extend(kept.iter().map(|joint| self.robot.base_dofs() + joint));
             self.braked.clone_from(&scene.braked);
@@ -357,7 +358,7 @@ impl Pipeline<'_> {
         }
         let mut out_of_reach = 0;
         if !is_named {
-            out_of_reach = footing.out_of_reach(tolerance);
+            out_of_reach = if self.options.brief { 0 } else { footing.out_of_reach(tolerance) };
             notes.extend(footing.left_behind(tolerance).into_iter().map(|(link, end)| {
                 format!("{link} reaches beyond the end of the ground's profile at x = {end:?} m: there is no ground")
             }));

@@ -68,8 +68,9 @@ impl Pipeline<'_> {
             }
             // Of what is known to its uncertainty no speed is taken as zero, unless that is asked for.
             let is_strict = state.uncertainty.is_some() && self.options.resting_speed.is_none();
+            let contact = (index, contact);
             let because = if is_strict { None } else { self.rests(state, velocity, [slow, bound], contact, foot) };
-            let name = &contact.name;
+            let name = &contact.1.name;
             if let Some(because) = because {
                 resting[index] = true;
                 self.assembly.workspace.contact_velocity[index] = [0.0; 2];
@@ -98,16 +99,17 @@ impl Pipeline<'_> {
         state: &State,
         velocity: &[f64],
         [slow, bound]: [f64; 2],
-        contact: &Contact,
+        (index, contact): (usize, &Contact),
         foot: Option<&Contact>,
     ) -> Option<Because> {
         match self.options.resting_speed {
             Some(limit) => (slow < limit).then_some(Because::Option(limit)),
             None if bound == 0.0 => None,
             None if slow <= bound => Some(Because::Rounding(bound)),
+            None if slow > CANCELED * self.bounds.terms(index) => None,
             None => {
-                let digits = self.digits(state, velocity, slow, contact, foot);
-                digits.map(|digits| bound + digits).filter(|&limit| slow <= limit).map(Because::Digits)
+                let limit = bound + self.digits(state, velocity, contact, foot);
+                (slow <= limit).then_some(Because::Digits(limit))
             }
         }
     }
@@ -130,7 +132,9 @@ impl Pipeline<'_> {
                 if slow == 0.0 {
                     continue;
                 }
-                let Some(because) = self.rests(state, velocity, [slow, bounds[row]], contact, foot) else { continue };
+                let Some(because) = self.rests(state, velocity, [slow, bounds[row]], (index, contact), foot) else {
+                    continue;
+                };
                 self.assembly.workspace.contact_velocity[index][row] = 0.0;
                 let name = &contact.name;
                 notes.push(format!("{name} moves at {slow:.1e} m/s {along}, which is taken as zero ({because})"));
@@ -149,24 +153,10 @@ impl Pipeline<'_> {
         Ok(slips)
     }
 
-    /// How fast a contact that rests may move by what the state's numbers were rounded to \[m/s\]; `None` if it moves too
-    /// fast for that.
-    fn digits(
-        &self,
-        state: &State,
-        velocity: &[f64],
-        slow: f64,
-        contact: &Contact,
-        foot: Option<&Contact>,
-    ) -> Option<f64> {
+    /// How fast a contact that rests may move by what the state's numbers were rounded to \[m/s\].
+    fn digits(&self, state: &State, velocity: &[f64], contact: &Contact, foot: Option<&Contact>) -> f64 {
         let (plan, workspace) = (&self.assembly.plan, &self.assembly.workspace);
-        let stretched = |rates: &[f64]| {
-            let speed = |contact: &Contact| self.bounds.speed(plan, contact.arm(self.robot), rates);
-            speed(contact) + foot.map_or(0.0, |foot| 2.0 * speed(foot))
-        };
-        if slow > CANCELED * stretched(velocity) {
-            return None;
-        }
+        let speed = |contact: &Contact, rates: &[f64]| self.bounds.speed(plan, contact.arm(self.robot), rates);
         let [turns, mut rates] = [&state.position, &state.velocity].map(|numbers| half_units(numbers));
         if foot.is_some() {
             // They are placeholders.
@@ -181,7 +171,8 @@ impl Pipeline<'_> {
             axes.map(|(index, turn)| turn * point_velocity(plan, index, Vector::zero(), velocity, workspace).length())
                 .sum()
         };
-        Some(stretched(&rates) + turned(contact) + foot.map_or(0.0, |foot| 2.0 * turned(foot)))
+        let off = |contact: &Contact| speed(contact, &rates) + turned(contact);
+        off(contact) + foot.map_or(0.0, |foot| 2.0 * off(foot))
     }
 }
 
@@ -195,8 +186,9 @@ impl fmt::Display for Because {
     }
 }
 
-fn length(pair: Pair<f64>) -> f64 {
-    libm::hypot(pair[0], pair[1])
+fn length([t, n]: Pair<f64>) -> f64 {
+    let squared = t * t + n * n;
+    if squared.is_normal() { squared.sqrt() } else { libm::hypot(t, n) }
 }
 
 /// Half a unit in the last decimal place to which each number was rounded: its own if it has six to fifteen significant
