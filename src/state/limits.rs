@@ -29,11 +29,14 @@ impl State {
         });
         own.chain(mimics).filter_map(|(joint, position)| {
             let limits = joint.limits?;
+            let beyond = |slack: f64| position < limits[0] - slack || position > limits[1] + slack;
+            if !beyond(0.0) {
+                return None;
+            }
             // An infinite end is none.
             let slack =
                 limits.iter().filter(|end| end.is_finite()).fold(0.0, |most: f64, end| most.max(ROUNDING * end.abs()));
-            let outside = position < limits[0] - slack || position > limits[1] + slack;
-            outside.then_some(OutsideLimits { joint, position, limits })
+            beyond(slack).then_some(OutsideLimits { joint, position, limits })
         })
     }
 
