@@ -83,7 +83,7 @@ pub fn contact_jacobian<T: Real>(
 }
 
 /// c of a contact whose body turns about `rest`, a contact of the same body \[m/s\].
-pub fn about<T: Real>(
+fn about<T: Real>(
     plan: &Plan<T>,
     rest: &ContactPoint<T>,
     contact: &ContactPoint<T>,

@@ -34,7 +34,7 @@ pub use bias::{bias, demands};
 pub use bounds::{Reach, RoundingBounds};
 pub use crba::{factorize, mass_diagonal, mass_matrix};
 pub use delassus::{PointImpulse, add_impulse, delassus};
-pub use jacobian::{ContactPoint, Motion, about, contact_jacobian, kinetic_energy, point_velocity};
+pub use jacobian::{ContactPoint, Motion, contact_jacobian, kinetic_energy, point_velocity};
 pub use kinematics::kinematics;
 pub use loops::{
     Closed, Constraints, Loop, close, eliminate_loops, follow_exactly, independent_rows, loop_impulse, orthogonalize,

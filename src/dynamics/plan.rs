@@ -325,18 +325,6 @@ impl<T: Real> Plan<T> {
         std::iter::successors(Some(body), |&body| self.bodies[body].parent).map(|body| (body, &self.bodies[body]))
     }
 
-    /// The bodies on the way from one body to another, that at which it turns outward the last; parents come before
-    /// their children.
-    pub(crate) fn way(&self, from: usize, to: usize) -> impl Iterator<Item = usize> {
-        let mut ends = Some([from, to]);
-        std::iter::from_fn(move || {
-            let [one, other] = ends?;
-            let (far, near) = (one.max(other), one.min(other));
-            ends = if far == near { None } else { self.bodies[far].parent.map(|parent| [parent, near]) };
-            Some(far)
-        })
-    }
-
     /// Number of columns: the coordinates whose joints are not braked.
     pub fn columns(&self) -> usize {
         self.coordinates.len()

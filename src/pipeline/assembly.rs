@@ -9,9 +9,10 @@
 //! Each step reads what the steps before it left in the workspace. The f64 pipeline finds contacts and bounds its
 //! rounding between the steps; [`super::exact`] takes them for every other number, and `accuracy` times each.
 
-use crate::dynamics::plan::{Configuration, Plan, PlanBody};
+use super::still::{Still, eliminate};
+use crate::dynamics::plan::{Configuration, Plan};
 use crate::dynamics::{
-    Closed, Constraints, ContactPoint, Loop, Motion, PointImpulse, Spring, SpringLoad, SpringPoint, Workspace, about,
+    Closed, Constraints, ContactPoint, Loop, Motion, PointImpulse, Spring, SpringLoad, SpringPoint, Workspace,
     add_articulated_impulse, add_impulse, articulated_acceleration, articulated_delassus, articulated_inertias, bias,
     close, contact_jacobian, delassus, demands, eliminate_loops, factorize, kinematics, loop_impulse, mass_matrix,
     orthogonalize, point_velocity,
@@ -59,6 +60,8 @@ pub struct Assembly<T = f64> {
     /// Whether those are the rows that hold something, whatever digits the pose does not have.
     pub is_rank_certain: bool,
     column: Vec<T>,
+    /// Scratch of the elimination of contacts at rest.
+    pub(super) left: Vec<T>,
     pub(super) motions: Vec<Motion<T>>,
 }
 
@@ -217,51 +220,23 @@ impl<T: Real> Assembly<T> {
         contact_jacobian(&self.plan, &self.points, velocity, stance, &mut self.workspace);
     }
 
-    /// Takes c of contacts that depend on a `resting` one as if that did not move, whatever its own velocity is, so that
-    /// impulses can give c of all of them; reports each with the one that rests. What depends on the `stance` does so by
-    /// the base's velocity already.
-    pub fn settle(
-        &mut self,
-        velocity: &[T],
-        resting: &[bool],
-        stance: Option<usize>,
-        mut settled: impl FnMut(usize, usize),
-    ) {
-        if !resting.contains(&true) {
-            return;
+    /// Takes c of the contacts that move as that of the motion next to v, by kinetic energy, in which the others are
+    /// `still`: c_i - G_ir lambda with G_rr lambda = c_r, from G and c. Reports each row of G that is eliminated, with its
+    /// pivot, and G.
+    pub fn settle(&mut self, Still { contacts, rows }: &Still, mut report: impl FnMut(usize, T, &[T])) {
+        let Workspace { delassus, contact_velocity: speeds, .. } = &mut self.workspace;
+        if !rows.is_empty() {
+            let left = &mut self.left;
+            left.clone_from(delassus);
+            for (done, &row) in rows.iter().enumerate() {
+                report(row, left[row * (2 * contacts.len() + 1)], delassus);
+                for other in (0..2 * contacts.len()).filter(|other| !rows[..=done].contains(other)) {
+                    let share = eliminate(left, row, other);
+                    speeds[other / 2][other % 2] = speeds[other / 2][other % 2] - share * speeds[row / 2][row % 2];
+                }
+            }
         }
-        for index in (0..self.points.len()).filter(|&index| !resting[index] && stance != Some(index)) {
-            let standing = stance.and_then(|stance| self.joints_between(index, stance));
-            let others = (0..self.points.len()).filter(|&other| resting[other]);
-            let nearest = others.filter_map(|other| Some((self.joints_between(index, other)?, other))).min();
-            let Some((_, at)) = nearest.filter(|(joints, _)| standing.is_none_or(|standing| standing > *joints)) else {
-                continue;
-            };
-            let (rest, own) = (self.points[at], self.points[index]);
-            self.workspace.contact_velocity[index] = if rest.body == own.body {
-                about(&self.plan, &rest, &own, velocity, &self.workspace)
-            } else {
-                let moving = self.velocity_of(&own, velocity) - self.velocity_of(&rest, velocity);
-                own.axes().map(|axis| axis.dot(moving))
-            };
-            settled(index, at);
-        }
-    }
-
-    /// How many joints move the bodies of two contacts against each other; `None` if the bodies on the way have no more
-    /// rows of contacts than degrees of freedom, so that these do not depend on each other.
-    fn joints_between(&self, one: usize, other: usize) -> Option<usize> {
-        let Self { plan, points, kept, .. } = self;
-        let moves =
-            |body: &PlanBody<T>| body.parent.is_some() && body.column.is_some() && !kept.contains(&body.coordinate);
-        let rigid = |body| plan.way_to_root(body).find(|(_, own)| own.parent.is_none() || moves(own)).map(|(at, _)| at);
-        let way = || plan.way(points[one].body, points[other].body);
-        // That at which the way turns does not move one against the other.
-        let inner = way().count() - 1;
-        let joints = way().take(inner).filter(|&body| moves(&plan.bodies[body])).count();
-        let is_on_it = |contact: &&ContactPoint<T>| way().any(|body| rigid(body) == rigid(contact.body));
-        let rows = 2 * points.iter().filter(is_on_it).count();
-        (rows > 3 + joints).then_some(joints)
+        speeds.iter_mut().zip(contacts).filter(|(_, still)| **still).for_each(|(own, _)| *own = [T::zero(); 2]);
     }
 
     /// G, without what the constraints do not let move.

@@ -2,6 +2,7 @@
 
 use super::Impact;
 use super::assembly::{Assembly, Elimination, Loads};
+use super::still::Still;
 use crate::contact::{Contact, Level};
 use crate::dynamics::plan::{Configuration, Plan};
 use crate::dynamics::{Closed, Constraints, ContactPoint};
@@ -40,7 +41,7 @@ pub struct ExactState<'a> {
     /// Those that are exactly level with others.
     pub levels: &'a [Option<Level>],
     /// Contacts that are taken as exactly at rest.
-    pub resting: &'a [bool],
+    pub still: &'a Still,
     /// The joints that keep their rates although they have columns, and the rows of the loops that count.
     pub constraints: Constraints<'a>,
     /// Whether the rows that count are those of the mechanism, and not of its pose's rounding.
@@ -74,6 +75,7 @@ impl<'a> ExactState<'a> {
         robot: &'a Robot,
         state: &'a State,
         (impact, foot): (&'a Impact, Option<&'a Contact>),
+        still: &'a Still,
         constraints: Constraints<'a>,
     ) -> Self {
         Self {
@@ -85,7 +87,7 @@ impl<'a> ExactState<'a> {
             stance: impact.stance,
             contacts: &impact.contacts,
             levels: &[],
-            resting: &impact.resting,
+            still,
             constraints,
             is_rank_certain: true,
             laws: impact.problem.laws(),
@@ -136,7 +138,6 @@ impl<'a> ExactState<'a> {
         assembly.constrain(foot);
         assembly.close(velocity);
         assembly.contact_jacobian(velocity, self.stance);
-        assembly.settle(velocity, self.resting, self.stance, |_, _| {});
     }
 
     /// What the applied impulses change in v, by coordinate, once M^-1 is prepared.
@@ -148,10 +149,10 @@ impl<'a> ExactState<'a> {
     }
 
     /// c-, without what rests.
-    fn before<T: Real>(&self, assembly: &Assembly<T>) -> Vec<Pair<T>> {
-        let speeds = assembly.workspace.contact_velocity.iter().zip(self.resting);
-        let before = speeds.enumerate().map(|(at, (&[tangential, normal], &rests))| match self.asked {
-            _ if rests => [T::zero(); 2],
+    fn before<T: Real>(&self, assembly: &mut Assembly<T>) -> Vec<Pair<T>> {
+        assembly.settle(self.still, |_, _, _| {});
+        let speeds = assembly.workspace.contact_velocity.iter().enumerate();
+        let before = speeds.map(|(at, &[tangential, normal])| match self.asked {
             Asked::Shock(slips) if slips[at].is_eq() => [T::zero(); 2],
             Asked::Shock(_) => [tangential, T::zero()],
             Asked::Impact | Asked::Forces(_) => [tangential, normal],
@@ -261,7 +262,10 @@ impl Source for ExactState<'_> {
     }
 
     fn velocity(&self) -> Option<Vec<Pair<Ball<DoubleDouble>>>> {
-        let is_free = self.constraints.kept.is_empty() && self.scene.loops.is_empty() && self.scene.impulses.is_empty();
+        let is_free = self.constraints.kept.is_empty()
+            && self.scene.loops.is_empty()
+            && self.scene.impulses.is_empty()
+            && self.still.rows.is_empty();
         if !(is_free && matches!(self.asked, Asked::Impact)) {
             return None;
         }
@@ -270,7 +274,7 @@ impl Source for ExactState<'_> {
         assembly.configuration = configuration;
         self.place(&mut assembly);
         self.contact_velocities(&mut assembly, &mut velocity);
-        Some(self.before(&assembly))
+        Some(self.before(&mut assembly))
     }
 
     fn is_exact(&self) -> bool {
@@ -283,9 +287,8 @@ impl Source for ExactState<'_> {
 
     fn shared_tangent(&self, contact: usize) -> Option<usize> {
         let &Level { with, .. } = self.levels.get(contact)?.as_ref()?;
-        // One that moves turns about one that rests, and only about this one if no other does.
-        let turns_about = || self.stance.is_none() && self.resting.iter().filter(|rests| **rests).count() == 1;
-        let is_alike = self.resting[contact] == self.resting[with] || turns_about();
+        let still = |contact: usize| self.still.contacts.get(contact);
+        let is_alike = still(contact) == still(with) || !self.still.rows.is_empty();
         // Accelerations differ by what the body's turn brings along.
         (matches!(self.asked, Asked::Impact) && is_alike).then_some(with)
     }

@@ -14,6 +14,7 @@ use super::exact::{Asked, ExactState};
 use super::response::Unstruck;
 use super::resting::Standing;
 use super::springs::Driven;
+use super::still::Still;
 use super::{CONTACT_TOLERANCE, Impact, Pipeline, Prepared};
 use crate::budget::within;
 use crate::contact::{Contact, Surface};
@@ -153,10 +154,10 @@ impl Pipeline<'_> {
         }
         let mut prepared = self.prepare(state)?;
         self.refuse_uneven(&prepared)?;
-        let Prepared { velocity, foot, levels, impact, .. } = &mut *prepared;
+        let Prepared { velocity, foot, levels, still, impact, .. } = &mut *prepared;
         let Impact { contacts, stance, notes, .. } = &mut **impact;
-        if self.assembly.is_constrained() {
-            // Those of an impact are infinite.
+        if self.assembly.is_constrained() || !still.rows.is_empty() {
+            // Those of an impact are infinite, or of other velocities.
             self.bound_velocities(contacts, levels, velocity, Standing { foot: foot.as_ref(), place: *stance });
         }
         if state.scene.gravity() < 0.0 {
@@ -195,7 +196,7 @@ impl Pipeline<'_> {
         let slips: Vec<Option<Ordering>> = outcome.modes.iter().enumerate().map(slip).collect();
         // The foot of a stance may move after the impact.
         let velocity = outcome.velocity().collect();
-        let mut prepared = Prepared { velocity, foot: None, ..struck.clone() };
+        let mut prepared = Prepared { velocity, foot: None, still: Still::default(), ..struck.clone() };
         prepared.impact.stance = None;
         self.refuse_uneven(&prepared)?;
         let (contacts, levels) = (&prepared.impact.contacts, &prepared.levels);
@@ -304,7 +305,7 @@ impl Pipeline<'_> {
 
     /// Leaves the contacts that have a slip and so take part, with what is known of them, and poses an impact there.
     fn take_part(&mut self, state: &State, prepared: &mut Prepared, slips: &[Option<Ordering>]) -> Result<()> {
-        let Prepared { velocity, foot, levels, merged, change, impact, .. } = prepared;
+        let Prepared { velocity, foot, levels, merged, still, change, impact, .. } = prepared;
         let Impact { contacts, stance, resting, placement, problem, .. } = &mut **impact;
         let stays: Vec<usize> = (0..slips.len()).filter(|&at| slips[at].is_some()).collect();
         if stays.len() < slips.len() {
@@ -313,6 +314,7 @@ impl Pipeline<'_> {
             *contacts = stays.iter().map(|&at| contacts[at].clone()).collect();
             *stance = stance.and_then(place);
             *resting = stays.iter().map(|&at| resting[at]).collect();
+            still.keep(place);
             merged.retain_mut(|merged| {
                 merged.outer = merged.outer.iter().filter_map(|&at| place(at)).collect();
                 !merged.outer.is_empty()

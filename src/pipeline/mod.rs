@@ -4,6 +4,7 @@
 //!     State --> configuration --> stance, loops, contacts --> M, J, G --> ContactProblem --> Analysis --> Impact
 //! ```
 
+mod still;
 pub(crate) mod assembly;
 pub(crate) mod exact;
 mod loops;
@@ -23,6 +24,7 @@ pub(crate) use self::prepared::Prepared;
 use self::response::Unstruck;
 pub(crate) use self::resting::AT_REST;
 pub use self::springs::{Driven, SpringForce, Unrealized};
+use self::still::Still;
 pub use self::unsolved::Unsolved;
 use crate::budget::{Budget, is_spent, within};
 use crate::contact::{Contact, Feet, Merged, Placement};
@@ -39,7 +41,7 @@ use crate::robot::Robot;
 use crate::scalar::Magnitude;
 use crate::state::{NamedContact, Scene, State};
 use serde::{Deserialize, Serialize};
-use std::mem::replace;
+use std::mem::{replace, take};
 use std::sync::Arc;
 
 /// What is asked about a state.
@@ -187,6 +189,7 @@ pub enum LeftOut {
 struct Answer {
     impact: Box<Impact>,
     foot: Option<Contact>,
+    still: Still,
     /// The rows of the loops that count.
     rows: Vec<usize>,
 }
@@ -279,7 +282,7 @@ impl<'r> Pipeline<'r> {
                     answer.impact.notes.push(UNKNOWN_IN_TIME.to_owned());
                 }
             }
-            Ok(answer.impact)
+            Ok(self.finished(answer))
         })
     }
 
@@ -301,7 +304,7 @@ impl<'r> Pipeline<'r> {
     /// As [`Pipeline::answer`].
     pub fn answer_explaining(&mut self, state: &State, chosen: &[Vec<Mode>]) -> Result<Box<Impact>> {
         within(self.options.budget, || match self.options.aspect {
-            Aspect::Impact => self.strike(state, Some(chosen)).map(|answer| answer.impact),
+            Aspect::Impact => self.strike(state, Some(chosen)).map(|answer| self.finished(answer)),
             Aspect::Forces => self.sustained(state, Some(chosen)),
         })
     }
@@ -358,12 +361,20 @@ impl<'r> Pipeline<'r> {
         let matrices = self.options.matrices.then(|| self.matrices());
         let followed = analysis.as_mut().filter(|_| next).map(|analysis| self.follow(state, &prepared, analysis));
         prepared.impact.notes.extend(followed.into_iter().flatten());
-        let foot = prepared.foot.take();
+        let (foot, still) = (prepared.foot.take(), take(&mut prepared.still));
         let mut impact = self.unanswered(prepared);
         (impact.analysis, impact.friction_needed) = (analysis, friction_needed);
         impact.slides_regardless = slides_regardless;
         (impact.left_out, impact.matrices) = (left_out, matrices);
-        Ok(Answer { impact, foot, rows: self.assembly.rows.clone() })
+        Ok(Answer { impact, foot, still, rows: self.assembly.rows.clone() })
+    }
+
+    /// What an answer is asked for; the rest of its memory goes to the next state.
+    fn finished(&mut self, Answer { impact, still, .. }: Answer) -> Box<Impact> {
+        if let Some(spare) = &mut self.spare {
+            spare.still = still;
+        }
+        impact
     }
 
     /// The answer without its analysis, of which the memory is exchanged with that of the next state.

@@ -9,6 +9,7 @@
 use super::assembly::{Assembly, Elimination};
 use super::exact::ExactState;
 use super::resting::Standing;
+use super::still::Still;
 use super::{CONTACT_TOLERANCE, Impact, Pipeline};
 use crate::contact::{Contact, Footing, Level, Merged, Placement, Surface, level};
 use crate::dynamics::plan::{Plan, PlanBody};
@@ -46,6 +47,7 @@ pub struct Prepared {
     pub out_of_reach: usize,
     /// Contacts that are taken as exactly level with others.
     pub levels: Vec<Option<Level>>,
+    pub still: Still,
     /// What the applied impulses change in v, without and with what the loops answer.
     pub applied: Vec<f64>,
     pub change: Vec<f64>,
@@ -70,7 +72,7 @@ impl Prepared {
             levels: &self.levels,
             is_rank_certain: assembly.is_rank_certain,
             errors,
-            ..ExactState::of(robot, state, (&self.impact, self.foot.as_ref()), constraints)
+            ..ExactState::of(robot, state, (&self.impact, self.foot.as_ref()), &self.still, constraints)
         }
     }
 }
@@ -96,7 +98,8 @@ impl Pipeline<'_> {
         let surface = Surface::new(&scene.ground);
         let mut prepared = self.spare.take().unwrap_or_default();
         // A field more is an error here.
-        let Prepared { velocity, foot, merged, out_of_reach, levels, applied, change, free, impact } = &mut *prepared;
+        let Prepared { velocity, foot, merged, out_of_reach, levels, still, applied, change, free, impact } =
+            &mut *prepared;
         let Impact {
             placement,
             contacts,
@@ -145,10 +148,11 @@ impl Pipeline<'_> {
         let standing = Standing { foot: foot.as_ref(), place: *stance };
         *levels = self.levels(state, contacts, placement, *stance);
         self.bound_velocities(contacts, levels, velocity, standing);
-        self.take_as_resting(state, velocity, contacts, standing, (resting, notes));
+        self.find_resting(state, velocity, contacts, standing, (resting, notes));
         self.assembly.delassus();
         *kinetic_energy = self.energy_in_range(&state.velocity, velocity)?;
         self.bound_delassus();
+        self.settle(contacts, *stance, still, (resting, notes));
         if !scene.impulses.is_empty() || (self.assembly.is_constrained() && !self.options.no_proof) {
             // They go through M^-1, whose rounding these bounds do not follow.
             self.bounds.delassus = f64::INFINITY;

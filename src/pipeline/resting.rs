@@ -10,10 +10,13 @@
 //! numbers' last decimal places ([`half_units`]). With a stance the terms of its foot count twice more.
 
 use super::Pipeline;
+use super::assembly::Assembly;
+use super::still::Still;
 use crate::contact::Contact;
 use crate::dynamics::plan::JointMotion;
-use crate::dynamics::point_velocity;
+use crate::dynamics::{RoundingBounds, Workspace, point_velocity};
 use crate::error::{Error, Reason, Result, rounded};
+use crate::impact::CONTACT_LIMIT;
 use crate::planar::{Pair, Vector};
 use crate::state::State;
 use std::cmp::Ordering;
@@ -24,6 +27,9 @@ use std::ops::RangeInclusive;
 const CANCELED: f64 = 1e-4;
 /// Numbers with so many significant digits were rounded to them; with fewer they are meant, with more they are f64.
 const ROUNDED: RangeInclusive<usize> = 6..=15;
+
+/// Pivots of G that are a greater part of their rows leave digits of what is divided by them.
+const WELL_KNOWN: f64 = 1e-6;
 
 /// The last place of a number of f32, relative to it, at most.
 const ULP_OF_F32: f64 = f32::EPSILON as f64;
@@ -47,9 +53,9 @@ enum Because {
 }
 
 impl Pipeline<'_> {
-    /// Takes contacts that rest as exactly at rest, and notes them unless in brief; says which in `resting`. `velocity` is
-    /// dq/dt; the contacts' velocities and their bounds must be known.
-    pub(super) fn take_as_resting(
+    /// Finds the contacts that rest, and notes them unless in brief; says which in `resting`. `velocity` is dq/dt; the
+    /// contacts' velocities and their bounds must be known.
+    pub(super) fn find_resting(
         &mut self,
         state: &State,
         velocity: &[f64],
@@ -73,7 +79,6 @@ impl Pipeline<'_> {
             let name = &contact.1.name;
             if let Some(because) = because {
                 resting[index] = true;
-                self.assembly.workspace.contact_velocity[index] = [0.0; 2];
                 if !self.options.brief && (slow > 0.0 || self.options.resting_speed.is_none()) {
                     notes.push(format!("{name}{AT_REST} although it moves at {slow:.1e} m/s ({because})"));
                 }
@@ -84,12 +89,51 @@ impl Pipeline<'_> {
                 ));
             }
         }
-        // Contacts that depend on each other have impulses only for velocities that do, too.
-        let bounds = &mut self.bounds.velocity;
-        self.assembly.settle(velocity, resting, place, |index, rest| {
-            bounds[index] = [length(bounds[index]) + length(bounds[rest]); 2];
+    }
+
+    /// Takes contacts that rest as exactly at rest, once G is known, and c of those that depend on them as of a motion in
+    /// which they do: no impulses fit a c that no motion has.
+    pub(super) fn settle(
+        &mut self,
+        contacts: &[Contact],
+        stance: Option<usize>,
+        still: &mut Still,
+        (resting, notes): (&mut [bool], &mut Vec<String>),
+    ) {
+        still.contacts.clear();
+        still.rows.clear();
+        if !resting.contains(&true) {
+            return;
+        }
+        let Assembly { workspace: Workspace { delassus, contact_velocity, .. }, left, .. } = &mut self.assembly;
+        let stands = |index: usize| stance == Some(index) || contact_velocity[index] == [0.0; 2];
+        still.contacts.extend(resting.iter().enumerate().map(|(index, rests)| *rests || stands(index)));
+        if contacts.len() <= CONTACT_LIMIT && still.contacts.contains(&false) {
+            still.find_rows(delassus, left, |index| {
+                resting[index] = true;
+                if !self.options.brief {
+                    let (name, slow) = (&contacts[index].name, length(contact_velocity[index]));
+                    notes.push(format!(
+                        "{name}{AT_REST} although it moves at {slow:.1e} m/s (the contacts at rest hold its body)"
+                    ));
+                }
+            });
+        }
+        // What c of the resting ones was is known to all of its size.
+        let RoundingBounds { velocity: bounds, delassus: of_delassus, .. } = &mut self.bounds;
+        let speeds = bounds.iter_mut().zip(&*contact_velocity).zip(&still.contacts).filter(|(_, still)| **still);
+        speeds.for_each(|((bound, speed), _)| *bound = [0, 1].map(|axis| bound[axis] + speed[axis].abs()));
+        let size = 2 * contacts.len();
+        let is_known = *of_delassus <= CANCELED * WELL_KNOWN;
+        self.assembly.settle(still, |row, pivot, delassus| {
+            // |G_ir / pivot| is no greater than sqrt(G_ii / pivot), whose digits the pivot leaves.
+            let is_known = is_known && pivot > WELL_KNOWN * delassus[row * (size + 1)];
+            let reach = if is_known { 2.0 * bounds[row / 2][row % 2] / pivot.sqrt() } else { f64::INFINITY };
+            for other in 0..size {
+                bounds[other / 2][other % 2] += reach * delassus[other * (size + 1)].sqrt();
+            }
         });
-        bounds.iter_mut().zip(&*resting).filter(|(_, rests)| **rests).for_each(|(bound, _)| *bound = [0.0; 2]);
+        bounds.iter_mut().zip(&still.contacts).filter(|(_, still)| **still).for_each(|(bound, _)| *bound = [0.0; 2]);
     }
 
     /// Why a contact is taken as resting whose speed, or one component of it, is `slow`, rounded by up to `bound`; `None`

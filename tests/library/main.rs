@@ -19,6 +19,7 @@ mod maps;
 mod recycled;
 mod reductions;
 mod regression;
+mod resting;
 #[path = "../support/mod.rs"]
 mod support;
 mod sweep;

@@ -50,7 +50,7 @@ impl KeptContacts<'_, '_> {
     /// The proven answer at a point, if its contacts are the same.
     fn analysis(&mut self, point: &[f64]) -> Option<(State, Analysis)> {
         let state = self.at(point);
-        let Answer { impact, foot, rows } = self.pipeline.strike(&state, Some(&[])).ok()?;
+        let Answer { impact, foot, still, rows } = self.pipeline.strike(&state, Some(&[])).ok()?;
         let same_foot = match (&foot, &self.answer.foot) {
             (Some(one), Some(other)) => {
                 let far = one.center - other.center;
@@ -61,7 +61,7 @@ impl KeptContacts<'_, '_> {
         // Elsewhere on a profile a named contact may have another normal.
         let mut contacts = impact.contacts.iter().zip(&self.answer.impact.contacts);
         let same_axes = contacts.all(|(one, other)| one.ground == other.ground);
-        let same_rests = impact.stance == self.answer.impact.stance && impact.resting == self.answer.impact.resting;
+        let same_rests = impact.stance == self.answer.impact.stance && still == self.answer.still;
         (same_foot && same_axes && same_rests && rows == self.answer.rows).then_some((state, impact.analysis?))
     }
 
@@ -93,10 +93,10 @@ impl KeptContacts<'_, '_> {
 
     /// The contact problems of all states of the box.
     pub fn problem<const N: usize>(&self, whole: &StateBox) -> UncertainProblem<Affine<N>> {
-        let Answer { impact, foot, rows } = self.answer;
+        let Answer { impact, foot, still, rows } = self.answer;
         let (robot, scene) = (self.pipeline.robot, &self.state.scene);
         // Where angles vary a sole is not level.
-        let exact = ExactState::of(robot, self.state, (impact, foot.as_ref()), Constraints { kept: &[], rows });
+        let exact = ExactState::of(robot, self.state, (impact, foot.as_ref()), still, Constraints { kept: &[], rows });
         let plan = whole.plan::<N>(robot, &scene.braked, &scene.rotor_inertia);
         let Contacts { delassus, before, free } = exact.contacts(Inputs {
             configuration: whole.configuration(&plan, &self.state.position),

@@ -4,7 +4,6 @@ use super::*;
 use crate::support::random::Random;
 use crate::support::scaled::largest;
 use heelstrike::description::Description;
-use heelstrike::impact::{Analysis, ContactProblem, Friction, ListedRejections};
 use heelstrike::reductions::Reductions;
 use heelstrike::robot::Reduction;
 
@@ -234,34 +233,6 @@ fn a_toe_lands_about_a_heel_that_rests_to_rounding() {
                 assert!(near(one, &other, within * largest(one).max(1.0)), "seed {seed}: {one:?} is not {other:?}");
             }
         }
-    }
-}
-
-/// Two points rest by the speed that is given although their body turns, so that c is of no motion: the outcomes are
-/// those of this c, whatever rows of G are known to be shared. All numbers are exact.
-#[test]
-fn what_rests_while_its_body_turns_is_taken_at_its_word() {
-    // About the CoG, which is 0.25 m ahead of the link's frame.
-    let arms = [[0.0, -0.09375], [-0.25, -0.125], [0.25, -0.125]];
-    let robot = robot(&urdf::robot(&[urdf::link("body", 2.0, [0.25, 0.0], 0.0625, "")]));
-    let contacts = arms.map(|[x, z]| json!({"link": "body", "offset": [0.25 + x, 0, z]}));
-    let rows: Vec<[f64; 3]> = arms.iter().flat_map(|&[x, z]| [[1.0, 0.0, z], [0.0, 1.0, -x]]).collect();
-    let entry = |a: &[f64; 3], b: &[f64; 3]| 0.5 * (a[0] * b[0] + a[1] * b[1]) + 16.0 * a[2] * b[2];
-    let delassus: Vec<f64> = rows.iter().flat_map(|a| rows.iter().map(|b| entry(a, b))).collect();
-    for (friction, mu) in [(json!(0), 0.0), (json!(0.5), 0.5), (json!("infinite"), f64::INFINITY)] {
-        let state = json!({"position": {"base": {"z": 0.125}}, "velocity": {"base": {"x": 0.125, "pitch": 1}},
-            "friction": friction, "contacts": contacts});
-        let options = Options { resting_speed: Some(0.3), ..Options::default() };
-        let found = try_impact(&robot, options, state).expect("an answer");
-        let before = vec![[0.0; 2], [0.0; 2], [-0.03125, -0.25]];
-        assert_eq!((found.resting, &found.velocity_before), (vec![true, true, false], &before));
-        let given = ContactProblem::new(delassus.clone(), before, vec![Friction::from(mu); 3], vec![0.0; 3])
-            .expect("a problem");
-        let given = heelstrike::impact::analyze(&given, ListedRejections::Nothing).expect("an answer");
-        let analysis = found.analysis.expect("an analysis");
-        assert_eq!((analysis.verdict, analysis.proven), (given.verdict, given.proven), "{mu}");
-        let modes = |analysis: &Analysis| analysis.outcomes.iter().map(|own| own.modes.clone()).collect::<Vec<_>>();
-        assert_eq!(modes(&analysis), modes(&given), "{mu}");
     }
 }
 
