@@ -38,10 +38,10 @@ pub struct RecordingOptions {
     #[arg(long, value_name = "WHICH", default_value_t, requires = "touchdowns")]
     pub touching: Touching,
     /// How far a foot must have descended, in meters [default: 0.012, less for robots below 0.25 m]
-    #[arg(long, value_name = "HEIGHT", value_parser = from_zero, requires = "touchdowns")]
+    #[arg(long, value_name = "HEIGHT", value_parser = from_zero, allow_hyphen_values = true, requires = "touchdowns")]
     pub drop: Option<f64>,
     /// How far above z = 0 a foot may stop, in meters [default: 0.02, less for robots below 0.25 m]
-    #[arg(long, value_name = "HEIGHT", value_parser = from_zero, requires = "touchdowns")]
+    #[arg(long, value_name = "HEIGHT", value_parser = from_zero, allow_hyphen_values = true, requires = "touchdowns")]
     pub ground_height: Option<f64>,
     /// Compute velocities from the positions and the column "time"
     #[arg(long, value_parser = choice(DIFFERENCES), value_name = "HOW")]
@@ -105,6 +105,9 @@ impl RecordingOptions {
         thresholds: Thresholds,
         (dropped, lowest): (&'a Mutex<Dropped>, &'a Mutex<f64>),
     ) -> Result<Samples<'a>> {
+        if self.is_in_order() {
+            samples = Box::new(gait::unwrapped(samples, robot));
+        }
         if header.is_spatial() {
             samples = Box::new(gait::sagittal(samples, dropped));
         }

@@ -1,8 +1,8 @@
 //! Touchdowns in recorded gaits: the moments at which a foot that was above the ground reaches it.
 //!
 //! ```text
-//!     samples in time --[sagittal, where the base is in 3-D]--> --[rates, where the table has none]--> --[find]-->
-//!     touchdowns: time, state, Landing (row, striking contact)
+//!     samples in time --[unwrapped]--> --[sagittal, where the base is in 3-D]--> --[rates, where the table has none]-->
+//!     --[find]--> touchdowns: time, state, Landing (row, striking contact)
 //! ```
 //!
 //! Recorded feet do not reach z = 0: they float or sink by centimeters, sink slowly while they stand, and may be
@@ -79,11 +79,13 @@ mod strike;
 mod arrival;
 mod find;
 mod rates;
+mod turns;
 pub mod spatial;
 
 pub use find::{Touchdowns, find};
 pub use rates::{Difference, rates};
 pub use spatial::{Dropped, sagittal};
+pub use turns::unwrapped;
 
 use crate::contact::Feet;
 use crate::state::{NamedContact, State};

@@ -4,8 +4,11 @@ use super::{samples, touchdowns};
 use crate::support::impact::robot;
 use crate::support::urdf::{self, Axis, collision, joint, link};
 use heelstrike::Robot;
-use heelstrike::gait::{At, Difference, Heights, Landing, SMALL, Sample, Sampled, Thresholds, Touching, find, rates};
+use heelstrike::gait::{
+    At, Difference, Heights, Landing, SMALL, Sample, Sampled, Thresholds, Touching, find, rates, unwrapped,
+};
 use heelstrike::read::table::Rates;
+use std::f64::consts::TAU;
 
 /// A block and two feet, at x = 0 and x = 1, that slide along z on joints of their own; in a unit of length of which
 /// `scale` make a meter.
@@ -26,6 +29,25 @@ fn above() -> f64 {
 /// The samples of a table without velocities.
 fn differences(table: &str, robot: &Robot, difference: Difference) -> Vec<Sampled<usize>> {
     rates(samples(table, robot, Rates::Time).into_iter(), difference).collect()
+}
+
+/// Angles that a recording keeps within a turn have the rates of those that go on.
+#[test]
+fn a_turn_that_wraps_goes_on() {
+    let robot = robot(&urdf::body(0.5, ""));
+    let found = |kept: fn(f64) -> f64| -> Vec<f64> {
+        let pitch = (0..50).map(|row| 0.3 * f64::from(row));
+        let rows = pitch.enumerate().map(|(row, pitch)| format!("0.{row:02},{}\n", kept(pitch)));
+        let table = format!("time,q_base_pitch\n{}", rows.collect::<String>());
+        let whole = unwrapped(samples(&table, &robot, Rates::Time).into_iter(), &robot);
+        rates(whole, Difference::Central).map(|sample| sample.expect("a sample").state.velocity[2]).collect()
+    };
+    let on = found(|pitch| pitch);
+    assert!(on.iter().all(|rate| (rate - 30.0).abs() < 1e-9), "{on:?}");
+    for kept in [|pitch: f64| pitch.sin().atan2(pitch.cos()), |pitch: f64| pitch.rem_euclid(TAU)] {
+        let wrapped = found(kept);
+        assert!(wrapped.iter().all(|rate| (rate - 30.0).abs() < 1e-9), "{wrapped:?}");
+    }
 }
 
 /// The touchdowns of both feet: rows of time, height of a, height of b.
