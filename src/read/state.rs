@@ -69,7 +69,7 @@ pub(crate) fn read(root: Node, robot: &Robot, defaults: &Defaults) -> Result<Sta
         }
     }
     if scene.stance.is_some() {
-        let hint = "leave out either the stance or the base's x and z";
+        let hint = "leave out either the stance or the base's x and z, of position and velocity";
         refuse_base(root, |name| format!("the stance already gives the base's {name}"), hint)?;
         if let Some(field) = root.field("uncertainty")? {
             let hint = "leave out either the stance or this half-width";

@@ -89,7 +89,7 @@ fn shown(error: &Error) -> String {
 #[test]
 fn headers_that_do_not_fit_are_refused() {
     let bolted = reduced(&leg_urdf(), &Reduction { base: Some(Base::Fixed), ..Reduction::default() });
-    let with_rates: [&[u8]; 18] = [
+    let with_rates: [&[u8]; 24] = [
         b"q_kne,v_knee",
         b"id,\"a,b\",v_base_y",
         b"q_base_qw,q_base_qy,q_base_qx,q_base_qz,v_knee,time",
@@ -108,6 +108,12 @@ fn headers_that_do_not_fit_are_refused() {
         b"v_knee,mu",
         b"v_knee,v_after_knee",
         b"v_knee,\"note",
+        b"# q_base_pitch,v_knee",
+        b"Q_BASE_X,v_knee",
+        b"v_knee,friction [-]",
+        b"v_knee,coefficient_of_restitution,friction_left_foot",
+        b"v_knee,Ground slope",
+        b",v_knee,",
     ];
     let with_time: [&[u8]; 5] = [
         b"q_base_qw,q_base_qy,q_base_qx,time",
@@ -151,11 +157,11 @@ fn missing_columns_are_listed_by_name() {
     let missing =
         |record: &[u8], rates| Header::read(record, Form::Csv, &leg(), rates, &[]).unwrap().missing().join(" ");
     let all = "q_base_x q_base_pitch q_knee v_base_x v_base_z v_base_pitch";
-    assert_eq!(missing(b"v_knee,q_base_z,tau_base_x", Rates::Columns), all);
+    assert_eq!(missing(b"v_knee,q_base_z,tau_base_x,friction_needed,joint_friction", Rates::Columns), all);
     // A stance gives the base's x and z, a quaternion its pitch, and the time the velocities.
     assert_eq!(missing(b"v_knee,stance", Rates::Columns), "q_base_pitch q_knee v_base_pitch");
     let quaternion = b"time,q_knee,q_base_qw,q_base_qx,q_base_qy,q_base_qz";
-    assert_eq!(missing(quaternion, Rates::Time), "q_base_x q_base_z");
+    assert_eq!(missing(quaternion, Rates::Time), "q_base_x q_base_z q_base_y");
 }
 
 #[test]

@@ -138,7 +138,10 @@ impl Header {
             let column = match seen.insert(name.as_str()) {
                 true if foreign.contains(name) => Ok(TableColumn::Carried),
                 true => column(name, robot),
-                false => Err(Reason::Duplicate { what: "column", name: short(name) }.into()),
+                false => {
+                    let twice = Error::new(Reason::Duplicate { what: "column", name: short(name) });
+                    Err(if name.is_empty() { twice.hint("name every column in the first line") } else { twice })
+                }
             };
             columns.push(column.map_err(|error| in_column(error, record, at, name))?);
         }
@@ -184,17 +187,19 @@ impl Header {
         // The quaternion has the pitch.
         let positions = absent("q_", TableColumn::Position).filter(|(at, _)| self.spatial.is_none() || *at != 2);
         let velocities = absent("v_", TableColumn::Velocity).filter(|_| rates == Rates::Columns);
-        positions.chain(velocities).map(|(_, name)| name).collect()
+        let sideways = self.spatial.filter(|spatial| spatial.origin[1].is_none()).map(|_| format!("q_{SIDEWAYS}"));
+        positions.chain(velocities).map(|(_, name)| name).chain(sideways).collect()
     }
 
     /// Refuses a column that is carried through and is named like a field of a state or resembles one that is missing,
     /// unless it is said to be foreign.
     fn check_foreign(&self, record: Record) -> Result<()> {
         let mut carried = self.places(TableColumn::Carried).filter(|&at| !self.is_foreign(&self.names[at]));
-        if let Some(at) = carried.find(|&at| OF_STATES.contains(&self.names[at].as_str())) {
+        let is_of_states = |name: &str| OF_STATES.contains(&plain(name).as_str()) || is_slope(name);
+        if let Some(at) = carried.find(|&at| is_of_states(&self.names[at])) {
             let name = &self.names[at];
             let reason = format!("\"{name}\" is a field of states, and tables have no column for it");
-            let hint = format!("give the states as lines of JSON, or `foreign: {name}` to copy the column");
+            let hint = format!("give the states as lines of JSON, or `foreign: {}` to copy the column", quoted(name));
             return Err(self.in_column(Error::new(Reason::Inconsistent(reason)).hint(hint), record, at));
         }
         let others = OTHERS.iter().map(|(name, _)| *name).filter(|name| !self.names.iter().any(|given| given == name));
@@ -202,7 +207,10 @@ impl Header {
         let carried = self.places(TableColumn::Carried).filter(|&at| !self.is_foreign(&self.names[at]));
         let resembling = carried.filter_map(|at| {
             let name = &self.names[at];
-            let near: Vec<&str> = missing.iter().copied().filter(|missing| resembles(name, missing)).collect();
+            let mut near: Vec<&str> = missing.iter().copied().filter(|missing| resembles(name, missing)).collect();
+            if let Some(&same) = near.iter().find(|near| plain(near) == plain(name)) {
+                near = vec![same];
+            }
             (!near.is_empty()).then_some((at, short(name), near))
         });
         let resembling: Vec<(usize, String, Vec<&str>)> = resembling.collect();
@@ -211,7 +219,7 @@ impl Header {
         let others = resembling[1..].iter().map(|(_, name, near)| format!("{} for {name}", near.join(" or ")));
         let others = few(others.collect());
         let also = if others.is_empty() { String::new() } else { format!(" also {others};") };
-        let hint = format!("did you mean {}?{also} if not, give `foreign: {name}`", near.join("? or "));
+        let hint = format!("did you mean {}?{also} if not, give `foreign: {}`", near.join("? or "), quoted(name));
         let error = Error::new(Reason::Inconsistent(reason)).hint(hint);
         Err(self.in_column(error, record, *at))
     }
@@ -409,19 +417,37 @@ fn column(name: &str, robot: &Robot) -> Result<TableColumn> {
     Ok(OTHERS.iter().find(|(other, _)| *other == name).map_or(TableColumn::Carried, |&(_, column)| column))
 }
 
+/// A name in lower case, without what is not a letter or a digit at its ends, and with `_` for it within.
+fn plain(name: &str) -> String {
+    let letter = |c: char| if c.is_alphanumeric() { c.to_ascii_lowercase() } else { '_' };
+    name.chars().map(letter).collect::<String>().trim_matches('_').to_owned()
+}
+
+fn is_slope(name: &str) -> bool {
+    matches!(plain(name).as_str(), "slope" | "ground_slope")
+}
+
+/// A name as an option takes it.
+fn quoted(name: &str) -> String {
+    let is_word = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-' | '.' | '/');
+    if name.chars().all(is_word) { name.to_owned() } else { format!("\"{name}\"") }
+}
+
 /// Whether a column `name` may be meant as the one that is called `known`: it is the same but for case and punctuation,
 /// names the coordinate alone or with another word for position or velocity, or has a letter or two wrong.
 fn resembles(name: &str, known: &str) -> bool {
-    let plain = |name: &str| {
-        let letter = |c: char| if c.is_alphanumeric() { c.to_ascii_lowercase() } else { '_' };
-        name.chars().map(letter).collect::<String>()
-    };
     // Comparing takes the product of the lengths.
     if name.len() > known.len() + 16 {
         return false;
     }
     let (name, known) = (plain(name), plain(known));
-    if known == "friction" && matches!(name.as_str(), "mu" | "friction_coefficient") {
+    // "restitution_coefficient", "friction of the left foot", and not what friction does or needs.
+    const OTHER_QUANTITIES: [&str; 7] = ["needed", "force", "torque", "loss", "power", "margin", "joint"];
+    let mut parts = name.split('_');
+    if matches!(known.as_str(), "friction" | "restitution")
+        && (name == "mu" && known == "friction"
+            || parts.clone().any(|part| part == known) && !parts.any(|part| OTHER_QUANTITIES.contains(&part)))
+    {
         return true;
     }
     let words = match known.as_bytes() {

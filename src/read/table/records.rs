@@ -148,9 +148,19 @@ impl Quotes {
             let mut quotes = self.fresh();
             1 + bytes.iter().filter(|&&byte| quotes.step(byte)).count()
         };
-        let lines = record.split(|&byte| byte == b'\n').skip(1);
+        // Those of a line if its last quote that stays open were none.
+        let without_quote = |line: &[u8]| {
+            let mut quotes = self.fresh();
+            line.iter().fold((1, 0), |(fields, open), &byte| match quotes.step(byte) {
+                true => (fields + 1, 0),
+                false => (fields, open + usize::from(byte == self.delimiter)),
+            })
+        };
+        let mut lines = record.split(|&byte| byte == b'\n');
+        let (closed, open) = lines.next().map_or((0, 0), without_quote);
         let mut further = lines.filter(|line| !line.trim_ascii().is_empty());
-        fields(record) != columns || columns >= FEWEST && further.all(|line| fields(line) == columns)
+        fields(record) != columns
+            || columns >= FEWEST && closed + open == columns && further.all(|line| fields(line) == columns)
     }
 }
 
@@ -207,5 +217,13 @@ mod tests {
             after(&["\"a\"b,\"c\n", "\"a\n", "b,\"c\"\n", "\"d\" \"e\"\n"]),
             [Misplaced, Open, Misplaced, Misplaced]
         );
+    }
+
+    #[test]
+    fn quotes_hold_rows_if_each_of_their_lines_is_one() {
+        let swallow = |record: &[u8]| Form::Csv.quotes().swallow_rows(record, 3);
+        assert!(swallow(b"a,\"5,1\nb,6\",2\n") && swallow(b"\"a,5,1\nb\",6,2\n") && swallow(b"\"a\nb\",6\n"));
+        // Text of two lines in the first, the second and the last cell.
+        assert!(![&b"\"one\ntwo\",5,1\n"[..], b"a,\"one\ntwo\",1\n", b"a,5,\"one\ntwo\"\n"].into_iter().any(swallow));
     }
 }

@@ -359,7 +359,7 @@ impl Row<'_> {
             return Ok(());
         }
         let reason = Reason::Inconsistent(format!("the stance already gives the base's {coordinate}"));
-        Err(self.refuse(at, reason).hint("empty either the stance's cell or the base's x and z"))
+        Err(self.refuse(at, reason).hint("empty either the stance's cell or those of the base's x and z, q and v"))
     }
 
     fn friction(&self, at: usize) -> Result<Option<Friction>> {
