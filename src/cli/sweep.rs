@@ -117,7 +117,7 @@ pub(super) fn run(args: &Args) -> Completion {
     };
     note_all(notes::own_friction(model.has_own_friction().map_err(refuse)?.into(), "study"));
     note_all(notes::unused(&study));
-    let pieces = Findings::work(&model) + if format.is_none() { 0 } else { SampleRecord::count(&model) };
+    let pieces = Findings::work(&model) + SampleRecord::count(&model);
     let progress = progress::of(pieces);
     let done = || progress.inc(1);
     let workers = Workers { threads: args.threads.count(), done: &done };
@@ -140,7 +140,7 @@ pub(super) fn run(args: &Args) -> Completion {
     let refused = match format {
         None => {
             writer.write_all(regions.text(&robot.name, &output.palette).as_bytes())?;
-            0
+            samples(&model, (workers, &budget), || (), |solver, sample, ()| sample.is_answered(solver), |()| Ok(()))?
         }
         Some(RecordFormat::Ndjson) => {
             let mut head = Vec::new();
@@ -195,7 +195,11 @@ pub(super) fn run(args: &Args) -> Completion {
     if refused > 0 && refusals.is_empty() {
         // Of a line or a point of the parameters, which is no region.
         let reason = Reason::Inconsistent(format!("{refused} of {} samples are refused", SampleRecord::count(&model)));
-        report(&Error::new(reason).in_file(&input.name).hint("the `error` of each is in the output"));
+        let hint = match format {
+            None => "`format: ndjson` lists the samples with the error of each",
+            Some(_) => "the `error` of each is in the output",
+        };
+        report(&Error::new(reason).in_file(&input.name).hint(hint));
     }
     Ok(if refused == 0 && refusals.is_empty() { Answered::All } else { Answered::NotAll })
 }

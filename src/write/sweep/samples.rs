@@ -43,6 +43,11 @@ impl<'a> SampleRecord<'a> {
         model.study.parameters().iter().map(|parameter| parameter.steps).product()
     }
 
+    /// Whether it is answered.
+    pub fn is_answered(&self, solver: &mut Solver) -> bool {
+        solver.at(&self.point, |_, state, pipeline| pipeline.outcomes(&state)?.analyzed().map(drop)).is_ok()
+    }
+
     /// Appends `{"alpha": ..., "result": {...}}` without a line break; returns whether it was answered.
     pub fn append_json(&self, solver: &mut Solver, detail: Detail, out: &mut Vec<u8>) -> bool {
         let mut result = Vec::new();

@@ -122,6 +122,10 @@ fn samples_refused_outside_regions_are_counted() {
     let Run { status, stderr, .. } = run("urdf/pdw.urdf", &study, &["--format", "json", "--quiet"]);
     assert_eq!(status, 1);
     assert!(stderr.contains("1 of 5 samples are refused\nhint: the `error` of each"), "{stderr}");
+    // The text has no samples.
+    let Run { status, stderr, .. } = run("urdf/pdw.urdf", &study, &["--quiet"]);
+    assert_eq!(status, 1);
+    assert!(stderr.contains("1 of 5 samples are refused\nhint: --format ndjson lists"), "{stderr}");
 }
 
 #[test]
