@@ -112,7 +112,7 @@ const WALKER: &str = "friction infinite, biped";
 fn suite(part: &str, no_proof: bool, budget: Budget) -> Result<Accuracy, Failure> {
     let chosen: Vec<Case> = cases()?.into_iter().filter(|case| case.name.contains(part)).collect();
     if chosen.is_empty() {
-        let reason = Reason::UnknownName { what: "case", name: part.to_owned() };
+        let reason = Reason::Inconsistent(format!("no case has \"{part}\" in its name"));
         let hint = "`heelstrike accuracy --list` shows the names of all cases";
         return Err(Failure::Usage(Error::new(reason).at("--case").hint(hint)));
     }

@@ -77,7 +77,8 @@ impl Feet {
         self.feet.iter()
     }
 
-    /// The greatest distance from the root's origin to a foot or CoG with all joints at zero \[m\].
+    /// The greatest distance from the root's origin to a foot or CoG with all joints at zero \[m\]; of a
+    /// robot that is one point 1 m.
     pub fn size(&self) -> f64 {
         self.size
     }

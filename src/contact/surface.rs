@@ -79,16 +79,19 @@ impl Surface {
         close: Closeness,
         found: impl FnMut(Touch),
     ) -> Result<(), Sunk> {
-        let (touching, how) = match self {
-            Self::HalfPlane(plane) => (plane.touching(foot, placement, close.tolerance, found), "raise the base"),
+        // How far to move along the vertical for one meter along the normal.
+        let (touching, how, along) = match self {
+            Self::HalfPlane(plane) => {
+                (plane.touching(foot, placement, close.tolerance, found), "raise the base", 1.0 / plane.normal.z)
+            }
             Self::Profile(terrain) => {
                 let touches = profile::touching(terrain, foot, placement, close);
-                (touches.map(|touches| touches.into_iter().for_each(found)), "move the base or the profile")
+                (touches.map(|touches| touches.into_iter().for_each(found)), "move the base or the profile", 1.0)
             }
         };
         touching.map_err(|depth| {
             // What is left of the depth, or missing from it, is within the tolerance.
-            let enough = shortest_within(depth, 0.5 * close.tolerance);
+            let enough = shortest_within(depth * along, 0.5 * close.tolerance * along);
             let remedy =
                 format!("{how} by {enough:?} m, correct the pose, or accept it by a greater `contact_tolerance`");
             Sunk { depth, remedy }

@@ -160,6 +160,18 @@ pub(super) fn about_angles(description: &Description) -> Option<String> {
     ))
 }
 
+/// The caution about limits of rotations that are whole numbers far beyond a turn, as in degrees.
+pub(super) fn about_limits(description: &Description) -> Option<String> {
+    let in_degrees = |limit: &f64| limit.rem_euclid(5.0) == 0.0 && limit.abs() <= 360.0;
+    let is_odd = |joint: &&UrdfJoint| {
+        let limits = joint.limits.filter(|_| joint.kind == JointKind::Revolute);
+        limits.is_some_and(|limits| limits.iter().all(in_degrees) && limits.iter().any(|limit| limit.abs() >= 30.0))
+    };
+    let odd: Vec<&str> = description.joints.iter().filter(is_odd).map(|joint| joint.name.as_str()).collect();
+    (!odd.is_empty())
+        .then(|| format!("with limits as in degrees: {}; angles are in radians", names(odd.iter().copied())))
+}
+
 /// The cautions about inertias that are half given or wrong, of these links of a robot of this `whole` mass \[kg\] and
 /// size \[m\].
 pub(super) fn about_inertias<'l>(links: impl Iterator<Item = &'l UrdfLink>, (whole, size): (f64, f64)) -> Vec<String> {

@@ -312,7 +312,7 @@ impl Robot {
     }
 
     /// The greatest distance from the root's origin to a CoG or to one of these shapes of bodies, with all joints at
-    /// zero \[m\].
+    /// zero \[m\]; of a robot that is one point 1 m.
     pub(crate) fn size<'s>(&self, shapes: impl Iterator<Item = (usize, &'s FootShape)>) -> f64 {
         let mut origins = vec![Vector::zero(); self.bodies.len()];
         for (index, body) in self.bodies.iter().enumerate() {
@@ -327,6 +327,7 @@ impl Robot {
             let corners = shape.corners().iter().map(|&corner| distance(body, corner));
             corners.fold(0.0, f64::max) + shape.rim.bound()
         });
-        centers.chain(soles).fold(0.0, f64::max)
+        let size = centers.chain(soles).fold(0.0, f64::max);
+        if size > 0.0 { size } else { 1.0 }
     }
 }

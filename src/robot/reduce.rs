@@ -79,6 +79,7 @@ impl Robot {
         cautions.extend(caution::about_axes(description));
         cautions.extend(caution::about_lengths(description));
         cautions.extend(caution::about_angles(description));
+        cautions.extend(caution::about_limits(description));
         let reading = Reading {
             plane,
             plane_because,

@@ -103,6 +103,20 @@ fn lowest_foot_is_put_on_the_ground() {
     }
 }
 
+/// A robot of one point has no size to compare heights with.
+#[test]
+fn a_point_mass_falls_and_lands_anywhere() {
+    let robot = super::point();
+    let above = impact(&robot, json!({"position": {"base": {"x": 3, "z": 0.3}}, "friction": 1}));
+    assert_close(&[nearest(&above).height], &[0.3]);
+    let placed = impact(
+        &robot,
+        json!({"position": {"base": {"x": 3, "z": 0.3}}, "velocity": {"base": {"z": -1}},
+        "friction": 1, "place": "lowest"}),
+    );
+    assert_eq!(placed.velocity_before, [[0.0, -1.0]]);
+}
+
 #[test]
 fn lowest_foot_beyond_the_profile_is_refused() {
     let beyond = json!({"position": {"base": {"x": 9}}, "place": "lowest", "ground": {"profile": step(0.0, 0.2)}});
@@ -120,6 +134,12 @@ fn deep_foot_is_refused_with_its_velocity() {
     let (velocity, remedy) = refused(json!({}));
     assert_close(&velocity, &[-0.125, -1.1]);
     assert!(remedy.starts_with("raise the base by 0.25 m"), "{remedy}");
+    // On a slope the base is raised along the vertical.
+    let sloped = json!({"position": {"base": {"z": -1}}, "ground": {"slope": 1}});
+    let error = try_impact(&two_feet(-0.25), Options::default(), striking(0.0, sloped)).expect_err("too deep");
+    let raise: f64 = error.remedy().and_then(|hint| hint.split(' ').nth(4)?.parse().ok()).expect("a height");
+    // The other point is 1 m ahead, where the ground is tan(1) m higher.
+    assert!((raise - (1.25 + 1_f64.tan())).abs() < 1e-5, "{raise}");
     // With a stance the base's place is not the user's to change; the foot turns about the one that stands.
     let (velocity, remedy) = refused(json!({"stance": "body", "position": {}, "velocity": {"base": {"pitch": 0.5}}}));
     assert_close(&velocity, &[-0.125, -0.5]);

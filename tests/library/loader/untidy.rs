@@ -113,6 +113,15 @@ fn doubtful_inertias_and_angles_are_noted() {
         let links = [link("a", 1.0, [0.0; 2], 1.0, ""), link("b", 0.0, [0.0; 2], moment, "")];
         load(&urdf::robot(&[links.concat(), joint("j", HINGE, ["a", "b"], [0.0, -1.0], "")]))
     };
+    let limited = |[lower, upper]: [f64; 2]| {
+        let [torso, leg] = ["torso", "leg"].map(|name| link(name, 1.0, [0.0; 2], 1.0, ""));
+        let hip = joint("hip", HINGE, ["torso", "leg"], [0.0, -1.0], "");
+        let hip = hip.replace("lower=\"-9\" upper=\"9\"", &format!("lower=\"{lower}\" upper=\"{upper}\""));
+        load(&urdf::robot(&[torso, leg, hip])).reading.cautions
+    };
+    assert_eq!(limited([-90.0, 120.0]), ["with limits as in degrees: hip; angles are in radians"]);
+    assert_eq!(limited([-10.0, 10.0]), [""; 0]);
+    assert_eq!(limited([-31.4, 31.4]), [""; 0]);
     let words = "with an inertia but no mass: b; give the mass in kg, or leave out the <inertia>";
     assert_eq!(only_caution(&massless(1.0)), words);
     assert_eq!(massless(0.0).reading.cautions, [""; 0]);
