@@ -129,7 +129,8 @@ impl Pipeline<'_> {
             // |G_ir / pivot| is no greater than sqrt(G_ii / pivot), whose digits the pivot leaves.
             let is_known = is_known && pivot > WELL_KNOWN * delassus[row * (size + 1)];
             let reach = if is_known { 2.0 * bounds[row / 2][row % 2] / pivot.sqrt() } else { f64::INFINITY };
-            for other in 0..size {
+            // What cannot move is not reached, however far that is.
+            for other in (0..size).filter(|other| delassus[other * (size + 1)] > 0.0) {
                 bounds[other / 2][other % 2] += reach * delassus[other * (size + 1)].sqrt();
             }
         });
