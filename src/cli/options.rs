@@ -219,7 +219,7 @@ pub fn named<T: Copy>(choices: Choices<T>, name: &str) -> Result<T, String> {
 #[derive(Debug, clap::Args)]
 pub(super) struct ThreadOptions {
     /// How many threads compute; 0 means one per core
-    #[arg(long, value_name = "NUMBER", default_value_t = 0, value_parser = clap::value_parser!(u16).range(..=MOST_THREADS))]
+    #[arg(long, value_name = "NUMBER", default_value_t = 0, allow_hyphen_values = true, value_parser = clap::value_parser!(u16).range(..=MOST_THREADS))]
     threads: u16,
 }
 

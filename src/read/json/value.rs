@@ -30,7 +30,7 @@ impl<'t> Value<'t> {
     }
 
     /// The kind of value, as in `found a string`.
-    pub(super) fn kind(&self) -> &'static str {
+    pub(crate) fn kind(&self) -> &'static str {
         match self {
             Value::Null => "null",
             Value::Bool => "true or false",

@@ -8,7 +8,7 @@ use super::typed::Typed;
 use crate::error::finite;
 use crate::gait::spatial::{Spatial, project};
 use crate::law::Friction;
-use crate::read::json::{id_in, id_of};
+use crate::read::json::{self, id_in, id_of};
 use crate::robot::Base;
 use crate::state::{ByLink, Defaults, State};
 use crate::{Error, Reason, Result, Robot};
@@ -442,6 +442,10 @@ impl Row<'_> {
             (_, None) => Cell::Empty,
             (Form::Ndjson, Some(b'"')) => Cell::Text(serde_json::from_str(text).unwrap_or_default()),
             (Form::Ndjson, Some(b'-' | b'0'..=b'9')) => Cell::Number(text.parse().unwrap_or(f64::NAN)),
+            (Form::Ndjson, _) => {
+                let found = json::Value::parse(text).map_or("something else", |value| value.kind());
+                return Err(self.refuse(at, Reason::WrongKind { expected: "a string or a number", found }));
+            }
             _ => Cell::Text(text.into()),
         })
     }
