@@ -221,15 +221,15 @@ impl<T: Real> Assembly<T> {
     }
 
     /// Takes c of the contacts that move as that of the motion next to v, by kinetic energy, in which the others are
-    /// `still`: c_i - G_ir lambda with G_rr lambda = c_r, from G and c. Reports each row of G that is eliminated, with its
-    /// pivot, and G.
-    pub fn settle(&mut self, Still { contacts, rows }: &Still, mut report: impl FnMut(usize, T, &[T])) {
+    /// `still`: c_i - G_ir lambda with G_rr lambda = c_r, from G and c. Reports each row of G that is eliminated, with
+    /// what is left of c and of the pivot there, and G.
+    pub fn settle(&mut self, Still { contacts, rows, .. }: &Still, mut report: impl FnMut(usize, Pair<T>, &[T])) {
         let Workspace { delassus, contact_velocity: speeds, .. } = &mut self.workspace;
         if !rows.is_empty() {
             let left = &mut self.left;
             left.clone_from(delassus);
             for (done, &row) in rows.iter().enumerate() {
-                report(row, left[row * (2 * contacts.len() + 1)], delassus);
+                report(row, [speeds[row / 2][row % 2], left[row * (2 * contacts.len() + 1)]], delassus);
                 for other in (0..2 * contacts.len()).filter(|other| !rows[..=done].contains(other)) {
                     let share = eliminate(left, row, other);
                     speeds[other / 2][other % 2] = speeds[other / 2][other % 2] - share * speeds[row / 2][row % 2];

@@ -56,7 +56,8 @@ impl NamedLoop {
 
 impl Pipeline<'_> {
     /// Finds which rows of the loops count at `position`, and closes them in `velocity`; a `foot` that rests keeps
-    /// resting. A loop that the pose or the velocity leaves open is refused, with the gap.
+    /// resting. Gives whether that changes the velocity by rounding alone. A loop that the pose or the velocity leaves open
+    /// is refused, with the gap.
     pub(super) fn close_loops(
         &mut self,
         named: &[NamedLoop],
@@ -64,13 +65,13 @@ impl Pipeline<'_> {
         foot: Option<&Contact>,
         velocity: &mut [f64],
         notes: &mut Vec<String>,
-    ) -> Result<()> {
+    ) -> Result<bool> {
         self.assembly.loops.clear();
         self.assembly.rows.clear();
         self.assembly.is_rank_certain = true;
         if named.is_empty() {
             self.assembly.constrain(None);
-            return Ok(());
+            return Ok(true);
         }
         let robot = self.robot;
         self.assembly.loops.extend(named.iter().map(|own| own.points(robot)));
@@ -111,8 +112,10 @@ impl Pipeline<'_> {
                 left.join(" and ")
             ));
         }
-        notes.extend(self.close_velocity(named, foot.map(Contact::point_of), velocity)?);
-        Ok(())
+        let opened = self.close_velocity(named, foot.map(Contact::point_of), velocity)?;
+        let is_rounding = opened.is_none();
+        notes.extend(opened);
+        Ok(is_rounding)
     }
 
     fn reaches(&self, [a, b]: [Arm; 2]) -> [Reach; 2] {

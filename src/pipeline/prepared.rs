@@ -126,7 +126,8 @@ impl Pipeline<'_> {
         self.note_unused_laws(state, notes);
         state.velocity.clone_into(velocity);
         (*placement, *foot) = self.stand(state, &surface, velocity, take(placement))?;
-        self.close_loops(&scene.loops, &state.position, foot.as_ref(), velocity, notes)?;
+        let opened = if scene.loops.is_empty() { Vec::new() } else { velocity.clone() };
+        let is_rounding = self.close_loops(&scene.loops, &state.position, foot.as_ref(), velocity, notes)?;
         let footing = self.footing(scene, placement, &surface);
         (*contacts, *merged, *out_of_reach) = self
             .contacts(&footing, foot.as_ref(), take(contacts), notes)
@@ -148,6 +149,9 @@ impl Pipeline<'_> {
         let standing = Standing { foot: foot.as_ref(), place: *stance };
         *levels = self.levels(state, contacts, placement, *stance);
         self.bound_velocities(contacts, levels, velocity, standing);
+        if is_rounding {
+            self.blur(contacts, *stance, opened.iter().zip(&*velocity).map(|(given, closed)| closed - given).collect());
+        }
         self.find_resting(state, velocity, contacts, standing, (resting, notes));
         self.assembly.delassus();
         *kinetic_energy = self.energy_in_range(&state.velocity, velocity)?;
@@ -499,6 +503,15 @@ impl Pipeline<'_> {
         bounds.stretch(plan, configuration, arms);
         let foot = standing.foot.map(|foot| foot.arm(robot));
         bounds.velocities(plan, velocity, foot, |contact| standing.place == Some(contact));
+    }
+
+    /// Adds to the bounds of c what a `change` of the velocity moves the contacts by, which closed loops up to rounding.
+    fn blur(&mut self, contacts: &[Contact], stance: Option<usize>, change: Vec<f64>) {
+        let moving = contacts.iter().enumerate().filter(|(index, _)| stance != Some(*index));
+        for (index, contact) in moving.filter(|_| !change.is_empty()) {
+            let speed = self.bounds.speed(&self.assembly.plan, contact.arm(self.robot), &change);
+            self.bounds.velocity[index].iter_mut().for_each(|bound| *bound += speed);
+        }
     }
 
     /// Bounds the rounding of G; without proofs it is taken for what was measured.

@@ -11,7 +11,7 @@
 
 use super::Pipeline;
 use super::assembly::Assembly;
-use super::still::Still;
+use super::still::{Still, WELL_KNOWN};
 use crate::contact::Contact;
 use crate::dynamics::plan::JointMotion;
 use crate::dynamics::{RoundingBounds, Workspace, point_velocity};
@@ -27,9 +27,6 @@ use std::ops::RangeInclusive;
 const CANCELED: f64 = 1e-4;
 /// Numbers with so many significant digits were rounded to them; with fewer they are meant, with more they are f64.
 const ROUNDED: RangeInclusive<usize> = 6..=15;
-
-/// Pivots of G that are a greater part of their rows leave digits of what is divided by them.
-const WELL_KNOWN: f64 = 1e-6;
 
 /// The last place of a number of f32, relative to it, at most.
 const ULP_OF_F32: f64 = f32::EPSILON as f64;
@@ -69,7 +66,8 @@ impl Pipeline<'_> {
             let [slow, bound] =
                 [self.assembly.workspace.contact_velocity[index], self.bounds.velocity[index]].map(length);
             // A stance is exactly at rest, and so are other contacts of its body if that does not turn.
-            if place == Some(index) || (slow == 0.0 && foot.is_some_and(|foot| foot.body == contact.body)) {
+            let is_of_foot = self.assembly.loops.is_empty() && foot.is_some_and(|foot| foot.body == contact.body);
+            if place == Some(index) || (slow == 0.0 && is_of_foot) {
                 continue;
             }
             // Of what is known to its uncertainty no speed is taken as zero, unless that is asked for.
@@ -100,40 +98,43 @@ impl Pipeline<'_> {
         still: &mut Still,
         (resting, notes): (&mut [bool], &mut Vec<String>),
     ) {
-        still.contacts.clear();
-        still.rows.clear();
+        let Still { contacts: own, rows, held } = &mut *still;
+        own.clear();
+        rows.clear();
+        held.clear();
         if !resting.contains(&true) {
             return;
         }
         let Assembly { workspace: Workspace { delassus, contact_velocity, .. }, left, .. } = &mut self.assembly;
+        let RoundingBounds { velocity: bounds, delassus: error, .. } = &mut self.bounds;
         let stands = |index: usize| stance == Some(index) || contact_velocity[index] == [0.0; 2];
-        still.contacts.extend(resting.iter().enumerate().map(|(index, rests)| *rests || stands(index)));
-        if contacts.len() <= CONTACT_LIMIT && still.contacts.contains(&false) {
-            still.find_rows(delassus, left, |index| {
-                resting[index] = true;
-                if !self.options.brief {
-                    let (name, slow) = (&contacts[index].name, length(contact_velocity[index]));
-                    notes.push(format!(
-                        "{name}{AT_REST} although it moves at {slow:.1e} m/s (the contacts at rest hold its body)"
-                    ));
-                }
-            });
+        own.extend(resting.iter().enumerate().map(|(index, rests)| *rests || stands(index)));
+        if contacts.len() <= CONTACT_LIMIT && own.contains(&false) {
+            still.find_rows(delassus, *error, left);
         }
-        // What c of the resting ones was is known to all of its size.
-        let RoundingBounds { velocity: bounds, delassus: of_delassus, .. } = &mut self.bounds;
-        let speeds = bounds.iter_mut().zip(&*contact_velocity).zip(&still.contacts).filter(|(_, still)| **still);
-        speeds.for_each(|((bound, speed), _)| *bound = [0, 1].map(|axis| bound[axis] + speed[axis].abs()));
         let size = 2 * contacts.len();
-        let is_known = *of_delassus <= CANCELED * WELL_KNOWN;
-        self.assembly.settle(still, |row, pivot, delassus| {
-            // |G_ir / pivot| is no greater than sqrt(G_ii / pivot), whose digits the pivot leaves.
-            let is_known = is_known && pivot > WELL_KNOWN * delassus[row * (size + 1)];
-            let reach = if is_known { 2.0 * bounds[row / 2][row % 2] / pivot.sqrt() } else { f64::INFINITY };
+        self.assembly.settle(still, |row, [speed, pivot], delassus| {
+            // |G_ir / pivot| is no greater than sqrt(G_ii / pivot), and is known to this part of that.
+            let known = *error * delassus[row * (size + 1)] / pivot;
+            let off = bounds[row / 2][row % 2] + known * speed.abs();
+            let reach = if known < WELL_KNOWN { 2.0 * off / pivot.sqrt() } else { f64::INFINITY };
             // What cannot move is not reached, however far that is.
             for other in (0..size).filter(|other| delassus[other * (size + 1)] > 0.0) {
                 bounds[other / 2][other % 2] += reach * delassus[other * (size + 1)].sqrt();
             }
         });
+        let speeds = &mut self.assembly.workspace.contact_velocity;
+        for &index in &still.held {
+            let [slow, bound] = [speeds[index], bounds[index]].map(length);
+            if slow > bound || !bound.is_finite() {
+                continue;
+            }
+            (still.contacts[index], resting[index], speeds[index]) = (true, true, [0.0; 2]);
+            if !self.options.brief {
+                let name = &contacts[index].name;
+                notes.push(format!("{name}{AT_REST}: those at rest hold its body"));
+            }
+        }
         bounds.iter_mut().zip(&still.contacts).filter(|(_, still)| **still).for_each(|(bound, _)| *bound = [0.0; 2]);
     }
 
@@ -149,7 +150,8 @@ impl Pipeline<'_> {
     ) -> Option<Because> {
         match self.options.resting_speed {
             Some(limit) => (slow < limit).then_some(Because::Option(limit)),
-            None if bound == 0.0 => None,
+            // Loops are closed in every number, which moves by its own rounding what rests as given.
+            None if bound == 0.0 && self.assembly.loops.is_empty() => None,
             None if slow <= bound => Some(Because::Rounding(bound)),
             None if slow > CANCELED * self.bounds.terms(index) => None,
             None => {

@@ -2,9 +2,11 @@
 
 use crate::scalar::Real;
 
-/// A row of G is taken to follow from others if no more than this part of it is left: where it does not, c is of a
-/// motion all the same.
-const DEPENDENT: f64 = 1e-10;
+/// A row of G follows from others if no more than this part of it is left, or than G is known to.
+const DEPENDENT: f64 = 1e-12;
+
+/// What is known of G to no more than this part is not known.
+pub const WELL_KNOWN: f64 = 1e-4;
 
 /// The contacts at rest, next to which c of the others is taken, so that impulses can give c of all.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -14,6 +16,8 @@ pub(crate) struct Still {
     /// Their rows of G that count, 2 contact + axis, in the order in which every number eliminates them; empty if no
     /// other contact depends on them.
     pub rows: Vec<usize>,
+    /// Other contacts of which both rows follow from these: what moves them is no motion that impulses could give.
+    pub held: Vec<usize>,
 }
 
 impl Still {
@@ -24,49 +28,54 @@ impl Still {
         self.rows.iter_mut().for_each(|row| *row = place(*row / 2).map_or(*row, |at| 2 * at + *row % 2));
     }
 
-    /// Finds the rows from G, and tells `also` which contacts those at rest leave no motion; they are still, too. `left`
-    /// is scratch.
-    pub fn find_rows(&mut self, delassus: &[f64], left: &mut Vec<f64>, mut also: impl FnMut(usize)) {
-        let Self { contacts, rows } = self;
-        let size = 2 * contacts.len();
+    /// Finds the rows, and the contacts that they hold, from G, of which entries are known to `error`; `left` is scratch.
+    pub fn find_rows(&mut self, delassus: &[f64], error: f64, left: &mut Vec<f64>) {
+        let Self { contacts, rows, held } = self;
+        let tolerance = if error < WELL_KNOWN { error.max(DEPENDENT) } else { DEPENDENT };
+        let known = Known { delassus, tolerance };
         left.clear();
         left.extend(delassus);
-        count_rows(left, delassus, |row| contacts[row / 2], |row| rows.push(row));
-        let is_held = |row: usize| left[row * (size + 1)] <= DEPENDENT * delassus[row * (size + 1)];
-        for (contact, still) in contacts.iter_mut().enumerate() {
-            if !*still && is_held(2 * contact) && is_held(2 * contact + 1) {
-                *still = true;
-                also(contact);
-            }
-        }
+        known.count_rows(left, |row| contacts[row / 2], |row| rows.push(row));
+        let is_held = |row: &usize| known.share(left, *row).is_none_or(|share| share <= tolerance);
+        let moving = (0..contacts.len()).filter(|&contact| !contacts[contact]);
+        held.extend(moving.filter(|contact| [2 * contact, 2 * contact + 1].iter().all(is_held)));
         let moves = |row: usize| !contacts[row / 2];
-        let beside = count_rows(left, delassus, moves, |_| {});
+        let beside = known.count_rows(left, moves, |_| {});
         left.copy_from_slice(delassus);
-        if beside == count_rows(left, delassus, moves, |_| {}) {
+        if beside == known.count_rows(left, moves, |_| {}) {
             rows.clear();
         }
     }
 }
 
-/// How many of the `wanted` rows of G do not follow from others of them, the most independent first; takes the part along
-/// these, which `chosen` is told, from all rows of `left`, which is G, or what rows before them left of it.
-fn count_rows(
-    left: &mut [f64],
-    delassus: &[f64],
-    wanted: impl Fn(usize) -> bool,
-    mut chosen: impl FnMut(usize),
-) -> usize {
-    let size = delassus.len().isqrt();
-    for count in 0.. {
-        let share = |row: usize| left[row * (size + 1)] / delassus[row * (size + 1)];
-        let shares = (0..size).filter(|&row| wanted(row)).map(|row| (row, share(row)));
-        let independent = shares.filter(|(_, share)| *share > DEPENDENT);
-        let Some((row, _)) = independent.max_by(|a, b| a.1.total_cmp(&b.1)) else { return count };
-        chosen(row);
-        (0..size).filter(|other| *other != row).for_each(|other| _ = eliminate(left, row, other));
-        left[row * (size + 1)] = 0.0;
+/// G, and what part of a row is nothing.
+struct Known<'a> {
+    delassus: &'a [f64],
+    tolerance: f64,
+}
+
+impl Known<'_> {
+    /// What part of a row is left; `None` of one that cannot move.
+    fn share(&self, left: &[f64], row: usize) -> Option<f64> {
+        let diagonal = row * (self.delassus.len().isqrt() + 1);
+        (self.delassus[diagonal] > 0.0).then(|| left[diagonal] / self.delassus[diagonal])
     }
-    size
+
+    /// How many of the `wanted` rows do not follow from others of them, the most independent first; takes the part along
+    /// these, which `chosen` is told, from all rows of `left`, which is G, or what rows before them left of it.
+    fn count_rows(&self, left: &mut [f64], wanted: impl Fn(usize) -> bool, mut chosen: impl FnMut(usize)) -> usize {
+        let size = self.delassus.len().isqrt();
+        let mut count = 0;
+        loop {
+            let shares = (0..size).filter(|&row| wanted(row)).filter_map(|row| Some((row, self.share(left, row)?)));
+            let independent = shares.filter(|(_, share)| *share > self.tolerance);
+            let Some((row, _)) = independent.max_by(|a, b| a.1.total_cmp(&b.1)) else { return count };
+            chosen(row);
+            count += 1;
+            (0..size).filter(|other| *other != row).for_each(|other| _ = eliminate(left, row, other));
+            left[row * (size + 1)] = 0.0;
+        }
+    }
 }
 
 /// Takes the part along `row` of a square matrix from its row `other`, and gives how much of it that was.
@@ -83,13 +92,13 @@ pub fn eliminate<T: Real>(matrix: &mut [T], row: usize, other: usize) -> T {
 mod tests {
     use super::*;
 
-    /// G of rows (the same masses in all columns) of two contacts at rest and one that moves.
-    fn found(rows: [[f64; 4]; 6]) -> (Still, Vec<usize>) {
+    /// What is found from rows (the same masses in all columns) of two contacts at rest and one that moves.
+    fn found(rows: [[f64; 4]; 6]) -> Still {
         let entry = |a: &[f64; 4], b: &[f64; 4]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let delassus: Vec<f64> = rows.iter().flat_map(|a| rows.iter().map(|b| entry(a, b))).collect();
-        let (mut still, mut also) = (Still { contacts: vec![true, true, false], rows: Vec::new() }, Vec::new());
-        still.find_rows(&delassus, &mut Vec::new(), |contact| also.push(contact));
-        (still, also)
+        let mut still = Still { contacts: vec![true, true, false], ..Still::default() };
+        still.find_rows(&delassus, 0.0, &mut Vec::new());
+        still
     }
 
     #[test]
@@ -97,12 +106,15 @@ mod tests {
         let [x, y, z, w] = [0, 1, 2, 3].map(|at| std::array::from_fn(|own| f64::from(u8::from(own == at))));
         let zero = [0.0; 4];
         // The third is free of the two at rest, of which one row follows from another.
-        assert!(found([x, y, y, zero, z, w]).0.rows.is_empty());
-        // One of its rows follows from both.
-        let (still, also) = found([x, y, y, zero, [1.0, -2.0, 0.0, 0.0], w]);
-        assert!(still.rows.len() == 2 && still.contacts == [true, true, false] && also.is_empty());
-        // Both do: it is still, and no other depends on them.
-        let (still, also) = found([x, y, z, zero, [1.0, -2.0, 0.0, 0.0], [0.0, 0.0, 3.0, 0.0]]);
-        assert!(still.rows.is_empty() && still.contacts == [true; 3] && also == [2]);
+        let free = found([x, y, y, zero, z, w]);
+        assert!(free.rows.is_empty() && free.held.is_empty());
+        // One of its rows follows from both, or both do.
+        let half = found([x, y, y, zero, [1.0, -2.0, 0.0, 0.0], w]);
+        assert!(half.rows.len() == 2 && half.held.is_empty());
+        let held = found([x, y, z, zero, [1.0, -2.0, 0.0, 0.0], [0.0, 0.0, 3.0, 0.0]]);
+        assert!(held.rows.len() == 3 && held.held == [2]);
+        // A row that is nearly the same does not follow.
+        let near = found([x, zero, [1.0, 1e-5, 0.0, 0.0], zero, [1.0, 0.0, 1e-5, 0.0], w]);
+        assert!(near.rows.is_empty() && near.held.is_empty());
     }
 }

@@ -3,6 +3,7 @@
 
 use crate::support::impact::{impact, modes, robot, try_impact};
 use crate::support::random::Random;
+use crate::support::scaled::near;
 use crate::support::urdf::{self, Axis, HINGE};
 use heelstrike::impact::Mode::{Separate, SlideMinus, Stick};
 use heelstrike::impact::Verdict;
@@ -89,7 +90,83 @@ fn two_points_at_rest_hold_their_body() {
         "friction": 0.5, "contacts": contacts});
     let options = Options { resting_speed: Some(0.2), ..Options::default() };
     let found = try_impact(&robot, options, state).expect("an answer");
-    let speeds: Vec<&String> = found.notes.iter().filter(|note| note.contains("hold its body")).collect();
-    assert_eq!((&found.velocity_before, speeds.len()), (&vec![[0.0; 2]; 3], 1), "{:?}", found.notes);
+    let held = found.notes.iter().filter(|note| note.contains("those at rest hold its body"));
+    assert_eq!((&found.velocity_before, held.count()), (&vec![[0.0; 2]; 3], 1), "{:?}", found.notes);
     assert!(is_proven(&found) && found.analysis.is_some_and(|analysis| analysis.verdict == Verdict::NoImpact));
+}
+
+/// A foot of two points rests, and nothing else could move; but a joint that keeps its rate swings the other leg.
+#[test]
+fn a_held_joint_swings_a_leg_over_a_foot_at_rest() {
+    let robot = robot(&urdf::robot(&[
+        urdf::link("leg", 2.0, [0.0, -0.5], 0.2, ""),
+        urdf::link("stand", 10.0, [0.0, -0.5], 1.0, ""),
+        urdf::joint("hip", HINGE, ["leg", "stand"], [0.0; 2], ""),
+    ]));
+    let reach = 1.1394939273245491;
+    let contact = |link: &str, offset: [f64; 3]| json!({"link": link, "offset": offset});
+    let found = impact(
+        &robot,
+        json!({
+            "position": {"base": {"z": 1, "pitch": -0.5}, "joints": {"hip": 0.4}}, "friction": 0.5, "held": ["hip"],
+            "velocity": {"base": {"pitch": 1}, "joints": {"hip": -1}},
+            "contacts": [contact("stand", [-0.1, 0.0, -0.98]), contact("stand", [0.1, 0.0, -1.0]),
+                contact("leg", [0.0, 0.0, -reach])],
+        }),
+    );
+    // The leg's point moves about the hip.
+    let moving = [-reach * 0.5_f64.cos(), -reach * 0.5_f64.sin()];
+    for (contact, expected) in found
+        .contacts
+        .iter()
+        .zip(&found.velocity_before)
+        .map(|(own, c)| (c, if own.link == 0 { moving } else { [0.0; 2] }))
+    {
+        assert!(near(contact, &expected, 1e-14), "{contact:?} is not {expected:?}");
+    }
+    assert_eq!(found.resting.iter().filter(|rests| **rests).count(), 2);
+    assert!(is_proven(&found) && found.analysis.is_some_and(|analysis| analysis.verdict == Verdict::Unique));
+}
+
+/// The root rests as it is given; that the loop is closed moves it by some 1e-18 m/s.
+#[test]
+fn what_rests_as_given_rests_next_to_a_loop() {
+    let robot = robot(&urdf::robot(&[
+        urdf::link("root", 5.5, [0.26, -0.44], 0.36, ""),
+        urdf::link("first", 2.2, [-0.25, 0.01], 0.06, ""),
+        urdf::link("second", 0.19, [-0.007, 0.49], 0.014, ""),
+        urdf::link("third", 0.11, [-0.39, -0.42], 0.0015, ""),
+        urdf::joint("j1", HINGE, ["root", "first"], [-0.098, -0.59], ""),
+        urdf::joint("j2", HINGE, ["first", "second"], [-0.53, 0.36], ""),
+        urdf::joint("j3", HINGE, ["second", "third"], [0.3, -0.58], ""),
+    ]));
+    // A point of the third link in the frame of the first.
+    let on_first = |[_, j2, j3]: [f64; 3], [x, z]: [f64; 2]| {
+        let turned = |angle: f64, [x, z]: [f64; 2]| {
+            let (sin, cos) = angle.sin_cos();
+            [cos * x + sin * z, cos * z - sin * x]
+        };
+        let [x, z] = turned(j3, [x, z]);
+        let [x, z] = turned(j2, [x + 0.3, z - 0.58]);
+        [x - 0.53, 0.0, z + 0.36]
+    };
+    for seed in 0..40 {
+        let mut random = Random::new(seed);
+        let mut number = || random.between(-1.0, 1.0);
+        let (pitch, angles, rate) = (number(), [number(), number(), number()], number());
+        let b = [number(), number()];
+        let contact = |x: f64, z: f64| json!({"link": "root", "offset": [x, 0.0, z]});
+        let found = impact(
+            &robot,
+            json!({
+                "position": {"base": {"pitch": pitch}, "joints": {"j1": angles[0], "j2": angles[1], "j3": angles[2]}},
+                "velocity": {"joints": {"j1": rate}}, "friction": 0.8,
+                "contacts": [contact(-0.33, -0.5), contact(0.24, -0.86)],
+                "loops": [{"a": {"link": "first", "offset": on_first(angles, b)}, "b": {"link": "third",
+                    "offset": [b[0], 0.0, b[1]]}}],
+            }),
+        );
+        assert!(is_proven(&found), "seed {seed}");
+        assert_eq!(found.analysis.expect("an analysis").verdict, Verdict::NoImpact, "seed {seed}");
+    }
 }
