@@ -77,7 +77,7 @@ impl Pipeline<'_> {
             let name = &contact.1.name;
             if let Some(because) = because {
                 resting[index] = true;
-                if !self.options.brief && (slow > 0.0 || self.options.resting_speed.is_none()) {
+                if !self.options.brief && (slow > 0.0 || bound > 0.0 && self.options.resting_speed.is_none()) {
                     notes.push(format!("{name}{AT_REST} although it moves at {slow:.1e} m/s ({because})"));
                 }
             } else if !self.options.brief && bound > 0.0 && slow <= bound {
@@ -109,7 +109,12 @@ impl Pipeline<'_> {
         let RoundingBounds { velocity: bounds, delassus: error, .. } = &mut self.bounds;
         let stands = |index: usize| stance == Some(index) || contact_velocity[index] == [0.0; 2];
         own.extend(resting.iter().enumerate().map(|(index, rests)| *rests || stands(index)));
-        if contacts.len() <= CONTACT_LIMIT && own.contains(&false) {
+        if !own.contains(&false) {
+            contact_velocity.fill([0.0; 2]);
+            bounds.fill([0.0; 2]);
+            return;
+        }
+        if contacts.len() <= CONTACT_LIMIT {
             still.find_rows(delassus, *error, left);
         }
         let size = 2 * contacts.len();

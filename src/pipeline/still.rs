@@ -5,7 +5,7 @@ use crate::scalar::Real;
 /// A row of G follows from others if no more than this part of it is left, or than G is known to.
 const DEPENDENT: f64 = 1e-12;
 
-/// What is known of G to no more than this part is not known.
+/// A greater relative error of G leaves nothing known.
 pub const WELL_KNOWN: f64 = 1e-4;
 
 /// The contacts at rest, next to which c of the others is taken, so that impulses can give c of all.
@@ -16,7 +16,7 @@ pub(crate) struct Still {
     /// Their rows of G that count, 2 contact + axis, in the order in which every number eliminates them; empty if no
     /// other contact depends on them.
     pub rows: Vec<usize>,
-    /// Other contacts of which both rows follow from these: what moves them is no motion that impulses could give.
+    /// Other contacts whose rows all follow from these: no impulse moves them while these rest.
     pub held: Vec<usize>,
 }
 
@@ -61,8 +61,8 @@ impl Known<'_> {
         (self.delassus[diagonal] > 0.0).then(|| left[diagonal] / self.delassus[diagonal])
     }
 
-    /// How many of the `wanted` rows do not follow from others of them, the most independent first; takes the part along
-    /// these, which `chosen` is told, from all rows of `left`, which is G, or what rows before them left of it.
+    /// Counts the `wanted` rows that do not follow from others of them, the most independent first, and reports each to
+    /// `chosen`. Takes the part along these from all rows of `left`, which is G, or what rows before them left of it.
     fn count_rows(&self, left: &mut [f64], wanted: impl Fn(usize) -> bool, mut chosen: impl FnMut(usize)) -> usize {
         let size = self.delassus.len().isqrt();
         let mut count = 0;
