@@ -103,7 +103,7 @@ fn a_held_joint_swings_a_leg_over_a_foot_at_rest() {
         urdf::link("stand", 10.0, [0.0, -0.5], 1.0, ""),
         urdf::joint("hip", HINGE, ["leg", "stand"], [0.0; 2], ""),
     ]));
-    let reach = 1.1394939273245491;
+    let reach = 1.139_493_927_324_549;
     let contact = |link: &str, offset: [f64; 3]| json!({"link": link, "offset": offset});
     let found = impact(
         &robot,
