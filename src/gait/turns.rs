@@ -2,13 +2,13 @@
 
 use super::clip::{Clock, ClockStep};
 use super::{Sample, Sampled};
-use crate::robot::{Base, Robot};
+use crate::robot::{Base, Joint, Robot};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Numbers of few digits may lie so far beyond a turn \[rad\].
 const ROUNDED: f64 = 1e-3;
 
-/// The samples with the pitch of the base and the angles of joints continued where they jump by about a turn from one
+/// The samples with the pitch of the base and the angles of joints without limits continued where they jump by about a turn from one
 /// row to the next within \[-pi, pi\] or \[0, 2 pi\]: whole turns are added to all later ones of the clip.
 pub fn unwrapped<'r, S>(
     samples: impl Iterator<Item = Sampled<S>> + 'r,
@@ -20,7 +20,8 @@ pub fn unwrapped<'r, S>(
         let mut followers = robot.mimic_joints.iter().filter(|mimic| mimic.mimicked == at);
         followers.all(|mimic| mimic.joint.axis.is_revolute() && mimic.multiplier.fract() == 0.0)
     };
-    let joints = robot.joints.iter().enumerate().filter(|(at, joint)| joint.axis.is_revolute() && is_whole(*at));
+    let turns = |joint: &Joint| joint.axis.is_revolute() && joint.limits.is_none();
+    let joints = robot.joints.iter().enumerate().filter(|(at, joint)| turns(joint) && is_whole(*at));
     let angles: Vec<usize> = pitch.into_iter().chain(joints.map(|(at, _)| robot.base_dofs() + at)).collect();
     let (mut clock, mut before, mut turns) = (Clock::default(), Vec::new(), Vec::new());
     samples.map(move |sampled| {

@@ -156,7 +156,7 @@ impl Pipeline<'_> {
         self.assembly.delassus();
         *kinetic_energy = self.energy_in_range(&state.velocity, velocity)?;
         self.bound_delassus();
-        self.settle(contacts, *stance, still, (resting, notes));
+        self.settle(contacts, (velocity, *stance), still, (resting, notes));
         if !scene.impulses.is_empty() || (self.assembly.is_constrained() && !self.options.no_proof) {
             // They go through M^-1, whose rounding these bounds do not follow.
             self.bounds.delassus = f64::INFINITY;

@@ -94,7 +94,7 @@ impl Pipeline<'_> {
     pub(super) fn settle(
         &mut self,
         contacts: &[Contact],
-        stance: Option<usize>,
+        (velocity, stance): (&[f64], Option<usize>),
         still: &mut Still,
         (resting, notes): (&mut [bool], &mut Vec<String>),
     ) {
@@ -129,9 +129,11 @@ impl Pipeline<'_> {
             }
         });
         let speeds = &mut self.assembly.workspace.contact_velocity;
+        // Only a joint that keeps its rate can still move what the contacts at rest hold.
+        let is_driven = self.braked.iter().any(|joint| velocity[self.robot.base_dofs() + joint] != 0.0);
         for &index in &still.held {
             let [slow, bound] = [speeds[index], bounds[index]].map(length);
-            if slow > bound || !bound.is_finite() {
+            if is_driven && (slow > bound || !bound.is_finite()) {
                 continue;
             }
             (still.contacts[index], resting[index], speeds[index]) = (true, true, [0.0; 2]);

@@ -5,6 +5,9 @@ use crate::scalar::Real;
 /// A row of G follows from others if no more than this part of it is left, or than G is known to.
 const DEPENDENT: f64 = 1e-12;
 
+/// The rounding of a row of G, relative to it, with room for its sums.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
 /// A greater relative error of G leaves nothing known.
 pub const WELL_KNOWN: f64 = 1e-4;
 
@@ -28,52 +31,73 @@ impl Still {
         self.rows.iter_mut().for_each(|row| *row = place(*row / 2).map_or(*row, |at| 2 * at + *row % 2));
     }
 
-    /// Finds the rows, and the contacts that they hold, from G, of which entries are known to `error`; `left` is scratch.
-    pub fn find_rows(&mut self, delassus: &[f64], error: f64, left: &mut Vec<f64>) {
+    /// Finds the rows, and the contacts that they hold, from G, of which entries are known to `error`; `scratch` is memory.
+    pub fn find_rows(&mut self, delassus: &[f64], error: f64, scratch: &mut Vec<f64>) {
         let Self { contacts, rows, held } = self;
         let tolerance = if error < WELL_KNOWN { error.max(DEPENDENT) } else { DEPENDENT };
-        let known = Known { delassus, tolerance };
-        left.clear();
-        left.extend(delassus);
-        known.count_rows(left, |row| contacts[row / 2], |row| rows.push(row));
-        let is_held = |row: &usize| known.share(left, *row).is_none_or(|share| share <= tolerance);
+        scratch.clear();
+        scratch.resize(delassus.len() + 2 * contacts.len(), 0.0);
+        let (left, growth) = scratch.split_at_mut(delassus.len());
+        let mut pivoting = Pivoting { delassus, tolerance, left, growth };
+        pivoting.start();
+        pivoting.count(|row| contacts[row / 2], |row| rows.push(row));
         let moving = (0..contacts.len()).filter(|&contact| !contacts[contact]);
-        held.extend(moving.filter(|contact| [2 * contact, 2 * contact + 1].iter().all(is_held)));
+        held.extend(moving.filter(|contact| [2 * contact, 2 * contact + 1].iter().all(|row| pivoting.follows(*row))));
         let moves = |row: usize| !contacts[row / 2];
-        let beside = known.count_rows(left, moves, |_| {});
-        left.copy_from_slice(delassus);
-        if beside == known.count_rows(left, moves, |_| {}) {
+        let beside = pivoting.count(moves, |_| {});
+        pivoting.start();
+        if beside == pivoting.count(moves, |_| {}) {
             rows.clear();
         }
     }
 }
 
-/// G, and what part of a row is nothing.
-struct Known<'a> {
+/// An elimination of rows of G, the most independent first.
+struct Pivoting<'a> {
     delassus: &'a [f64],
+    /// What part of a row is nothing.
     tolerance: f64,
+    /// What the eliminated rows leave of G.
+    left: &'a mut [f64],
+    /// By how much that has made the rounding of each row grow; infinite for one that is eliminated.
+    growth: &'a mut [f64],
 }
 
-impl Known<'_> {
-    /// What part of a row is left; `None` of one that cannot move.
-    fn share(&self, left: &[f64], row: usize) -> Option<f64> {
-        let diagonal = row * (self.delassus.len().isqrt() + 1);
-        (self.delassus[diagonal] > 0.0).then(|| left[diagonal] / self.delassus[diagonal])
+impl Pivoting<'_> {
+    fn start(&mut self) {
+        self.left.copy_from_slice(self.delassus);
+        self.growth.fill(1.0);
     }
 
-    /// Counts the `wanted` rows that do not follow from others of them, the most independent first, and reports each to
-    /// `chosen`. Takes the part along these from all rows of `left`, which is G, or what rows before them left of it.
-    fn count_rows(&self, left: &mut [f64], wanted: impl Fn(usize) -> bool, mut chosen: impl FnMut(usize)) -> usize {
-        let size = self.delassus.len().isqrt();
+    /// Whether nothing is left of a row but rounding.
+    fn follows(&self, row: usize) -> bool {
+        self.share(row) <= self.tolerance + ROUNDING * self.growth[row]
+    }
+
+    /// What part of a row is left; nothing of one that cannot move.
+    fn share(&self, row: usize) -> f64 {
+        let diagonal = row * (self.growth.len() + 1);
+        if self.delassus[diagonal] > 0.0 { self.left[diagonal] / self.delassus[diagonal] } else { 0.0 }
+    }
+
+    /// Eliminates the `wanted` rows that do not follow from others, and reports each to `chosen`; gives how many.
+    fn count(&mut self, wanted: impl Fn(usize) -> bool, mut chosen: impl FnMut(usize)) -> usize {
+        let size = self.growth.len();
         let mut count = 0;
         loop {
-            let shares = (0..size).filter(|&row| wanted(row)).filter_map(|row| Some((row, self.share(left, row)?)));
-            let independent = shares.filter(|(_, share)| *share > self.tolerance);
-            let Some((row, _)) = independent.max_by(|a, b| a.1.total_cmp(&b.1)) else { return count };
+            let open = (0..size).filter(|&row| wanted(row) && !self.follows(row));
+            let Some(row) = open.max_by(|a, b| self.share(*a).total_cmp(&self.share(*b))) else { return count };
             chosen(row);
             count += 1;
-            (0..size).filter(|other| *other != row).for_each(|other| _ = eliminate(left, row, other));
-            left[row * (size + 1)] = 0.0;
+            self.growth[row] = f64::INFINITY;
+            for other in (0..size).filter(|other| *other != row) {
+                if self.growth[other] < f64::INFINITY && self.delassus[other * (size + 1)] > 0.0 {
+                    let share = eliminate(self.left, row, other);
+                    self.left[other * size + row] = 0.0;
+                    let scale = self.delassus[row * (size + 1)] / self.delassus[other * (size + 1)];
+                    self.growth[other] += share * share * scale;
+                }
+            }
         }
     }
 }
@@ -116,5 +140,19 @@ mod tests {
         // A row that is nearly the same does not follow.
         let near = found([x, zero, [1.0, 1e-5, 0.0, 0.0], zero, [1.0, 0.0, 1e-5, 0.0], w]);
         assert!(near.rows.is_empty() && near.held.is_empty());
+    }
+
+    #[test]
+    fn points_close_to_each_other_hold_their_body() {
+        for apart in [1e-4, 1e-3, 1e-2] {
+            for seed in 0..200 {
+                let at = |which: u32| f64::from(seed * 7 + which * 3).sin();
+                let near = [at(0) + apart * at(3).cos(), at(1) + apart * at(3).sin()];
+                let points = [[at(0), at(1)], near, [at(4), at(5)]];
+                let rows = points.map(|[x, z]| [[1.0, 0.0, 3.0 * z, 0.0], [0.0, 1.0, -3.0 * x, 0.0]]);
+                let still = found(rows.as_flattened().try_into().expect("six rows"));
+                assert!(still.rows.len() == 3 && still.held == [2], "{apart} {seed}: {still:?}");
+            }
+        }
     }
 }

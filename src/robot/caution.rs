@@ -160,7 +160,7 @@ pub(super) fn about_angles(description: &Description) -> Option<String> {
     ))
 }
 
-/// The caution about limits of rotations that are whole numbers far beyond a turn, as in degrees.
+/// The caution about limits of rotations that are multiples of 5 up to 360, one of 30 or more, as in degrees.
 pub(super) fn about_limits(description: &Description) -> Option<String> {
     let in_degrees = |limit: &f64| limit.rem_euclid(5.0) == 0.0 && limit.abs() <= 360.0;
     let is_odd = |joint: &&UrdfJoint| {

@@ -111,8 +111,8 @@ fn headers_that_do_not_fit_are_refused() {
         b"# q_base_pitch,v_knee",
         b"Q_BASE_X,v_knee",
         b"v_knee,friction [-]",
-        b"v_knee,coefficient_of_restitution,friction_left_foot",
-        b"v_knee,Ground slope",
+        b"v_knee,coefficient_of_restitution,friction_coefficient_left_front_foot",
+        b"v_knee,Ground slope [rad]",
         b",v_knee,",
     ];
     let with_time: [&[u8]; 5] = [

@@ -417,10 +417,11 @@ fn column(name: &str, robot: &Robot) -> Result<TableColumn> {
     Ok(OTHERS.iter().find(|(other, _)| *other == name).map_or(TableColumn::Carried, |&(_, column)| column))
 }
 
-/// A name in lower case, without what is not a letter or a digit at its ends, and with `_` for it within.
+/// A name in lower case, without a unit in brackets and what else is no letter or digit at its ends; `_` for it within.
 fn plain(name: &str) -> String {
     let letter = |c: char| if c.is_alphanumeric() { c.to_ascii_lowercase() } else { '_' };
-    name.chars().map(letter).collect::<String>().trim_matches('_').to_owned()
+    let without_unit = name.split(['[', '(']).next().unwrap_or(name);
+    without_unit.chars().map(letter).collect::<String>().trim_matches('_').to_owned()
 }
 
 fn is_slope(name: &str) -> bool {
@@ -436,10 +437,6 @@ fn quoted(name: &str) -> String {
 /// Whether a column `name` may be meant as the one that is called `known`: it is the same but for case and punctuation,
 /// names the coordinate alone or with another word for position or velocity, or has a letter or two wrong.
 fn resembles(name: &str, known: &str) -> bool {
-    // Comparing takes the product of the lengths.
-    if name.len() > known.len() + 16 {
-        return false;
-    }
     let (name, known) = (plain(name), plain(known));
     // "restitution_coefficient", "friction of the left foot", and not what friction does or needs.
     const OTHER_QUANTITIES: [&str; 7] = ["needed", "force", "torque", "loss", "power", "margin", "joint"];
@@ -449,6 +446,10 @@ fn resembles(name: &str, known: &str) -> bool {
             || parts.clone().any(|part| part == known) && !parts.any(|part| OTHER_QUANTITIES.contains(&part)))
     {
         return true;
+    }
+    // Comparing takes the product of the lengths.
+    if name.len() > known.len() + 16 {
+        return false;
     }
     let words = match known.as_bytes() {
         [b'q', b'_', ..] => &["q", "pos", "position", "angle"][..],
