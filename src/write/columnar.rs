@@ -41,7 +41,8 @@ pub struct ColumnBlock(Vec<Column>);
 
 #[derive(Debug)]
 enum Column {
-    Text(StringBuilder),
+    /// With so many rows at the end that are not in it yet, because they are empty.
+    Text(StringBuilder, usize),
     Number(Float64Builder),
     Integer(Int64Builder),
     Boolean(BooleanBuilder),
@@ -57,7 +58,7 @@ impl ColumnBlock {
     /// No row yet of these columns.
     pub fn new(columns: &Columns) -> Self {
         let column = |kind: &Kind| match *kind {
-            Kind::Text => Column::Text(StringBuilder::new()),
+            Kind::Text => Column::Text(StringBuilder::new(), 0),
             Kind::Number => Column::Number(Float64Builder::new()),
             Kind::Integer => Column::Integer(Int64Builder::new()),
             Kind::Boolean => Column::Boolean(BooleanBuilder::new()),
@@ -69,7 +70,10 @@ impl ColumnBlock {
     fn finish(self, schema: &SchemaRef) -> Result<RecordBatch> {
         let array = |(column, field): (Column, &Arc<Field>)| -> Result<ArrayRef> {
             Ok(match column {
-                Column::Text(mut texts) => Arc::new(texts.finish()),
+                Column::Text(mut texts, empty) => {
+                    texts.append_nulls(empty);
+                    Arc::new(texts.finish())
+                }
                 Column::Number(mut numbers) => Arc::new(numbers.finish()),
                 Column::Integer(mut numbers) => Arc::new(numbers.finish()),
                 Column::Boolean(mut values) => Arc::new(values.finish()),
@@ -86,16 +90,23 @@ impl ColumnBlock {
     }
 }
 
+/// Appends the rows that are empty, and a text.
+fn append_text(texts: &mut StringBuilder, empty: &mut usize, text: &str) {
+    if *empty > 0 {
+        texts.append_nulls(std::mem::take(empty));
+    }
+    texts.append_value(text);
+}
+
 impl RowSink for ColumnBlock {
     fn row(&mut self, _: &Columns, cells: &[Cell]) {
         for (column, cell) in self.0.iter_mut().zip(cells) {
             match (column, cell) {
-                (Column::Text(texts), Cell::Text(text)) => texts.append_value(text),
-                (Column::Text(texts), Cell::Carried(carried, which)) => {
-                    let text = carried.text(*which);
-                    texts.append_option((!text.is_empty()).then(|| String::from_utf8_lossy(&text)));
+                (Column::Text(texts, empty), Cell::Text(text)) => append_text(texts, empty, text),
+                (Column::Text(texts, empty), Cell::Carried(carried, which)) if !carried.text(*which).is_empty() => {
+                    append_text(texts, empty, &String::from_utf8_lossy(&carried.text(*which)));
                 }
-                (Column::Text(texts), _) => texts.append_null(),
+                (Column::Text(_, empty), _) => *empty += 1,
                 (Column::Number(numbers), Cell::Number(number)) => numbers.append_value(*number),
                 (Column::Number(numbers), Cell::Carried(carried, which)) => {
                     let text = carried.text(*which);

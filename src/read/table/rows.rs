@@ -219,29 +219,46 @@ impl Row<'_> {
 
     /// Its id, if it can be read.
     pub fn id(&self) -> Option<Value> {
-        let at = self.header.id?;
-        let cells = match self.source {
-            Source::Text(cells, _) => cells,
+        let mut id = None;
+        self.read_id(&mut id);
+        id
+    }
+
+    /// The same into the id of another row.
+    fn read_id(&self, id: &mut Option<Value>) {
+        let Some(at) = self.header.id else { return *id = None };
+        let text = match self.source {
+            Source::Text(cells, _) => cells.get(at).and_then(|text| std::str::from_utf8(text).ok()),
             #[cfg(feature = "columnar")]
-            Source::Columns(columns, row) => return columns.id(at, row),
+            Source::Columns(columns, row) => columns.text(at, row),
         };
-        let text = std::str::from_utf8(cells.get(at)?).ok()?;
-        match self.header.form {
-            _ if text.is_empty() => None,
-            Form::Ndjson => id_of(text),
-            _ => Some(Value::String(text.to_owned())),
+        match (text, id.as_mut()) {
+            (Some(""), _) => *id = None,
+            (Some(text), _) if self.header.form == Form::Ndjson => *id = id_of(text),
+            (Some(text), Some(Value::String(own))) => text.clone_into(own),
+            (Some(text), _) => *id = Some(text.into()),
+            (None, _) => {
+                *id = None;
+                #[cfg(feature = "columnar")]
+                if let Source::Columns(columns, row) = self.source {
+                    *id = columns.integer(at, row).map(Value::from);
+                }
+            }
         }
     }
 
     /// The fields to copy to the result, if there are some and the row has as many as the header.
     pub fn carried(&self) -> Option<Carried> {
-        self.header.place(TableColumn::Carried)?;
         let cells = match self.source {
             Source::Text(cells, _) if cells.len() == self.header.columns.len() => cells,
             Source::Text(..) => return None,
             #[cfg(feature = "columnar")]
-            Source::Columns(columns, row) => return Some(Carried::Columns(Arc::clone(&columns.carried), row)),
+            Source::Columns(columns, row) => {
+                let some = columns.carried.num_columns() > 0;
+                return some.then(|| Carried::Columns(Arc::clone(&columns.carried), row));
+            }
         };
+        self.header.place(TableColumn::Carried)?;
         let cells = self.header.places(TableColumn::Carried).filter_map(|at| cells.get(at)).collect();
         Some(if self.header.form == Form::Ndjson { Carried::Json(cells) } else { Carried::Text(cells) })
     }
@@ -277,39 +294,51 @@ impl Row<'_> {
         }
         let stance = self.stance(robot)?;
         let place_lowest = defaults.place_lowest && stance.is_none();
-        state.id = self.id();
+        self.read_id(&mut state.id);
         state.position.fill(0.0);
         state.velocity.fill(0.0);
         state.scene.restitution.default = None;
         (state.scene.stance, state.scene.place_lowest) = (stance, place_lowest);
         state.scene.loops.clone_from(&defaults.loops);
         let mut friction = None;
-        for (at, &column) in self.header.columns.iter().enumerate() {
-            match column {
-                TableColumn::Position(to @ 0..2) | TableColumn::Velocity(to @ 0..2) if stance.is_some() => {
-                    self.placed_base(at, ["x", "z"][to])?
-                }
-                TableColumn::Sideways if stance.is_some() => self.placed_base(at, "y")?,
-                TableColumn::Sideways | TableColumn::Quaternion(_) => drop(self.number(at)?),
-                TableColumn::Position(to) => state.position[to] = self.number(at)?,
-                TableColumn::Velocity(to) => state.velocity[to] = self.number(at)?,
-                TableColumn::Friction => friction = self.friction(at)?,
-                TableColumn::Restitution => {
-                    if self.is_given(at)? {
-                        state.scene.restitution = ByLink::everywhere(self.restitution(at)?);
-                    }
-                }
-                TableColumn::Id if state.id.is_none() && self.is_given(at)? => {
-                    return Err(self
-                        .refuse(at, Reason::WrongKind { expected: "a string or a number", found: "something else" }));
-                }
-                TableColumn::Id | TableColumn::Stance | TableColumn::Carried | TableColumn::Ignored => {}
+        match self.source {
+            Source::Text(..) => (0..columns).try_for_each(|at| self.read_cell(at, state, &mut friction))?,
+            #[cfg(feature = "columnar")]
+            Source::Columns(typed, row) => {
+                typed.fill(row, state);
+                typed.open.iter().try_for_each(|&at| self.read_cell(at, state, &mut friction))?;
             }
         }
         if let Some((pitch, _)) = self.projected()? {
             state.position[2] = pitch;
         }
         state.scene.friction.default = friction.or(defaults.friction);
+        Ok(())
+    }
+
+    /// Reads a cell for what its column is.
+    fn read_cell(&self, at: usize, state: &mut State, friction: &mut Option<Friction>) -> Result<()> {
+        match self.header.columns[at] {
+            TableColumn::Position(to @ 0..2) | TableColumn::Velocity(to @ 0..2) if state.scene.stance.is_some() => {
+                self.placed_base(at, ["x", "z"][to])?
+            }
+            TableColumn::Sideways if state.scene.stance.is_some() => self.placed_base(at, "y")?,
+            TableColumn::Sideways | TableColumn::Quaternion(_) => drop(self.number(at)?),
+            TableColumn::Position(to) => state.position[to] = self.number(at)?,
+            TableColumn::Velocity(to) => state.velocity[to] = self.number(at)?,
+            TableColumn::Friction => *friction = self.friction(at)?,
+            TableColumn::Restitution => {
+                if self.is_given(at)? {
+                    state.scene.restitution = ByLink::everywhere(self.restitution(at)?);
+                }
+            }
+            TableColumn::Id if state.id.is_none() && self.is_given(at)? => {
+                return Err(
+                    self.refuse(at, Reason::WrongKind { expected: "a string or a number", found: "something else" })
+                );
+            }
+            TableColumn::Id | TableColumn::Stance | TableColumn::Carried | TableColumn::Ignored => {}
+        }
         Ok(())
     }
 
@@ -418,7 +447,11 @@ impl Row<'_> {
             }
             Cell::Text(text) => text.parse().map_err(|_| {
                 let error = self.refuse(at, Reason::Syntax(format!("expected a number, found \"{}\"", short(&text))));
-                if text.contains(',') { error.hint("write decimals with a point") } else { error }
+                match (text.contains(','), text.contains('.')) {
+                    (true, true) => error.hint("leave out the commas between thousands"),
+                    (true, false) => error.hint("write decimals with a point"),
+                    (false, _) => error,
+                }
             })?,
         };
         finite(value, || "a cell".into()).map_err(|error| self.place(error, at))

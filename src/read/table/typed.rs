@@ -2,19 +2,23 @@
 
 use super::header::TableColumn;
 use super::records::Cell;
+use crate::state::State;
 use crate::{Error, Reason, Result};
 use arrow_array::cast::AsArray;
 use arrow_array::types::{Float64Type, Int64Type};
 use arrow_array::{Array, ArrayRef, Float64Array, Int64Array, RecordBatch, StringArray};
 use arrow_cast::cast::{CastOptions, cast_with_options};
 use arrow_schema::DataType;
-use serde_json::Value;
 use std::sync::Arc;
 
 /// Columns as they are needed.
 #[derive(Debug)]
 pub(super) struct Typed {
     columns: Vec<Column>,
+    /// The columns of positions and velocities in which every cell is a finite number, and their indices into q and v.
+    whole: [Vec<(usize, Float64Array)>; 2],
+    /// All others.
+    pub open: Vec<usize>,
     /// Those that are carried through.
     pub carried: Arc<RecordBatch>,
 }
@@ -74,7 +78,36 @@ impl Typed {
                     _ => Column::Unread,
                 })
             });
-        Ok(Self { columns: typed.collect::<Result<_>>()?, carried: Arc::new(carried) })
+        let typed = typed.collect::<Result<Vec<_>>>()?;
+        // A stance leaves cells of the base's coordinates empty, or refuses them.
+        let least = if columns.contains(&TableColumn::Stance) { 2 } else { 0 };
+        let (mut whole, mut open) = (<[Vec<_>; 2]>::default(), Vec::new());
+        for (at, (&column, typed)) in columns.iter().zip(&typed).enumerate() {
+            let coordinate = match column {
+                TableColumn::Position(to) => Some((0, to)),
+                TableColumn::Velocity(to) => Some((1, to)),
+                _ => None,
+            };
+            let is_whole = |numbers: &Float64Array| {
+                numbers.null_count() == 0 && numbers.values().iter().all(|value| value.is_finite())
+            };
+            match (coordinate, typed) {
+                (Some((part, to)), Column::Numbers(numbers)) if to >= least && is_whole(numbers) => {
+                    whole[part].push((to, numbers.clone()));
+                }
+                _ => open.push(at),
+            }
+        }
+        Ok(Self { columns: typed, whole, open, carried: Arc::new(carried) })
+    }
+
+    /// Sets the coordinates of a row that are finite in every row.
+    pub fn fill(&self, row: usize, state: &mut State) {
+        for (part, coordinates) in self.whole.iter().zip([&mut state.position, &mut state.velocity]) {
+            for (to, numbers) in part {
+                coordinates[*to] = numbers.value(row);
+            }
+        }
     }
 
     pub fn rows(&self) -> usize {
@@ -84,12 +117,12 @@ impl Typed {
     pub fn cell(&self, at: usize, row: usize) -> Cell<'_> {
         match &self.columns[at] {
             Column::Numbers(_) => self.number(at, row).map_or(Cell::Empty, Cell::Number),
-            Column::Integers(numbers) if numbers.is_valid(row) => Cell::Number(numbers.value(row) as f64),
-            Column::Texts(texts) if texts.is_valid(row) => match texts.value(row).trim() {
+            Column::Integers(_) => self.integer(at, row).map_or(Cell::Empty, |number| Cell::Number(number as f64)),
+            Column::Texts(_) => match self.text(at, row).unwrap_or_default().trim() {
                 "" => Cell::Empty,
                 text => Cell::Text(text.into()),
             },
-            _ => Cell::Empty,
+            Column::Unread => Cell::Empty,
         }
     }
 
@@ -102,10 +135,18 @@ impl Typed {
         }
     }
 
-    pub fn id(&self, at: usize, row: usize) -> Option<Value> {
+    /// The text in a cell of a column of text, as it is.
+    pub fn text(&self, at: usize, row: usize) -> Option<&str> {
         match &self.columns[at] {
-            Column::Integers(numbers) => numbers.is_valid(row).then(|| numbers.value(row).into()),
-            Column::Texts(texts) => texts.is_valid(row).then(|| texts.value(row).into()),
+            Column::Texts(texts) if texts.is_valid(row) => Some(texts.value(row)),
+            _ => None,
+        }
+    }
+
+    /// The number in a cell of a column of whole numbers.
+    pub fn integer(&self, at: usize, row: usize) -> Option<i64> {
+        match &self.columns[at] {
+            Column::Integers(numbers) if numbers.is_valid(row) => Some(numbers.value(row)),
             _ => None,
         }
     }
