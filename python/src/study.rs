@@ -140,10 +140,9 @@ fn found(
         columns: None,
         keyframes: false,
     };
-    let (thresholds, dropped, lowest) =
-        (recording.thresholds(robot, feet)?, Mutex::default(), Mutex::new(f64::INFINITY));
+    let (thresholds, dropped, seen) = (recording.thresholds(robot, feet)?, Mutex::default(), Mutex::default());
     let rows = states.samples(&header, robot, &defaults).take_while(|_| !interrupted());
-    let rows = recording.chosen(Box::new(rows), &header, (robot, feet), thresholds, (&dropped, &lowest))?;
+    let rows = recording.chosen(Box::new(rows), &header, (robot, feet), thresholds, (&dropped, &seen))?;
     let (mut source, mut batch, mut lines) = (Recording::new(rows), Batch::new(&question), Vec::new());
     let mut summary = Summary::default();
     while let Some(states) = source.next()? {
@@ -155,11 +154,12 @@ fn found(
         }
     }
     drop(source);
-    let dropped = dropped.into_inner().unwrap_or_default();
+    let (dropped, seen) = (dropped.into_inner().unwrap_or_default(), seen.into_inner().unwrap_or_default());
     let of_table = notes::missing(&header).into_iter().chain(notes::left_out(&header, &dropped));
-    let nothing = (summary.states == 0).then(|| recording.nothing_found(thresholds, &lowest));
+    let nothing = (summary.states == 0).then(|| recording.nothing_found(thresholds, &seen));
     let of_states = notes::own_friction(summary.own_friction, "state").into_iter().chain(notes::early(summary.early));
-    let notes = of_table.chain(of_states).chain(nothing).collect();
+    let of_motion = notes::deep(summary.deep).into_iter().chain(seen.misfit(robot));
+    let notes = of_table.chain(of_states).chain(of_motion).chain(nothing).collect();
     let lines: Vec<&[u8]> = lines.trim_ascii_end().split(|&byte| byte == b'\n').collect();
     Ok(([b"[", &*lines.join(&b','), b"]"].concat(), notes))
 }

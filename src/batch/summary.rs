@@ -52,6 +52,9 @@ pub struct Summary {
     /// Touchdowns that were taken above the ground, of feet whose heights have no noise.
     #[serde(skip_serializing_if = "is_zero")]
     pub early: u64,
+    /// Touchdowns of feet that are far under the ground in the recording.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub deep: u64,
     /// Columns of coordinates that the table of states does not have, which are 0 in all of them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub missing_columns: Vec<String>,
@@ -214,6 +217,7 @@ impl Summary {
         self.own_friction += following.own_friction;
         self.odd_joints.add(following.odd_joints);
         self.early += following.early;
+        self.deep += following.deep;
     }
 
     fn near(&mut self, state: impl Fn() -> StateRef, outcomes: &[Outcome]) {
@@ -315,7 +319,7 @@ impl fmt::Display for Summary {
                 visible(what)
             )?;
         }
-        notes::early(self.early).iter().try_for_each(|note| writeln!(f, "{note}"))?;
+        notes::early(self.early).iter().chain(&notes::deep(self.deep)).try_for_each(|note| writeln!(f, "{note}"))?;
         let mut lists: Vec<&ModeCount> = self.modes.iter().filter(|list| !list.modes.is_empty()).collect();
         lists.sort_by_key(|list| std::cmp::Reverse(list.outcomes));
         for list in lists.iter().take(SHOWN) {

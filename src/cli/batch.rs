@@ -17,7 +17,7 @@ use super::{Answered, Completion, Failure, input, progress};
 use crate::batch::{self, Batch, Question, Recording, RefusedRecord, States, Summary};
 use crate::budget::TotalBudget;
 use crate::draw::page::Gait;
-use crate::gait::{Dropped, Thresholds};
+use crate::gait::{Dropped, Seen, Thresholds};
 use crate::pipeline::{Aspect, Options};
 use crate::read::table::Header;
 #[cfg(feature = "columnar")]
@@ -57,7 +57,7 @@ pub struct Args {
     #[command(flatten)]
     recording: RecordingOptions,
     /// Answer each state as `forces` does: the contact forces and accelerations in sustained contact
-    #[arg(long, conflicts_with_all = ["touchdowns", "next"])]
+    #[arg(long, conflicts_with = "next")]
     forces: bool,
     #[command(flatten)]
     next: NextOption,
@@ -147,8 +147,8 @@ pub(super) fn run(args: &Args) -> Completion {
         sink.columns = format.writer(columns)?;
     }
 
-    let (dropped, lowest) = (Mutex::new(Dropped::default()), Mutex::new(f64::INFINITY));
-    let done = args.answer(&question, states, answered, (thresholds, &dropped, &lowest), &mut sink);
+    let (dropped, seen) = (Mutex::new(Dropped::default()), Mutex::new(Seen::default()));
+    let done = args.answer(&question, states, answered, (thresholds, &dropped, &seen), &mut sink);
     done.map_err(in_input).inspect_err(|_| note_part(&sink.output))?;
     #[cfg(feature = "columnar")]
     if let Some(columns) = sink.columns.take() {
@@ -163,7 +163,9 @@ pub(super) fn run(args: &Args) -> Completion {
     if let (Some(header), Ok(dropped)) = (&header, dropped.lock()) {
         note_all(notes::left_out(header, &dropped));
     }
-    args.report(&question, &counts, answered, (thresholds, &lowest))?;
+    let seen = seen.into_inner().unwrap_or_default();
+    note_all(seen.misfit(&robot));
+    args.report(&question, &counts, answered, (thresholds, &seen))?;
     if args.plot.path().is_some() {
         let page = |rendered| Ok(gait.page(&robot.name, rendered));
         args.plot.draw_or_page(&gait.picture(&robot.name), "no state was answered", page)?;
@@ -294,7 +296,7 @@ impl Args {
         question: &Question<'_>,
         states: States,
         answered: usize,
-        (thresholds, dropped, lowest): (Thresholds, &Mutex<Dropped>, &Mutex<f64>),
+        (thresholds, dropped, seen): (Thresholds, &Mutex<Dropped>, &Mutex<Seen>),
         sink: &mut OutputSink<'_>,
     ) -> crate::Result<()> {
         let threads = self.threads.count();
@@ -321,7 +323,7 @@ impl Args {
         };
         let samples = states.samples(header, robot, defaults);
         let known = (robot, &question.options.feet[..]);
-        let samples = self.recording.chosen(samples, header, known, thresholds, (dropped, lowest))?.skip(answered);
+        let samples = self.recording.chosen(samples, header, known, thresholds, (dropped, seen))?.skip(answered);
         let answerer = || {
             let mut batch = Batch::new(question);
             move |samples| batch.samples(samples)
@@ -335,7 +337,7 @@ impl Args {
         question: &Question<'_>,
         counts: &Summary,
         answered: usize,
-        (thresholds, lowest): (Thresholds, &Mutex<f64>),
+        (thresholds, seen): (Thresholds, &Seen),
     ) -> io::Result<()> {
         note_all(notes::own_friction(counts.own_friction, "state"));
         if let Some(least) = question.total.as_ref().and_then(TotalBudget::least) {
@@ -351,9 +353,14 @@ impl Args {
         let _ = match counts.states {
             _ if is_quiet() => Ok(()),
             0 if self.recording.touchdowns => {
-                writeln!(io::stderr(), "{}", with_flags(&self.recording.nothing_found(thresholds, lowest)))
+                writeln!(io::stderr(), "{}", with_flags(&self.recording.nothing_found(thresholds, seen)))
             }
-            0 | 1 if self.summary.is_none() => Ok(()),
+            0 | 1 if self.summary.is_none() => {
+                let odd = counts.odd_joints.first.as_ref().map(|odd| &odd.what);
+                note_all(odd.or(seen.odd_joint.as_ref()).cloned());
+                note_all(notes::early(counts.early).into_iter().chain(notes::deep(counts.deep)));
+                Ok(())
+            }
             _ => write!(io::stderr(), "{}", with_flags(&counts.to_string())),
         };
         let Some(path) = &self.summary else { return Ok(()) };
@@ -375,10 +382,11 @@ impl Args {
             let error = Error::new(Reason::Inconsistent(format!("{what} a table")));
             return Err(Failure::Usage(error.hint("give CSV with a header, or say --input-format csv")));
         }
-        if !self.recording.touchdowns {
-            return Ok(header);
-        }
-        let header = header.map(Header::with_base).transpose();
+        let header = match (header, self.recording.touchdowns) {
+            (Some(header), true) => header.with_base().map(Some),
+            (Some(header), false) if self.forces => header.without_torques(robot).map(Some),
+            (header, _) => Ok(header),
+        };
         Ok(header.map_err(|error| error.in_file(input::name(&self.states)))?)
     }
 }

@@ -70,12 +70,16 @@ const FORMATS: [&str; 22] = [
     "arrow", "arrows", "csv", "feather", "h5", "hdf5", "html", "ipc", "mat", "npy", "npz", "parquet", "pdf", "pickle",
     "png", "svg", "toml", "tsv", "xlsx", "xml", "yaml", "yml",
 ];
+/// Those of inputs whose first bytes show what they are, with a better remedy.
+const PACKED: [&str; 8] = ["bz2", "gz", "ods", "pq", "xls", "xz", "zip", "zst"];
 
 /// Refuses a file whose ending means a format, for the `reason`: the command has another one for it; `option` overrules
 /// the ending.
 pub(super) fn check_ending(path: Option<&Path>, reason: &'static str, option: &str) -> Result<(), Failure> {
     let ending = path.and_then(Path::extension).and_then(|ending| ending.to_str()).unwrap_or_default();
-    if !FORMATS.contains(&&*ending.to_ascii_lowercase()) {
+    let ending = ending.to_ascii_lowercase();
+    let is_read = option == "--input-format";
+    if !FORMATS.contains(&&*ending) && (is_read || !PACKED.contains(&&*ending)) {
         return Ok(());
     }
     let error = Error::new(Reason::Unsupported(reason.to_owned()));

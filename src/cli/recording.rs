@@ -2,12 +2,16 @@
 
 use super::options::{Choices, choice, from_zero};
 use crate::batch::RowOrigin;
-use crate::gait::{self, At, Difference, Dropped, Heights, Sampled, Thresholds, Touching};
+use crate::gait::{self, At, Difference, Dropped, Heights, Sampled, Seen, Thresholds, Touching};
 use crate::read::table::{Header, Rates};
 use crate::state::NamedContact;
 use crate::write::RowKind;
 use crate::{Result, Robot};
 use std::sync::Mutex;
+
+/// What no touchdowns can be asked with. Each of their options has this list: one that `requires` what is in conflict with
+/// another is not missed.
+const OTHERS: &[&str] = &["place", "forces"];
 
 /// Options for rows that follow each other in time.
 #[derive(Debug, clap::Args)]
@@ -20,28 +24,30 @@ pub struct RecordingOptions {
     /// slows down, when it is 2 mm above that level. Noise is measured and fitted by lines. For robots smaller
     /// than 0.25 m these thresholds shrink in proportion; the size is the greatest distance from the root's origin to a
     /// foot or center of gravity with all joints at zero. The base is then shifted so that the foot is at z = 0.
-    #[arg(long, conflicts_with = "place")]
+    #[arg(long, conflicts_with_all = OTHERS)]
     pub touchdowns: bool,
     /// Trust the heights of a simulation: the ground is z = 0, and a foot touches down when it crosses it
     ///
     /// The moment of contact is extrapolated from up to six rows before it. For recordings without noise.
-    #[arg(long, requires = "touchdowns", conflicts_with = "ground_height")]
+    #[arg(long, requires = "touchdowns", conflicts_with_all = [&["ground_height"][..], OTHERS].concat())]
     pub simulated: bool,
     /// Which state of a touchdown is analyzed
-    #[arg(long, value_parser = choice(ROWS), default_value = "crossing", requires = "touchdowns")]
+    #[arg(long, value_parser = choice(ROWS), default_value = "crossing", requires = "touchdowns", conflicts_with_all = OTHERS)]
     pub at: At,
     /// Which other feet touch the ground at a touchdown: strike (none), slow:SPEED,HEIGHT or near:HEIGHT
     ///
     /// With slow, the lowest point of every other body, if it is slower than SPEED (m/s) and its height differs from
     /// the striking point's by at most HEIGHT (m): standing feet. With near, every point at such a height, at any
     /// speed.
-    #[arg(long, value_name = "WHICH", default_value_t, requires = "touchdowns")]
+    #[arg(long, value_name = "WHICH", default_value_t, requires = "touchdowns", conflicts_with_all = OTHERS)]
     pub touching: Touching,
     /// How far a foot must have descended, in meters [default: 0.012, less for robots below 0.25 m]
-    #[arg(long, value_name = "HEIGHT", value_parser = from_zero, allow_hyphen_values = true, requires = "touchdowns")]
+    #[arg(long, value_name = "HEIGHT", value_parser = from_zero, allow_hyphen_values = true)]
+    #[arg(requires = "touchdowns", conflicts_with_all = OTHERS)]
     pub drop: Option<f64>,
     /// How far above z = 0 a foot may stop, in meters [default: 0.02, less for robots below 0.25 m]
-    #[arg(long, value_name = "HEIGHT", value_parser = from_zero, allow_hyphen_values = true, requires = "touchdowns")]
+    #[arg(long, value_name = "HEIGHT", value_parser = from_zero, allow_hyphen_values = true)]
+    #[arg(requires = "touchdowns", conflicts_with_all = OTHERS)]
     pub ground_height: Option<f64>,
     /// Compute velocities from the positions and the column "time"
     #[arg(long, value_parser = choice(DIFFERENCES), value_name = "HOW")]
@@ -92,8 +98,8 @@ impl RecordingOptions {
         Ok(Thresholds { drop, ground, ..usual })
     }
 
-    /// The samples to be answered; what a projection of the base leaves out is added to `dropped`, and of touchdowns
-    /// `lowest` becomes the least height of a foot \[m\].
+    /// The samples to be answered; what a projection of the base leaves out is added to `dropped`, and what is seen of a
+    /// recording in search of touchdowns to `seen`.
     ///
     /// # Errors
     /// As above.
@@ -103,7 +109,7 @@ impl RecordingOptions {
         header: &Header,
         (robot, feet): (&'a Robot, &[NamedContact]),
         thresholds: Thresholds,
-        (dropped, lowest): (&'a Mutex<Dropped>, &'a Mutex<f64>),
+        (dropped, seen): (&'a Mutex<Dropped>, &'a Mutex<Seen>),
     ) -> Result<Samples<'a>> {
         if self.is_in_order() {
             samples = Box::new(gait::unwrapped(samples, robot));
@@ -116,16 +122,16 @@ impl RecordingOptions {
         }
         if self.touchdowns {
             let found = gait::find(samples, robot, feet, self.at, self.touching)?;
-            samples = Box::new(found.with(thresholds).meaning(self.heights()).noting(lowest));
+            samples = Box::new(found.with(thresholds).meaning(self.heights()).noting(seen));
         }
         Ok(samples)
     }
 
     /// What to say if there are no touchdowns.
-    pub fn nothing_found(&self, thresholds: Thresholds, lowest: &Mutex<f64>) -> String {
-        let lowest = lowest.lock().map_or(f64::INFINITY, |lowest| *lowest);
+    pub fn nothing_found(&self, thresholds: Thresholds, Seen { lowest, odd_joint, .. }: &Seen) -> String {
         let settings = if self.simulated { "`drop`" } else { "`drop`, `ground_height`" };
-        format!("{} (see {settings})", thresholds.nothing_found(self.heights(), lowest))
+        let odd = odd_joint.as_ref().map_or(String::new(), |odd| format!("; {odd}"));
+        format!("{} (see {settings}){odd}", thresholds.nothing_found(self.heights(), *lowest))
     }
 
     fn heights(&self) -> Heights {

@@ -1,12 +1,12 @@
 //! The robot and the options that shape it.
 
 use super::Failure;
-use super::diagnostic::note;
+use super::diagnostic::{note, note_all};
 use super::input::InputFile;
 use super::meshes::Meshes;
 use super::options::{Choices, ReductionOptions, choice, from_zero};
 use crate::description::Description;
-use crate::robot::{Base, Plane, Reduction};
+use crate::robot::{Base, Plane, Reduction, WIDE};
 use crate::state::NamedContact;
 use crate::{Error, Reason, Robot};
 use std::path::PathBuf;
@@ -27,7 +27,7 @@ pub(super) struct RobotOptions {
     #[arg(long, value_parser = choice(BASES), help_heading = "Robot")]
     pub base: Option<Base>,
     /// How far the axis of a joint may be off the plane's normal, in rad, and count as normal to it [default: 0.001]
-    #[arg(long, value_name = "ANGLE", value_parser = from_zero, allow_hyphen_values = true, help_heading = "Robot")]
+    #[arg(long, value_name = "ANGLE", value_parser = tolerance, allow_hyphen_values = true, help_heading = "Robot")]
     pub axis_tolerance: Option<f64>,
     /// A folder that holds packages, or is one, for meshes named by package:// [repeatable]
     #[arg(long, value_name = "DIR", help_heading = "Robot")]
@@ -60,6 +60,14 @@ pub const BASES: Choices<Base> =
 pub(super) struct Hold {
     joint: String,
     value: f64,
+}
+
+/// Reads an angle that is small against a right one.
+fn tolerance(text: &str) -> Result<f64, String> {
+    match from_zero(text)? {
+        angle if angle <= WIDE => Ok(angle),
+        _ => Err(format!("expected at most {WIDE} rad")),
+    }
 }
 
 /// Reads JOINT=VALUE.
@@ -146,7 +154,9 @@ impl RobotOptions {
                 let known = robot.links.iter().map(|link| link.name.as_str());
                 Failure::Usage(Error::new(robot.no_link(link)).at("--contact").did_you_mean(link, known))
             })?;
-            Ok(NamedContact { link: found, offset, radius })
+            let foot = NamedContact { link: found, offset, radius };
+            note_all(foot.out_of_scale(robot));
+            Ok(foot)
         };
         self.contact.iter().map(foot).collect()
     }

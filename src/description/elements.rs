@@ -121,6 +121,13 @@ pub(super) fn misspelt(element: Node<'_, '_>, found: &mut Vec<String>) {
         for (name, meant) in misread(given, attributes).take(MOST_MISSPELT.saturating_sub(found.len())) {
             found.push(format!("{name} of <{tag}> on line {} ({meant}?)", line(element)));
         }
+        // Exporters write an <axis> like an <origin>.
+        let misplaced = given()
+            .filter(|&name| !attributes.contains(&name) && (tag, name) != ("axis", "rpy"))
+            .filter_map(|name| Some((name, owner(name, children)?)));
+        for (name, owner) in misplaced.take(MOST_MISSPELT.saturating_sub(found.len())) {
+            found.push(format!("{name} of <{tag}> on line {} (<{owner}>?)", line(element)));
+        }
         let inside = || element.children().filter(Node::is_element);
         let tags = || inside().map(|child| child.tag_name().name());
         for (name, meant) in misread(tags, children).take(MOST_MISSPELT.saturating_sub(found.len())) {
@@ -136,13 +143,24 @@ pub(super) fn misspelt(element: Node<'_, '_>, found: &mut Vec<String>) {
     }
 }
 
+/// The element that has an attribute of this name, or one of these children that has itself the name. All may have names.
+fn owner(name: &str, children: &[&'static str]) -> Option<&'static str> {
+    if matches!(name, "name" | "type" | "joint") {
+        return None;
+    }
+    let child = children.iter().copied().find(|&child| child == name);
+    child.or_else(|| Some(READ.iter().find(|(_, attributes, _)| attributes.contains(&name))?.0))
+}
+
 /// Of the `given` names those that are not `known`, but may be meant as one that is and that is not given.
 fn misread<'a, I: Iterator<Item = &'a str>>(
     given: impl Fn() -> I,
     known: &'static [&'static str],
 ) -> impl Iterator<Item = (&'a str, &'static str)> {
     let is_near = |name: &str, known: &str| {
-        name.eq_ignore_ascii_case(known)
+        // As MJCF and SDF call them.
+        matches!((name, known), ("pos" | "position", "xyz") | ("euler" | "rotation", "rpy"))
+            || name.eq_ignore_ascii_case(known)
             || name.len().abs_diff(known.len()) <= 1 && strsim::osa_distance(name, known) == 1
     };
     given().filter(|name| !known.contains(name)).filter_map(move |name| {

@@ -5,6 +5,7 @@ use super::carry::Interpolation;
 use super::clip::{Clock, ClockStep};
 use super::noise::MEASURED;
 use super::points::Points;
+use super::seen::Seen;
 use super::strike::{CLEAN, Strike, Way};
 use super::window::{Frame, SMOOTH, Window};
 use super::{At, Heights, Landing, Sample, Sampled, Thresholds, Touching};
@@ -18,6 +19,8 @@ use std::sync::Mutex;
 
 /// Heights have no noise that is a greater part of [`Thresholds::above`].
 const EXACT: f64 = 1e-3;
+/// Feet do not sink by more times the usual [`Thresholds::ground`].
+const DEEP: f64 = 5.0;
 
 /// The touchdowns in `samples`, states of `robot` with the `feet` that were added to it: each the sample at the moment
 /// of contact, with its landing. Refused samples stay in their place.
@@ -37,15 +40,18 @@ pub fn find<'r, S: Clone, I: Iterator<Item = Sampled<S>>>(
             Reason::Missing("a foot of the robot, which has no collision shape that could touch the ground,".into());
         return Err(Error::new(reason).hint("name the feet, as in `feet: left_shin:0,0,0.4`"));
     }
+    let thresholds = Thresholds::of(robot, feet);
     Ok(Touchdowns {
         samples,
+        robot,
         points,
-        thresholds: Thresholds::of(robot, feet),
+        thresholds,
+        deep: DEEP * thresholds.ground,
         at,
         touching,
         heights: Heights::default(),
         level: CONTACT_TOLERANCE * Feet::new(robot, feet).size(),
-        lowest: None,
+        seen: None,
         clock: Clock::default(),
         counted: 0,
         window: Window { frames: VecDeque::new(), last: None },
@@ -58,15 +64,18 @@ pub fn find<'r, S: Clone, I: Iterator<Item = Sampled<S>>>(
 #[derive(Debug)]
 pub struct Touchdowns<'r, S, I> {
     samples: I,
+    robot: &'r Robot,
     points: Points<'r>,
     thresholds: Thresholds,
+    /// What is lower is not a foot that sinks \[m\].
+    deep: f64,
     at: At,
     touching: Touching,
     heights: Heights,
     /// A point that stops no higher is on the ground, where heights are true \[m\].
     level: f64,
-    /// Becomes the least height of a point \[m\].
-    lowest: Option<&'r Mutex<f64>>,
+    /// What has been seen of the recording.
+    seen: Option<&'r Mutex<Seen>>,
     clock: Clock,
     /// Samples so far, refused ones too.
     counted: usize,
@@ -122,19 +131,20 @@ impl<'r, S, I> Touchdowns<'r, S, I> {
         Self { heights, ..self }
     }
 
-    /// The same touchdowns; `lowest` becomes the least height of a foot \[m\].
-    pub fn noting(self, lowest: &'r Mutex<f64>) -> Self {
-        Self { lowest: Some(lowest), ..self }
+    /// The same touchdowns; what is seen of the recording is added to `seen`.
+    pub fn noting(self, seen: &'r Mutex<Seen>) -> Self {
+        Self { seen: Some(seen), ..self }
     }
 }
 
 impl<S: Clone, I> Touchdowns<'_, S, I> {
     fn take(&mut self, sample: Sample<S>) {
         let places = self.points.at(&sample.state.position);
-        if let Some(Ok(mut lowest)) = self.lowest.map(Mutex::lock) {
-            *lowest = places.iter().fold(*lowest, |least, place| least.min(place.z));
-        }
         let step = self.clock.step(sample.time);
+        if let Some(Ok(mut seen)) = self.seen.map(Mutex::lock) {
+            let lowest = places.iter().fold(f64::INFINITY, |least, place| least.min(place.z));
+            seen.add(&sample, step, lowest, self.robot);
+        }
         match step {
             ClockStep::NewClip => {
                 self.end_clip();
@@ -278,7 +288,8 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
             let is_clean = noise.is_some_and(|noise| noise <= EXACT * self.thresholds.above);
             let is_early = heights == Heights::Recorded && first.is_soft() && is_clean;
             let row = self.window.frames[first.row].row;
-            sample.landing = Some(Landing { row, striking, shift_z, at, touching, is_early });
+            let is_deep = shift_z > self.deep;
+            sample.landing = Some(Landing { row, striking, shift_z, at, touching, is_early, is_deep });
             let finite = sample.state.position.iter().chain(&sample.state.velocity).all(|entry| entry.is_finite());
             self.ready.push_back(if finite {
                 Ok(sample)

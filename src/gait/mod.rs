@@ -77,6 +77,7 @@ mod window;
 mod noise;
 mod strike;
 mod arrival;
+mod seen;
 mod find;
 mod rates;
 mod turns;
@@ -84,6 +85,7 @@ pub mod spatial;
 
 pub use find::{Touchdowns, find};
 pub use rates::{Difference, rates};
+pub use seen::Seen;
 pub use spatial::{Dropped, sagittal};
 pub use turns::unwrapped;
 
@@ -172,6 +174,8 @@ pub struct Landing {
     /// Whether the foot slows down to the ground and its height has no noise, as in a simulation: the state is then one
     /// before the impact.
     pub is_early: bool,
+    /// Whether it is far under z = 0, as in a recording of other axes or units.
+    pub is_deep: bool,
 }
 
 /// How recorded heights are meant.

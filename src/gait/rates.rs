@@ -61,7 +61,9 @@ impl<S> PendingSample<S> {
                 let finite = sample.state.velocity.iter().all(|rate| rate.is_finite());
                 (!finite).then_some("the velocity to the next row is beyond all numbers")
             }
-            None => Some("the clip has no other row to find the velocity of this one from"),
+            None => Some(
+                "no neighboring row of its clip has another time, so that its velocity is not known: time must rise from row to row",
+            ),
         };
         self.before = after.map(|_| (sample.time, sample.state.position.clone()));
         Some(match refused {

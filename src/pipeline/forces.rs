@@ -26,7 +26,7 @@ use crate::law::{Law, Mode};
 use crate::planar::{Pair, Vector};
 use crate::robot::Robot;
 use crate::scalar::{Magnitude, Real, dot};
-use crate::state::{Scene, State};
+use crate::state::{Scene, SpringEnd, State};
 use std::cmp::Ordering;
 
 /// What part of their bounds the errors of accelerations are likely to reach, in those of G: over 1,000 states of
@@ -155,7 +155,18 @@ impl Pipeline<'_> {
         let mut prepared = self.prepare(state)?;
         self.refuse_uneven(&prepared)?;
         let Prepared { velocity, foot, levels, still, impact, .. } = &mut *prepared;
-        let Impact { contacts, stance, notes, .. } = &mut **impact;
+        let Impact { contacts, stance, notes, velocity_before, .. } = &mut **impact;
+        let body = |link: usize| self.robot.rigid_body(self.robot.links[link].body);
+        for (at, spring) in state.scene.springs.iter().enumerate() {
+            // No joint lies between the base and the world.
+            let other = match spring.b {
+                SpringEnd::Link(point) => body(point.link),
+                SpringEnd::World(_) => 0,
+            };
+            if body(spring.a.link) == other {
+                notes.push(format!("virtual[{at}] gives no torque, as no joint lies between its ends"));
+            }
+        }
         if self.assembly.is_constrained() || !still.rows.is_empty() {
             // Those of an impact are infinite, or of other velocities.
             self.bound_velocities(contacts, levels, velocity, Standing { foot: foot.as_ref(), place: *stance });
@@ -164,9 +175,10 @@ impl Pipeline<'_> {
             notes.push("gravity is negative, so it acts upward: 9.81 is that of the earth".into());
         }
         let slips = self.slips(state, velocity, contacts, foot.as_ref(), notes)?;
-        for (contact, _) in contacts.iter().zip(&slips).filter(|(_, slip)| slip.is_none()) {
-            notes.push(format!("{} leaves the ground, and takes no part", contact.name));
-        }
+        let contacts = contacts.iter().zip(&*velocity_before).zip(&slips);
+        notes.extend(contacts.filter(|(_, slip)| slip.is_none()).map(|((contact, [_, normal]), _)| {
+            format!("{} leaves the ground at {normal:.1e} m/s, and takes no part", contact.name)
+        }));
         self.take_part(state, &mut prepared, &slips)?;
         Ok((prepared, slips.into_iter().flatten().collect()))
     }

@@ -123,6 +123,7 @@ impl Pipeline<'_> {
         left_out.clear();
         notes.clear();
         notes.extend(state.odd_joints(self.robot));
+        notes.extend(scene.contacts.iter().flatten().filter_map(|contact| contact.out_of_scale(self.robot)));
         self.note_unused_laws(state, notes);
         state.velocity.clone_into(velocity);
         (*placement, *foot) = self.stand(state, &surface, velocity, take(placement))?;

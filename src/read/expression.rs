@@ -65,12 +65,15 @@ pub(crate) const FUNCTIONS: [&str; 31] = [
     "clamp", "fact",
 ];
 
-/// All constants of nanoexpr, and its functions as far as they are offered.
+/// The constants of nanoexpr that an expression can use; its tau is 2 pi, and a torque to roboticists.
+pub(crate) const CONSTANTS: [&str; 2] = ["pi", "e"];
+
+/// Its functions and constants as far as they are offered.
 struct Offered;
 
 impl Context<f64> for Offered {
     fn variable(&self, name: &str) -> Option<f64> {
-        Math.variable(name)
+        CONSTANTS.contains(&name).then(|| Math.variable(name)).flatten()
     }
 
     fn call(&self, name: &str, arguments: &[f64]) -> Option<Result<f64, ErrorKind>> {
@@ -138,7 +141,8 @@ mod tests {
             let fault = fault(text);
             assert_eq!((fault.before, fault.unknown.as_deref()), (before, unknown), "{text}");
         }
-        for text in ["a +", "inf", "1e999", "10^400", "a; b"] {
+        // A torque to roboticists, and 2 pi to others.
+        for text in ["a +", "inf", "1e999", "10^400", "a; b", "tau", "PI"] {
             fault(text);
         }
         let unknown = |name: &str| {

@@ -19,12 +19,17 @@ pub struct Problem {
     pub contact: ContactProblem,
 }
 
+/// Fields that other names may be meant as: long ones, since short ones resemble each other.
+const LONG: [&str; 7] =
+    ["friction", "restitution", "delassus", "velocity_before", "mass_matrix", "contact_jacobian", "velocity"];
+
 impl Problem {
     /// Reads a problem from one JSON object: `delassus` and `velocity_before`, or `mass_matrix`, `contact_jacobian` and
-    /// `velocity`; `friction`, `restitution`, `id` and `names`. Other fields are ignored.
+    /// `velocity`; `friction`, `restitution`, `id` and `names`. Other fields are ignored,
+    /// unless they resemble a long one of these that is missing.
     ///
     /// # Errors
-    /// Broken JSON, values of the wrong kind, shape or range, a matrix that is no Delassus matrix.
+    /// Broken JSON, a misspelt field, values of the wrong kind, shape or range, a matrix that is no Delassus matrix.
     pub fn from_json(text: &str, defaults: &Defaults) -> Result<Self> {
         let tree = Value::parse(text)?;
         let root = Node::root(&tree, text, None);
@@ -32,6 +37,13 @@ impl Problem {
         let field = |name: &str| fields.iter().find(|field| field.key() == name);
         let required = |name: &str| field(name).ok_or_else(|| root.missing(name));
         let id = field("id").map(Node::id).transpose()?;
+        for other in fields.iter().filter(|field| !LONG.contains(&field.key())) {
+            let is_meant = |known: &&&str| field(known).is_none() && strsim::osa_distance(other.key(), known) <= 2;
+            if let Some(meant) = LONG.iter().find(is_meant) {
+                let unknown = other.refuse(Reason::UnknownField(other.key().to_owned()));
+                return Err(unknown.did_you_mean(other.key(), [*meant]));
+            }
+        }
 
         let laws = |contacts: usize| -> Result<_> {
             check_matrix_size(contacts)?;

@@ -214,7 +214,8 @@ fn slope(entry: Node) -> Result<f64> {
     if value.abs() < FRAC_PI_2 {
         return Ok(value);
     }
-    Err(entry.refuse(Reason::OutOfRange { what: "slope".into(), allowed: "between -pi/2 and pi/2", value }))
+    let error = entry.refuse(Reason::OutOfRange { what: "slope".into(), allowed: "between -pi/2 and pi/2", value });
+    Err(error.hint("it is in radians: 10 degrees are 0.1745"))
 }
 
 /// A list of `[x, z]`.

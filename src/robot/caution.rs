@@ -13,7 +13,7 @@ const NEARLY: f64 = 0.35;
 /// An axis up to this far off is so by the digits of the file \[rad\].
 const SLIGHTLY: f64 = 0.02;
 /// No part of a legged robot is longer than this \[m\].
-const LONGEST: f64 = 10.0;
+pub(crate) const LONGEST: f64 = 10.0;
 /// No radius of gyration is greater than this many sizes of the robot.
 const WIDEST: f64 = 2.0;
 /// A moment of less than this part of the robot's mass times its size squared does not matter: that of a dummy link.

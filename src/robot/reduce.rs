@@ -31,6 +31,11 @@ pub struct Reduction {
     pub reductions: Reductions,
 }
 
+/// An axis farther off the normal lies rather in the plane \[rad\].
+pub(crate) const WIDE: f64 = 0.5;
+/// No legged robot without shapes is taken to be smaller \[m\].
+const USUAL: f64 = 1.0;
+
 impl Robot {
     /// Reads the text of a URDF file and reduces it to its plane.
     ///
@@ -54,6 +59,10 @@ impl Robot {
     /// normal; [`Reason::NotFinite`] where sizes or masses add up to more than an f64 holds.
     pub fn reduce(description: &Description, reduction: &Reduction) -> Result<Self> {
         let tolerance = reduction.axis_tolerance.unwrap_or(PARALLEL);
+        if !(0.0..=WIDE).contains(&tolerance) {
+            let (what, allowed) = ("`axis_tolerance`".to_owned(), "between 0 and 0.5 rad");
+            return Err(Reason::OutOfRange { what, allowed, value: tolerance }.into());
+        }
         let mut pose = ReferencePose::new(description, &reduction.hold, tolerance)?;
         let legs = legs(description, &pose);
         let (plane, plane_because) = find_plane(description, &pose, &legs, reduction.plane);
@@ -125,8 +134,9 @@ impl Robot {
         robot.left_out.extend(left_out::passed_over(description));
         let mut shapes =
             robot.links.iter().flat_map(|link| link.shapes.iter().map(|shape| (link.body, shape))).peekable();
-        // Without shapes the robot may be any size.
-        let size = if shapes.peek().is_some() { robot.size(shapes) } else { f64::INFINITY };
+        // Without shapes only the centers of gravity are known.
+        let least = if shapes.peek().is_some() { 0.0 } else { USUAL };
+        let size = robot.size(shapes).max(least);
         let moving = description.links.iter().zip(&tree.places);
         let moving = moving.filter(|(_, place)| place.as_ref().is_some_and(|place| robot.moves(place.body)));
         let cautions = caution::about_inertias(moving.map(|(link, _)| link), (robot.mass(), size));

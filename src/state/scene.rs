@@ -3,6 +3,7 @@
 use super::ground::Ground;
 use crate::law::Friction;
 use crate::planar::Vector;
+use crate::robot::{LONGEST, Robot};
 use crate::scalar::Real;
 use std::collections::BTreeMap;
 
@@ -79,6 +80,23 @@ pub struct NamedContact {
     pub offset: [f64; 3],
     /// Radius of the circle against the ground's normal \[m\]; 0 for a point.
     pub radius: f64,
+}
+
+impl NamedContact {
+    /// That it is farther from its link than any part of a legged robot, in words.
+    pub fn out_of_scale(&self, robot: &Robot) -> Option<String> {
+        let link = robot.links.get(self.link).map_or("", |link| &link.name);
+        let far = self.offset.iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
+        match (far, self.radius) {
+            _ if far > LONGEST => {
+                Some(format!("the contact of {link} is {far} m from its origin: lengths are in meters"))
+            }
+            (_, radius) if radius > LONGEST => {
+                Some(format!("the contact of {link} has a radius of {radius} m: lengths are in meters"))
+            }
+            _ => None,
+        }
+    }
 }
 
 /// Two points of links that stay together, as the pin does that a URDF, being a tree, cannot hold.

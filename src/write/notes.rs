@@ -46,6 +46,12 @@ pub fn early(count: u64) -> Option<String> {
     (count > 0).then(|| format!("{what}: {count}; if they are of a simulation, give `simulated`"))
 }
 
+/// How many touchdowns were taken far under the ground.
+pub fn deep(count: u64) -> Option<String> {
+    let what = "touchdowns of feet far under z = 0, which were lifted to it";
+    (count > 0).then(|| format!("{what}: {count}; are the base's height and axes right, or does the ground descend?"))
+}
+
 /// Which parameters change nothing.
 pub fn unused(study: &Study) -> impl Iterator<Item = String> {
     study.unused().into_iter().map(|name| format!("nothing in the state or the robot depends on {name}"))

@@ -89,7 +89,7 @@ fn shown(error: &Error) -> String {
 #[test]
 fn headers_that_do_not_fit_are_refused() {
     let bolted = reduced(&leg_urdf(), &Reduction { base: Some(Base::Fixed), ..Reduction::default() });
-    let with_rates: [&[u8]; 24] = [
+    let with_rates: [&[u8]; 29] = [
         b"q_kne,v_knee",
         b"id,\"a,b\",v_base_y",
         b"q_base_qw,q_base_qy,q_base_qx,q_base_qz,v_knee,time",
@@ -113,6 +113,11 @@ fn headers_that_do_not_fit_are_refused() {
         b"v_knee,friction [-]",
         b"v_knee,coefficient_of_restitution,friction_coefficient_left_front_foot",
         b"v_knee,Ground slope [rad]",
+        b"v_knee,held_knee",
+        b"v_knee,rotor_inertia_knee,gravity_z",
+        b"v_knee,mu_left_front_foot",
+        b"v_knee,base_vel_z,qpos_base_x,base_pitch_dot",
+        b"q_knee_deg,v_knee",
         b",v_knee,",
     ];
     let with_time: [&[u8]; 5] = [

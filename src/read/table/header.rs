@@ -163,7 +163,7 @@ impl Header {
         };
         header.spatial = header.spatial(record, robot)?;
         header.missing = header.absent(robot, rates);
-        header.check_foreign(record)?;
+        header.check_foreign(record, robot)?;
         header.check(record, robot, rates)?;
         if header.stance.is_some() {
             let placed = ["q_base_x", "q_base_z", "v_base_x", "v_base_z"];
@@ -193,19 +193,14 @@ impl Header {
 
     /// Refuses a column that is carried through and is named like a field of a state or resembles one that is missing,
     /// unless it is said to be foreign.
-    fn check_foreign(&self, record: Record) -> Result<()> {
-        let mut carried = self.places(TableColumn::Carried).filter(|&at| !self.is_foreign(&self.names[at]));
-        let is_of_states = |name: &str| OF_STATES.contains(&plain(name).as_str()) || is_slope(name);
-        if let Some(at) = carried.find(|&at| is_of_states(&self.names[at])) {
-            let name = &self.names[at];
-            let reason = format!("\"{name}\" is a field of states, and tables have no column for it");
-            let hint = format!("give the states as lines of JSON, or `foreign: {}` to copy the column", quoted(name));
-            return Err(self.in_column(Error::new(Reason::Inconsistent(reason)).hint(hint), record, at));
+    fn check_foreign(&self, record: Record, robot: &Robot) -> Result<()> {
+        let mut carried = self.unread();
+        if let Some(at) = carried.find(|&at| is_of_states(&self.names[at], robot)) {
+            return Err(self.in_column(of_states(&self.names[at]), record, at));
         }
         let others = OTHERS.iter().map(|(name, _)| *name).filter(|name| !self.names.iter().any(|given| given == name));
         let missing: Vec<&str> = self.missing.iter().map(String::as_str).chain(others).collect();
-        let carried = self.places(TableColumn::Carried).filter(|&at| !self.is_foreign(&self.names[at]));
-        let resembling = carried.filter_map(|at| {
+        let resembling = self.unread().filter_map(|at| {
             let name = &self.names[at];
             let mut near: Vec<&str> = missing.iter().copied().filter(|missing| resembles(name, missing)).collect();
             if let Some(&same) = near.iter().find(|near| plain(near) == plain(name)) {
@@ -224,6 +219,23 @@ impl Header {
         Err(self.in_column(error, record, *at))
     }
 
+    /// The columns that are copied without having been named as foreign.
+    fn unread(&self) -> impl Iterator<Item = usize> {
+        self.places(TableColumn::Carried).filter(|&at| !self.is_foreign(&self.names[at]))
+    }
+
+    /// The same, refused if it has a column of a joint's torque, which forces depend on; without a line.
+    pub fn without_torques(self, robot: &Robot) -> Result<Self> {
+        let is_torque = |&at: &usize| is_of_coordinate(&self.names[at], &["torque", "tau", "effort"], robot);
+        let torques: Vec<usize> = self.unread().filter(is_torque).collect();
+        let Some(first) = torques.first() else { return Ok(self) };
+        let name = |&at: &usize| quoted(&self.names[at]);
+        let reason = format!("{} is a torque, and tables have no column for it", name(first));
+        let foreign = few(torques.iter().map(|at| format!("`foreign: {}`", name(at))).collect());
+        let hint = format!("give the states as lines of JSON, or {foreign} to copy the columns");
+        Err(Error::new(Reason::Inconsistent(reason)).hint(hint).at(format!("column {}", first + 1)))
+    }
+
     /// How many columns there are.
     pub fn count(&self) -> usize {
         self.columns.len()
@@ -235,13 +247,13 @@ impl Header {
         if self.time.is_some() { Ok(self) } else { Err(missing().hint("touchdowns need the time of each row")) }
     }
 
-    /// The same, refused if the base floats and no column says where it is, as touchdowns need; without a line.
+    /// The same, refused if the base floats and no column says how high it is, as touchdowns need; without a line.
     pub fn with_base(self) -> Result<Self> {
-        if ["q_base_x", "q_base_z", "q_base_pitch"].iter().all(|base| self.missing.iter().any(|name| name == base)) {
-            let missing = Error::new(Reason::Missing("the base's motion, such as q_base_z,".into()));
+        if self.missing.iter().any(|name| name == "q_base_z") {
+            let missing = Error::new(Reason::Missing("the base's height, q_base_z,".into()));
             return Err(missing.hint(
-                "touchdowns are found by the heights of feet; without the base's motion answer the rows themselves, by \
-                 `place: lowest` or a column stance, without `touchdowns`",
+                "touchdowns are found by the heights of feet; without the base's answer the rows themselves, by `place: \
+                 lowest` or a column stance, without `touchdowns`",
             ));
         }
         Ok(self)
@@ -344,6 +356,13 @@ impl Header {
     }
 }
 
+/// The refusal of a column for which only states have a field.
+fn of_states(name: &str) -> Error {
+    let reason = format!("\"{}\" is a field of states, and tables have no column for it", short(name));
+    let hint = format!("give the states as lines of JSON, or `foreign: {}` to copy the column", quoted(name));
+    Error::new(Reason::Inconsistent(reason)).hint(hint)
+}
+
 /// Puts an error where column `at` of this name begins in the first record.
 fn in_column(error: Error, record: Record, at: usize, name: &str) -> Error {
     let (lines, column) = record.place_of(at, name);
@@ -424,8 +443,31 @@ fn plain(name: &str) -> String {
     without_unit.chars().map(letter).collect::<String>().trim_matches('_').to_owned()
 }
 
-fn is_slope(name: &str) -> bool {
-    matches!(plain(name).as_str(), "slope" | "ground_slope")
+/// Whether a column is named like a field of a state for which tables have none, or like an entry of such a field.
+fn is_of_states(name: &str, robot: &Robot) -> bool {
+    let name = plain(name);
+    let entry = |field: &str| name.strip_prefix(field)?.strip_prefix('_');
+    let of_joint = |field: &&str| entry(field).is_some_and(|joint| in_columns(robot).any(|own| plain(&own) == joint));
+    OF_STATES.contains(&name.as_str())
+        || matches!(name.as_str(), "slope" | "ground_slope")
+        || entry("gravity").is_some_and(|axis| matches!(axis, "x" | "y" | "z"))
+        || ["held", "rotor_inertia"].iter().any(|field| of_joint(&field))
+}
+
+/// What is left of a name without one of its parts that is such a word, as `base_z` is of `base_vel_z`.
+fn without_one_of<'n>(name: &'n str, words: &'n [&str]) -> impl Iterator<Item = String> + 'n {
+    let parts: Vec<&str> = name.split('_').collect();
+    (0..parts.len())
+        .filter_map(move |at| words.contains(&parts[at]).then(|| [&parts[..at], &parts[at + 1..]].concat().join("_")))
+}
+
+/// Whether a name is that of a coordinate and such a word.
+fn is_of_coordinate(name: &str, words: &[&str], robot: &Robot) -> bool {
+    let name = plain(name);
+    // What is much longer is none, and comparing it takes time.
+    let longest = in_columns(robot).map(|own| own.len()).max().unwrap_or_default();
+    let is_coordinate = |rest: String| in_columns(robot).any(|own| plain(&own) == rest);
+    name.len() <= longest + 16 && without_one_of(&name, words).any(is_coordinate)
 }
 
 /// A name as an option takes it.
@@ -441,9 +483,10 @@ fn resembles(name: &str, known: &str) -> bool {
     // "restitution_coefficient", "friction of the left foot", and not what friction does or needs.
     const OTHER_QUANTITIES: [&str; 7] = ["needed", "force", "torque", "loss", "power", "margin", "joint"];
     let mut parts = name.split('_');
+    let is_mu = known == "friction" && (name.starts_with("mu_") || name.ends_with("_mu") || name == "mu");
     if matches!(known.as_str(), "friction" | "restitution")
-        && (name == "mu" && known == "friction"
-            || parts.clone().any(|part| part == known) && !parts.any(|part| OTHER_QUANTITIES.contains(&part)))
+        && (is_mu || parts.clone().any(|part| part == known))
+        && !parts.any(|part| OTHER_QUANTITIES.contains(&part))
     {
         return true;
     }
@@ -452,17 +495,13 @@ fn resembles(name: &str, known: &str) -> bool {
         return false;
     }
     let words = match known.as_bytes() {
-        [b'q', b'_', ..] => &["q", "pos", "position", "angle"][..],
-        [b'v', b'_', ..] => &["v", "vel", "velocity", "dq", "qd", "qdot"],
+        [b'q', b'_', ..] => &["q", "qpos", "pos", "position", "angle"][..],
+        [b'v', b'_', ..] => &["v", "vel", "velocity", "dq", "qd", "qdot", "qvel", "dot", "rate", "omega"],
         _ => &[],
     };
     if let (Some((_, coordinate)), false) = (known.split_once('_'), words.is_empty()) {
         let alone = |name: &str| name == coordinate || Some(name) == coordinate.strip_prefix("base_");
-        let with_word = words.iter().any(|word| {
-            let before = name.strip_prefix(word).and_then(|rest| rest.strip_prefix('_'));
-            let behind = name.strip_suffix(word).and_then(|rest| rest.strip_suffix('_'));
-            before.is_some_and(alone) || behind.is_some_and(alone)
-        });
+        let with_word = without_one_of(&name, words).any(|rest| alone(&rest));
         // Another quantity of this coordinate, such as a torque, is none of its state.
         let other = name.strip_suffix(coordinate).is_some_and(|rest| rest.ends_with('_'));
         if alone(&name) || with_word || other {
@@ -514,6 +553,9 @@ fn coordinate(prefix: &str, name: &str, robot: &Robot, moving: fn(usize) -> Tabl
     }
     let known: Vec<String> = in_columns(robot).map(|known| format!("{prefix}{known}")).collect();
     let unknown = Error::new(Reason::UnknownName { what: "coordinate", name: short(name) });
+    if is_of_coordinate(name, &["deg", "degree", "degrees"], robot) || name.contains("[deg") || name.contains("(deg") {
+        return Err(unknown.hint("angles are in radians: convert the column, and give it the name of its coordinate"));
+    }
     Err(unknown.did_you_mean(&format!("{prefix}{}", short(name)), known.iter().map(String::as_str)))
 }
 

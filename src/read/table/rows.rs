@@ -442,15 +442,19 @@ impl Row<'_> {
             Cell::Text(text) if self.header.form == Form::Ndjson => {
                 let reason = Reason::WrongKind { expected: "a number", found: "a string" };
                 let error = self.refuse(at, reason);
-                let is_number = text.trim().parse::<f64>().is_ok();
-                return Err(if is_number { error.hint("leave out the quotes") } else { error });
+                return Err(if is_number(&text) { error.hint("leave out the quotes") } else { error });
             }
             Cell::Text(text) => text.parse().map_err(|_| {
                 let error = self.refuse(at, Reason::Syntax(format!("expected a number, found \"{}\"", short(&text))));
-                match (text.contains(','), text.contains('.')) {
-                    (true, true) => error.hint("leave out the commas between thousands"),
-                    (true, false) => error.hint("write decimals with a point"),
-                    (false, _) => error,
+                match (text.find('.'), text.rfind(',')) {
+                    (None, Some(_)) => error.hint("write decimals with a point"),
+                    (Some(point), Some(comma)) if comma < point && is_number(&text.replace(',', "")) => {
+                        error.hint("leave out the commas between thousands")
+                    }
+                    (Some(_), Some(_)) if is_number(&text.replace('.', "").replace(',', ".")) => {
+                        error.hint("write decimals with a point, and nothing between thousands")
+                    }
+                    _ => error,
                 }
             })?,
         };
@@ -496,6 +500,10 @@ impl Row<'_> {
         };
         place(error, self.header, raw, self.line, at)
     }
+}
+
+fn is_number(text: &str) -> bool {
+    text.trim().parse::<f64>().is_ok()
 }
 
 /// Puts an error where cell `at` of the record `raw` begins, itself on `line`.

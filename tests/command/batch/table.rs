@@ -68,11 +68,20 @@ fn options_that_need_a_table_are_refused_without_one() {
     for options in [&["--touchdowns"][..], &["--velocity", "central"], &["--at", "row"]] {
         batch(&[&["-"], options].concat(), strike(1, 0.0)).refusal(2);
     }
+    for other in [&["--place", "lowest"][..], &["--forces"]] {
+        for options in [&["--drop", "0.1"][..], &["--ground-height", "0.1"], &["--simulated"], &["--at", "row"]] {
+            batch(&[&["-"], other, options].concat(), strike(1, 0.0)).refusal(2);
+        }
+    }
     // A table has no room for matrices.
     batch(&["-", "--output-format", "csv", "--matrices"], strike(1, 0.0)).refusal(2);
     for (options, table, words) in [
         (&["--touchdowns"][..], "q_base_z,v_base_z\n0.5,-1\n", "error: <stdin>:1:1: a column \"time\" is missing"),
-        (&["--touchdowns"], "time,v_base_z\n0,-1\n", "error: <stdin>: the base's motion, such as q_base_z, is missing"),
+        (
+            &["--touchdowns"],
+            "time,q_base_x,v_base_z\n0,0,-1\n",
+            "error: <stdin>: the base's height, q_base_z, is missing",
+        ),
         (&["--friction", "1"], "id,q_base_z,v_base_z\r1,0.5,-1\r", "a line break that is not one of this table"),
     ] {
         let stderr = batch(&[&["-", "--input-format", "csv"], options].concat(), table).refusal(1);
@@ -130,6 +139,72 @@ fn the_note_of_no_touchdown_says_what_would_count() {
     assert_eq!(note(&[]), expected);
     let expected = expected.replace("0.0200", "0.0300").replace("0.0120", "0.0250");
     assert_eq!(note(&["--drop", "0.025", "--ground-height", "0.03"]), expected);
+}
+
+/// A walk with the columns of a header that begin so multiplied by a factor, and others moved.
+fn changed_walk(change: impl Fn(&str, f64) -> f64) -> String {
+    let walk = read("examples/gait/ramone_walk.csv");
+    let mut rows = walk.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let names = rows.next().expect("a header");
+    let cell =
+        |(name, cell): (&&str, &str)| cell.parse().map_or(cell.to_owned(), |cell| change(name, cell).to_string());
+    let row = |row: Vec<&str>| names.iter().zip(row).map(cell).collect::<Vec<_>>().join(",");
+    [names.join(",")].into_iter().chain(rows.map(row)).map(|row| row + "\n").collect()
+}
+
+#[test]
+fn recordings_in_other_units_or_axes_are_noted() {
+    let stderr = |change: fn(&str, f64) -> f64| {
+        let options = ["batch", RAMONE, "-", "--input-format", "csv", "--touchdowns", "--friction", "0.6", "--brief"];
+        heelstrike_reads(&options, changed_walk(change)).well().stderr
+    };
+    let misfit = "velocities do not fit positions over time: v of ";
+    let as_it_is = stderr(|_, cell| cell);
+    assert!(!as_it_is.contains(misfit) && !as_it_is.contains("far under z = 0"), "{as_it_is}");
+    for (change, words) in [
+        ((|name, cell| if name.starts_with("v_") { -cell } else { cell }) as fn(&str, f64) -> f64, "the opposite sign"),
+        (|name, cell| if name.starts_with("v_left") { cell.to_degrees() } else { cell }, "5"),
+        (|name, cell| if name == "time" { 1e3 * cell } else { cell }, "1000"),
+    ] {
+        let stderr = stderr(change);
+        let note = stderr.lines().find(|line| line.contains(misfit)).unwrap_or_else(|| panic!("{words}: {stderr}"));
+        assert!(note.contains(words), "{note}");
+    }
+    let deep = stderr(|name, cell| if name == "q_base_z" { cell - 0.5 } else { cell });
+    assert!(deep.contains("touchdowns of feet far under z = 0, which were lifted to it: "), "{deep}");
+    let degrees =
+        stderr(|name, cell| if name.contains("knee") || name.contains("hip") { cell.to_degrees() } else { cell });
+    assert!(degrees.contains("degrees?"), "{degrees}");
+}
+
+#[test]
+fn torques_in_a_table_of_forces_are_refused() {
+    let table = "id,q_base_z,v_base_z,knee_torque,torque_left_hip,left_knee_tau\na,0.7,0,1,50,2\n";
+    let options = ["batch", RAMONE, "-", "--input-format", "csv", "--friction", "0.6"];
+    let refused = heelstrike_reads(&[&options[..], &["--forces"]].concat(), table).refusal(1);
+    assert!(refused.contains("column 5: torque_left_hip is a torque, and tables have no column for it"), "{refused}");
+    // They are nothing to an impact.
+    heelstrike_reads(&options, table).well();
+    let foreign = ["--forces", "--foreign", "torque_left_hip", "--foreign", "left_knee_tau"];
+    assert!(refused.contains(&format!("{}, {}", foreign[1..3].join(" "), foreign[3..].join(" "))), "{refused}");
+    heelstrike_reads(&[&options[..], &foreign].concat(), table).well();
+}
+
+#[test]
+fn what_is_out_of_scale_is_noted_of_one_state_too() {
+    let options = ["batch", RAMONE, "-", "--input-format", "csv", "--friction", "1", "--place", "lowest"];
+    let run = heelstrike_reads(&options, "v_base_z,q_left_hip\n-1,30\n").well();
+    assert!(run.stderr.contains("left_hip = 30 rad is "), "{}", run.stderr);
+    let far = heelstrike_reads(&[&options[..], &["--contact", "torso:0,0,-500"]].concat(), "v_base_z\n-1\n").well();
+    assert!(
+        far.stderr.contains("the contact of torso is 500 m from its origin: lengths are in meters"),
+        "{}",
+        far.stderr
+    );
+    let state =
+        r#"{"friction": 1, "contacts": [{"link": "left_foot", "radius": 28}], "velocity": {"base": {"z": -1}}}"#;
+    let noted = heelstrike_reads(&["impact", RAMONE, "-", "--format", "json"], state).well();
+    assert!(noted.stdout.contains("the contact of left_foot has a radius of 28 m"), "{}", noted.stdout);
 }
 
 #[test]

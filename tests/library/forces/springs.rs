@@ -36,6 +36,20 @@ fn near(found: &Value, expected: f64) -> bool {
 }
 
 #[test]
+fn a_spring_that_no_joint_can_give_is_noted() {
+    let robot = arm(Base::Floating);
+    let notes = |a: &str, b: Value| {
+        let state = json!({"position": {"base": {"z": 1.0}}, "contacts": [],
+                           "virtual": [{"a": {"link": a}, "b": b, "stiffness": [1, 1]}]});
+        forces(&robot, &state).notes.iter().filter(|note| note.starts_with("virtual[0] gives no torque")).count()
+    };
+    assert_eq!(notes("body", json!({"world": [0, 2]})), 1);
+    assert_eq!(notes("arm", json!({"link": "arm", "offset": [1, 0, 0]})), 1);
+    assert_eq!(notes("arm", json!({"world": [0, 2]})), 0);
+    assert_eq!(notes("body", json!({"link": "arm"})), 0);
+}
+
+#[test]
 fn spring_to_the_world_gives_its_moments() {
     let robot = arm(Base::Floating);
     let state = json!({

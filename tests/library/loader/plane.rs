@@ -255,6 +255,12 @@ fn axis_tolerance_keeps_axes_that_are_off_by_digits() {
     assert_eq!(only_caution(&robot), expected);
     let robot = reduce(&text, &Reduction { axis_tolerance: Some(1.8e-3), ..Reduction::default() });
     assert_eq!((names(&robot), robot.reading.plane_because), (vec!["j", "k", "l"], PlaneReason::CommonAxis));
+    let in_degrees = Robot::reduce(
+        &Description::from_urdf(&text).unwrap(),
+        &Reduction { axis_tolerance: Some(3.0), ..Reduction::default() },
+    );
+    let refused = in_degrees.expect_err("a hinge across the plane");
+    assert_eq!(refused.to_string(), "`axis_tolerance` must be between 0 and 0.5 rad, not 3");
     let why = "its axis is 1.6e-3 rad off the plane's normal: taken as exactly on it";
     assert_eq!(robot.left_out, [left_out("joint \"k\"", why)]);
 }
@@ -289,6 +295,13 @@ fn misspelt_names_are_named_with_their_lines() {
     assert_eq!(caution("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 1 0\" rpy=\"0\"/>"), None);
     let misspelt = caution("<origin ", "<orign ").unwrap();
     assert!(misspelt.starts_with("not read, and perhaps misspelt: <orign> in <"), "{misspelt}");
+    for (from, to, named) in [
+        ("<inertia ", "<inertia size=\"1\" ", "size of <inertia> on line 2 (<box>?)"),
+        ("<inertial>", "<inertial mass=\"2\">", "mass of <inertial> on line 2 (<mass>?)"),
+        ("<origin xyz=", "<origin pos=", "pos of <origin> on line"),
+    ] {
+        assert!(caution(from, to).unwrap_or_default().contains(named), "{to}: {:?}", caution(from, to));
+    }
     let misspelt = caution("<axis xyz=", "<axis xzy=").unwrap();
     assert!(misspelt.contains("xzy of <axis> on line ") && misspelt.contains(" (xyz?)"), "{misspelt}");
     let limits = |limits: &str| caution("<axis ", &format!("<limit {limits}/><axis "));

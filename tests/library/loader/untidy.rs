@@ -109,6 +109,11 @@ fn doubtful_inertias_and_angles_are_noted() {
         let robot = replaced(from, to);
         assert!(only_caution(&robot).starts_with(words), "{}", only_caution(&robot));
     }
+    // Without a shape the size is not known.
+    let shapeless = |moment: f64| load(&urdf::robot(&[link("a", 3.0, [0.0; 2], moment, "")]));
+    let words = "with an inertia that needs a part far beyond the robot's size: a; ";
+    assert!(only_caution(&shapeless(5000.0)).starts_with(words));
+    assert_eq!(shapeless(10.0).reading.cautions, [""; 0]);
     let massless = |moment: f64| {
         let links = [link("a", 1.0, [0.0; 2], 1.0, ""), link("b", 0.0, [0.0; 2], moment, "")];
         load(&urdf::robot(&[links.concat(), joint("j", HINGE, ["a", "b"], [0.0, -1.0], "")]))
