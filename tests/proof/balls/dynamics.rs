@@ -196,18 +196,9 @@ pub fn terms<N: Number>(robot: &Robot, state: &State, position: &[N], bits: usiz
 ///
 /// With `slips`, the signs of the contacts' sliding velocities, all have accelerations in place of velocities: those of
 /// points by second differences of their places on the way q + v t, and generalized forces body by body (d'Alembert).
+///
+/// With what impulses do to dq/dt if `rates` are wanted.
 pub fn problem<N: Number>(
-    robot: &Robot,
-    state: &State,
-    resting: &[bool],
-    slips: Option<&[Ordering]>,
-    bits: usize,
-) -> Option<Problem<N>> {
-    problem_and_rates(robot, state, resting, slips, bits, false)
-}
-
-/// As [`problem`], with what impulses do to dq/dt if `rates` are wanted.
-pub fn problem_and_rates<N: Number>(
     robot: &Robot,
     state: &State,
     resting: &[bool],

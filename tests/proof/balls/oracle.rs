@@ -5,7 +5,7 @@
 //! 2^-150 of its scale is taken for zero, and the state for one on a border. Where that makes equations dependent, the
 //! impulses that are left free are eliminated from the inequalities one by one (Fourier and Motzkin).
 
-use crate::balls::dynamics::{Problem, problem, problem_and_rates};
+use crate::balls::dynamics::{Problem, problem};
 use crate::balls::linear::{Affine, Inequality, Solution, Solved, Zero, feasible, solve};
 use crate::balls::number::{Ball, Number};
 use crate::support::digits::{Truth, needed};
@@ -63,7 +63,7 @@ fn answer_about(robot: &Robot, state: &State, resting: &[bool], slips: Option<&[
     let mut dependent = false;
     let mut open: Option<Vec<Vec<Mode>>> = None;
     for bits in BITS {
-        let problem = problem::<Ball>(robot, state, resting, slips, bits)?;
+        let problem = problem::<Ball>(robot, state, resting, slips, bits, false)?;
         let last = bits == BITS[BITS.len() - 1];
         let lists = open.take().unwrap_or_else(|| {
             let may =
@@ -95,7 +95,7 @@ fn answer_about(robot: &Robot, state: &State, resting: &[bool], slips: Option<&[
 
 /// The lists of modes that f64 takes for outcomes; nothing is proven by them.
 pub fn guess(robot: &Robot, state: &State) -> Vec<Vec<Mode>> {
-    let Some(problem) = problem::<f64>(robot, state, &[], None, 0) else { return Vec::new() };
+    let Some(problem) = problem::<f64>(robot, state, &[], None, 0, false) else { return Vec::new() };
     let mut lists = lists(problem.friction.len());
     lists.retain(|modes| matches!(judge(&problem, modes, Zero { last: false }), Judgment::Outcome(_)));
     lists
@@ -105,7 +105,7 @@ pub fn guess(robot: &Robot, state: &State) -> Vec<Vec<Mode>> {
 /// joints are then those before); `None` if its equations depend on each other.
 pub fn truth(robot: &Robot, state: &State, slips: Option<&[Ordering]>, modes: &[Mode]) -> Option<Truth> {
     let bits = BITS[BITS.len() - 1];
-    let problem = problem_and_rates::<Ball>(robot, state, &[], slips, bits, true)?;
+    let problem = problem::<Ball>(robot, state, &[], slips, bits, true)?;
     let zero = Zero { last: true };
     let [speed, mobility] =
         [largest(problem.free.iter()), largest((0..problem.free.len()).map(|i| &problem.delassus[i][i]))];

@@ -49,25 +49,25 @@ pub fn chain(length: usize, random: &mut Random) -> Model {
     });
     let mut parts: Vec<String> = links.collect();
     parts.extend((1..length).map(|link| joint(link - 1, link, Axis::Revolute(1.0), [0.0, -1.0])));
-    let feet = [length - 1, length - 3, 4].map(|link| (link, [0.1, -1.0]));
-    Model { touching: 2, most: 3, ..linked("chain", &parts, &feet) }
+    let feet = [length - 1, length - 3, 4].map(|link| (format!("link_{link}"), [0.1, 0.0, -1.0], 0.0));
+    Model { most: 3, ..Model::new("chain", &urdf::robot(&parts), 2, &feet) }
 }
 
 /// A tree of two to seven links, on revolute and prismatic joints; points of all links strike, two at a time.
 pub fn tree(random: &mut Random) -> Model {
     let point = |random: &mut Random| [random.between(-1.0, 1.0), random.between(-1.0, 1.0)];
-    let mut parts = Vec::new();
-    let mut feet = Vec::new();
+    let (mut parts, mut feet) = (Vec::new(), Vec::new());
     for link in 0..random.whole(2, 7) as usize {
         let mass = random.between(0.3, 4.0);
         parts.push(urdf::link(format!("link_{link}"), mass, point(random), random.between(0.01, 0.5), ""));
-        feet.push((link, point(random)));
+        let [x, z] = point(random);
+        feet.push((format!("link_{link}"), [x, 0.0, z], 0.0));
         if link > 0 {
             let axes = [Axis::Revolute(1.0), Axis::Revolute(-1.0), Axis::Revolute(1.0), Axis::Prismatic(point(random))];
             parts.push(joint(random.whole(0, link as i64 - 1) as usize, link, random.pick(&axes), point(random)));
         }
     }
-    linked("tree", &parts, &feet)
+    Model::new("tree", &urdf::robot(&parts), 2, &feet)
 }
 
 fn joint(parent: usize, link: usize, axis: Axis, origin: [f64; 2]) -> String {
@@ -75,24 +75,13 @@ fn joint(parent: usize, link: usize, axis: Axis, origin: [f64; 2]) -> String {
     urdf::joint(format!("joint_{link}"), axis, [&ends[0], &ends[1]], origin, "")
 }
 
-/// A robot of these elements with points of the links of these numbers for feet, two of which touch.
-fn linked(name: &'static str, parts: &[String], feet: &[(usize, [f64; 2])]) -> Model {
-    let robot = Robot::from_urdf(&urdf::robot(parts)).unwrap_or_else(|error| panic!("{error}"));
-    let foot = |&(link, [x, z]): &(usize, [f64; 2])| NamedContact {
-        link: robot.link(&format!("link_{link}")).expect("a link of the file"),
-        offset: [x, 0.0, z],
-        radius: 0.0,
-    };
-    let feet = feet.iter().map(foot).collect();
-    Model { name, robot, feet, touching: 2, most: 2, loops: Vec::new(), closing: |_| {} }
-}
-
 /// A body whose left knee follows its hip and whose right telescope follows its hip, and a toe that follows twice.
 fn follower() -> String {
     let mimic = |joint: &str, multiplier: f64, offset: f64| {
         format!("<mimic joint=\"{joint}\" multiplier=\"{multiplier}\" offset=\"{offset}\"/>")
     };
-    let ends = |parent, child| [parent, child];
+    let [knee, ankle] = [mimic("left_hip", 1.7, 0.3), mimic("left_hip", 0.3, -0.1)];
+    let slide = mimic("right_hip", 0.125, 0.2);
     urdf::robot(&[
         urdf::link("torso", 4.0, [0.05, 0.1], 0.08, ""),
         urdf::link("left_thigh", 1.0, [0.0, -0.2], 0.01, ""),
@@ -101,30 +90,12 @@ fn follower() -> String {
         urdf::link("right_thigh", 0.8, [0.0, -0.1], 0.009, ""),
         urdf::link("right_foot", 0.4, [0.0, -0.1], 0.003, ""),
         urdf::link("tail", 0.3, [-0.3, 0.0], 0.004, ""),
-        urdf::joint("left_hip", Axis::Revolute(1.0), ends("torso", "left_thigh"), [0.1, -0.1], ""),
-        urdf::joint(
-            "left_knee",
-            Axis::Revolute(-1.0),
-            ends("left_thigh", "left_shank"),
-            [0.0, -0.4],
-            &mimic("left_hip", 1.7, 0.3),
-        ),
-        urdf::joint(
-            "left_ankle",
-            Axis::Revolute(1.0),
-            ends("left_shank", "left_toe"),
-            [0.0, -0.4],
-            &mimic("left_hip", 0.3, -0.1),
-        ),
-        urdf::joint("right_hip", Axis::Revolute(-1.0), ends("torso", "right_thigh"), [-0.1, -0.1], ""),
-        urdf::joint(
-            "right_slide",
-            Axis::Prismatic([0.6, -0.8]),
-            ends("right_thigh", "right_foot"),
-            [0.0, -0.2],
-            &mimic("right_hip", 0.125, 0.2),
-        ),
-        urdf::joint("tail", Axis::Revolute(1.0), ends("torso", "tail"), [-0.2, 0.1], ""),
+        urdf::joint("left_hip", Axis::Revolute(1.0), ["torso", "left_thigh"], [0.1, -0.1], ""),
+        urdf::joint("left_knee", Axis::Revolute(-1.0), ["left_thigh", "left_shank"], [0.0, -0.4], &knee),
+        urdf::joint("left_ankle", Axis::Revolute(1.0), ["left_shank", "left_toe"], [0.0, -0.4], &ankle),
+        urdf::joint("right_hip", Axis::Revolute(-1.0), ["torso", "right_thigh"], [-0.1, -0.1], ""),
+        urdf::joint("right_slide", Axis::Prismatic([0.6, -0.8]), ["right_thigh", "right_foot"], [0.0, -0.2], &slide),
+        urdf::joint("tail", Axis::Revolute(1.0), ["torso", "tail"], [-0.2, 0.1], ""),
     ])
 }
 
@@ -148,57 +119,27 @@ fn close_five_bars(q: &mut [f64]) {
 /// Robots with mimic joints, with a loop, on a fixed base, and chains of random masses, one of which is solved by
 /// articulated bodies alone, for states in sustained contact.
 pub fn tied_models(random: &mut Random) -> Vec<Model> {
-    let model = |name, urdf: &str, most, feet: &[(&str, [f64; 3], f64)]| {
-        let robot = Robot::from_urdf(urdf).unwrap_or_else(|error| panic!("{name}: {error}"));
-        let link = |name: &str| robot.link(name).unwrap_or_else(|| panic!("no link {name}"));
-        let foot = |&(name, offset, radius): &(&str, [f64; 3], f64)| NamedContact { link: link(name), offset, radius };
-        Model {
-            name,
-            feet: feet.iter().map(foot).collect(),
-            robot,
-            touching: most,
-            most,
-            loops: Vec::new(),
-            closing: |_| {},
-        }
-    };
-    let mut five_bar = model(
-        "five_bar",
-        &read("urdf/five_bar.urdf"),
-        2,
-        &[("left_shank", [0.0, 0.0, -0.5], 0.0), ("torso", [-0.3, 0.0, 0.0], 0.05), ("torso", [0.2, 0.0, 0.3], 0.0)],
-    );
+    let feet =
+        [("left_shank", [0.0, 0.0, -0.5], 0.0), ("torso", [-0.3, 0.0, 0.0], 0.05), ("torso", [0.2, 0.0, 0.3], 0.0)];
+    let mut five_bar = Model::new("five_bar", &read("urdf/five_bar.urdf"), 2, &feet);
     let end = |link: &str| LinkPoint { link: five_bar.robot.link(link).unwrap_or(0), offset: [0.0, 0.0, -0.5] };
     five_bar.loops = vec![NamedLoop { a: end("left_shank"), b: end("right_shank") }];
     five_bar.closing = close_five_bars;
-    let follower = model(
-        "follower",
-        &follower(),
-        2,
-        &[
-            ("left_toe", [0.1, 0.0, -0.05], 0.0),
-            ("right_foot", [0.0, 0.0, -0.3], 0.03),
-            ("tail", [-0.5, 0.0, 0.0], 0.0),
-        ],
-    );
+    let feet =
+        [("left_toe", [0.1, 0.0, -0.05], 0.0), ("right_foot", [0.0, 0.0, -0.3], 0.03), ("tail", [-0.5, 0.0, 0.0], 0.0)];
+    let follower = Model::new("follower", &follower(), 2, &feet);
     let acrobot = read("tests/data/robots/acrobot/Acrobot.urdf");
-    let acrobot = model("acrobot", &acrobot, 1, &[("lower_link", [0.0, 0.0, -2.0], 0.1)]);
+    let acrobot = Model::new("acrobot", &acrobot, 1, &[("lower_link", [0.0, 0.0, -2.0], 0.1)]);
     vec![five_bar, follower, acrobot, chain(10, random), chain(26, random)]
 }
 
 /// The robots, each with up to four feet.
 pub fn models() -> Vec<Model> {
     let model = |name, urdf: &str, touching, feet: &[(&str, [f64; 3], f64)]| {
-        let robot = Robot::from_urdf(urdf).unwrap_or_else(|error| panic!("{name}: {error}"));
-        let foot = |&(link, offset, radius): &(&str, [f64; 3], f64)| NamedContact {
-            link: robot.link(link).unwrap_or_else(|| panic!("{name} has no link {link}")),
-            offset,
-            radius,
-        };
+        let model = Model::new(name, urdf, touching, feet);
         // With more rows than coordinates contacts depend on each other; of that only what two flat feet bring.
-        let most = if touching > 2 { touching } else { feet.len().min(robot.dofs() / 2).max(touching) };
-        let feet = feet.iter().map(foot).collect();
-        Model { name, feet, robot, touching, most, loops: Vec::new(), closing: |_| {} }
+        let most = if touching > 2 { touching } else { feet.len().min(model.robot.dofs() / 2).max(touching) };
+        Model { most, ..model }
     };
     let end = |z: f64| [0.0, 0.0, z];
     let legs = [("left_leg", end(-1.0), 0.0), ("right_leg", end(-1.0), 0.0)];
@@ -208,44 +149,25 @@ pub fn models() -> Vec<Model> {
         ["left_ankle_link", "right_ankle_link"].map(|ankle| [0.17, -0.06].map(|x| (ankle, [x, 0.0, -0.05], 0.0)));
     let hand_and_knee = [("left_elbow_link", [0.3, 0.0, -0.01], 0.02), ("left_knee_link", [0.03, 0.0, -0.2], 0.02)];
     let solo = ["FL_LOWER_LEG", "FR_LOWER_LEG", "HL_LOWER_LEG", "HR_LOWER_LEG"].map(|leg| (leg, end(-0.16), 0.0));
+    let leaning = [round[0], round[1], ("torso", [0.05, 0.0, 0.2], 0.04)];
+    let shins = [("right_shin", end(0.4), 0.0), ("left_shin", end(0.4), 0.0), ("torso", end(0.48), 0.0)];
+    let wheels = [("left_wheel_tire", end(0.0), 0.05), ("right_wheel_tire", end(0.0), 0.05)];
+    // A body that stands on two corners, and has three ways to move for their four rows.
+    let sled = urdf::robot(&[urdf::link("sled", 3.0, [0.1, 0.2], 0.05, "")]);
+    let corners = [("sled", [0.4, 0.0, 0.0], 0.0), ("sled", [-0.3, 0.0, 0.0], 0.0)];
+    let slides = [("left_foot", end(-0.2), 0.02), ("right_foot", end(-0.5), 0.0), ("torso", [0.2, 0.0, 0.3], 0.0)];
     vec![
         model("minimalistic", &read("urdf/minimalistic.urdf"), 2, &legs),
         model("pdw", &read("urdf/pdw.urdf"), 2, &legs),
         model("ramone", &read("urdf/ramone.urdf"), 2, &round),
-        model(
-            "ramone_paper",
-            &read("urdf/ramone_paper.urdf"),
-            3,
-            &[round[0], round[1], ("torso", [0.05, 0.0, 0.2], 0.04)],
-        ),
-        model(
-            "rabbit",
-            &read("tests/data/robots/rabbit/five_link_walker.urdf"),
-            2,
-            &[("right_shin", end(0.4), 0.0), ("left_shin", end(0.4), 0.0), ("torso", end(0.48), 0.0)],
-        ),
-        model(
-            "upkie",
-            &read("tests/data/robots/upkie/upkie.urdf"),
-            2,
-            &[("left_wheel_tire", end(0.0), 0.05), ("right_wheel_tire", end(0.0), 0.05)],
-        ),
+        model("ramone_paper", &read("urdf/ramone_paper.urdf"), 3, &leaning),
+        model("rabbit", &read("tests/data/robots/rabbit/five_link_walker.urdf"), 2, &shins),
+        model("upkie", &read("tests/data/robots/upkie/upkie.urdf"), 2, &wheels),
         model("solo8", &read("tests/data/robots/solo8/solo.urdf"), 4, &solo),
         model("h1_planar", &h1, 2, &[left[0], right[1], hand_and_knee[0], hand_and_knee[1]]),
         model("h1_flat", &h1, 2, &[left, right].concat()),
-        // A body that stands on two corners, and has three ways to move for their four rows.
-        model(
-            "sled",
-            &urdf::robot(&[urdf::link("sled", 3.0, [0.1, 0.2], 0.05, "")]),
-            2,
-            &[("sled", [0.4, 0.0, 0.0], 0.0), ("sled", [-0.3, 0.0, 0.0], 0.0)],
-        ),
-        model(
-            "telescope",
-            &telescope(),
-            3,
-            &[("left_foot", end(-0.2), 0.02), ("right_foot", end(-0.5), 0.0), ("torso", [0.2, 0.0, 0.3], 0.0)],
-        ),
+        model("sled", &sled, 2, &corners),
+        model("telescope", &telescope(), 3, &slides),
     ]
 }
 
@@ -258,6 +180,19 @@ impl Random {
 }
 
 impl Model {
+    /// A robot with these points of links for feet, of which `touching` touch.
+    fn new(name: &'static str, urdf: &str, touching: usize, feet: &[(impl AsRef<str>, [f64; 3], f64)]) -> Self {
+        let robot = Robot::from_urdf(urdf).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let link = |link: &str| robot.link(link).unwrap_or_else(|| panic!("{name} has no link {link}"));
+        let feet = feet.iter().map(|(own, offset, radius)| NamedContact {
+            link: link(own.as_ref()),
+            offset: *offset,
+            radius: *radius,
+        });
+        let feet = feet.collect();
+        Self { name, robot, feet, touching, most: touching, loops: Vec::new(), closing: |_| {} }
+    }
+
     /// A state with one to four of the robot's feet as contacts.
     pub fn random(&self, random: &mut Random) -> State {
         let dofs = self.robot.dofs();
@@ -308,12 +243,8 @@ impl Model {
         let ends = self.loops.iter().flat_map(|own| [own.a, own.b]);
         let ends = ends.map(|LinkPoint { link, offset }| NamedContact { link, offset, radius: 0.0 });
         let rows_of = |contacts: Vec<NamedContact>, ground: Ground| {
-            let scene = Scene {
-                contacts: Some(contacts),
-                ground,
-                friction: ByLink::everywhere(Friction::ZERO),
-                ..Scene::default()
-            };
+            let (contacts, friction) = (Some(contacts), ByLink::everywhere(Friction::ZERO));
+            let scene = Scene { contacts, ground, friction, ..Scene::default() };
             let loose = State { scene, ..state.clone() };
             Some(Pipeline::new(&self.robot, options.clone()).impact(&loose).ok()?.matrices?.contact_jacobian)
         };

@@ -91,7 +91,8 @@ fn check_rounding(
     place: impl Fn() -> String,
 ) {
     let own = problem.velocity_free().as_flattened();
-    let exact = dynamics::problem::<Ball>(&model.robot, state, &[], Some(&found.slips), 256).expect("a regular M");
+    let exact = dynamics::problem::<Ball>(&model.robot, state, &[], Some(&found.slips), 256, false);
+    let exact = exact.expect("a regular M");
     let size = own.iter().fold(1.0, |size: f64, entry| size.max(entry.abs()));
     for ((&own, exact), &bound) in own.iter().zip(&exact.free).zip(found.rounding.as_flattened()) {
         let off = exact.minus(&Ball::new(own, 256)).size();
