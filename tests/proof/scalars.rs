@@ -84,12 +84,8 @@ fn run<T: Real>(half_tangents: [T; 5]) -> Vec<T> {
     factorize(&plan, &mut workspace);
     let contacts = ["left_foot", "right_foot"].map(|name| {
         let link = &robot.links[robot.link(name).expect("a foot")];
-        ContactPoint {
-            body: link.body,
-            center: link.point([0.0; 3]).map(T::from_f64),
-            radius: T::from_f64(0.02815),
-            ground: Rotation::identity(),
-        }
+        let (center, radius) = (link.point([0.0; 3]).map(T::from_f64), T::from_f64(0.02815));
+        ContactPoint { body: link.body, center, radius, ground: Rotation::identity() }
     });
     contact_jacobian(&plan, &contacts, &VELOCITY.map(T::from_f64), None, &mut workspace);
     delassus(&plan, &mut workspace);

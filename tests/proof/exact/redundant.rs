@@ -83,25 +83,16 @@ impl Mechanism {
 
     fn problem(&self) -> Problem {
         let [_, delassus] = delassus(&self.mass_matrix(), &self.jacobian).expect("masses");
-        Problem {
-            delassus,
-            velocity_before: times(&self.jacobian, &self.velocity),
-            friction: self.friction.clone(),
-            restitution: self.restitution.clone(),
-        }
+        let (friction, restitution) = (self.friction.clone(), self.restitution.clone());
+        Problem { delassus, velocity_before: times(&self.jacobian, &self.velocity), friction, restitution }
     }
 
     fn analysis(&self, rejections: ListedRejections) -> Analysis {
         let rows = |matrix: &Matrix| matrix.iter().map(|row| numbers(row)).collect::<Vec<_>>();
         let friction = self.friction.iter().map(rounded).collect();
         let (masses, jacobian) = (rows(&self.mass_matrix()), rows(&self.jacobian));
-        let problem = ContactProblem::from_dynamics(
-            &masses,
-            &jacobian,
-            &numbers(&self.velocity),
-            friction,
-            numbers(&self.restitution),
-        );
+        let (velocity, restitution) = (numbers(&self.velocity), numbers(&self.restitution));
+        let problem = ContactProblem::from_dynamics(&masses, &jacobian, &velocity, friction, restitution);
         impact::analyze(&problem.expect("a contact problem"), rejections).expect("few contacts")
     }
 }
