@@ -47,6 +47,14 @@ impl Run {
         assert_eq!((self.status, self.stdout.as_str()), (status, ""), "{:?}\n{}", self.arguments, self.stderr);
         self.stderr
     }
+
+    /// Asserts such an end, with these words on standard error.
+    #[track_caller]
+    pub fn refusal_with(self, status: i32, words: &str) {
+        let arguments = self.arguments.clone();
+        let stderr = self.refusal(status);
+        assert!(stderr.contains(words), "{arguments:?}: {stderr}");
+    }
 }
 
 pub fn heelstrike(args: &[&str]) -> Run {

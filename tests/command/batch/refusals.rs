@@ -178,8 +178,7 @@ fn a_column_that_resembles_a_missing_one_is_refused() {
         ("pitch", "did you mean q_base_pitch? or v_base_pitch?"),
     ] {
         let given = if columns == "pitch" { "v_base_z" } else { given };
-        let stderr = batch(&arguments, table(&format!("{given},{columns}"))).refusal(1);
-        assert!(stderr.contains(&format!("\nhint: {hint}")), "{columns}: {stderr}");
+        batch(&arguments, table(&format!("{given},{columns}"))).refusal_with(1, &format!("\nhint: {hint}"));
     }
     // It is near no column that the table lacks, or said to be foreign.
     for (columns, more) in [
@@ -198,6 +197,6 @@ fn a_column_that_resembles_a_missing_one_is_refused() {
     }
     // An acceleration and a force are not the velocity that the table lacks.
     batch(&arguments, table(&format!("{given},a_base_z,tau_base_z"))).well();
-    let absent = batch(&[&arguments[..], &["--foreign", "nobody"]].concat(), table(given)).refusal(1);
-    assert!(absent.contains("column \"nobody\", given as foreign, is missing"), "{absent}");
+    batch(&[&arguments[..], &["--foreign", "nobody"]].concat(), table(given))
+        .refusal_with(1, "column \"nobody\", given as foreign, is missing");
 }

@@ -146,8 +146,7 @@ fn answers_of_another_run_are_not_continued() {
         (input.as_str(), &["--explain", "--resume"]),
         (&strike(1, 0.0), &["--resume"]),
     ] {
-        let stderr = into(&output, input, options).refusal(1);
-        assert!(stderr.contains("it was begun with other answers"), "{stderr}");
+        into(&output, input, options).refusal_with(1, "it was begun with other answers");
         assert_eq!(read(&output), before);
     }
     assert_eq!(batch(&["-", "--resume"], "").status, 2, "an output is needed");
@@ -184,8 +183,7 @@ fn a_killed_run_is_continued_by_the_same_alone() {
     killed(&output, &input, &[]);
     let begun = read(&part);
     let refused = |run: Run, what: &str| {
-        let stderr = run.refusal(1);
-        assert!(stderr.contains(&format!("{part}: it was begun {what}: give what it was begun with")), "{stderr}");
+        run.refusal_with(1, &format!("{part}: it was begun {what}: give what it was begun with"));
         assert!(read(&part) == begun && !fs::exists(&output).expect("known"), "{what}");
     };
     // Each differs in the first answer, or in none, and the last hundred are those of states at rest.
@@ -215,8 +213,8 @@ fn answers_without_a_record_are_all_compared() {
     let (output, input) = (place("whole.ndjson"), strike_and_rest(1.0));
     into(&output, &input, &[]).well();
     let whole = read(&output);
-    let stderr = into(&output, &strike_and_rest(2.0), &["--resume"]).refusal(1);
-    assert!(stderr.contains(&format!("{output}: it was begun with other answers")), "{stderr}");
+    into(&output, &strike_and_rest(2.0), &["--resume"])
+        .refusal_with(1, &format!("{output}: it was begun with other answers"));
     assert_eq!(read(&output), whole);
     // The record of a part does not stand for a whole file next to it.
     killed(&output, &strike_and_rest(2.0), &[]);
@@ -239,8 +237,7 @@ fn options_that_few_answers_show_are_compared() {
     run("0.6", &[]);
     let begun = read(&output).split_inclusive('\n').take(70).collect::<String>();
     fs::write(&output, &begun).expect("a file");
-    let stderr = run("0.1", &["--resume"]).refusal(1);
-    assert!(stderr.contains("it was begun with other answers"), "{stderr}");
+    run("0.1", &["--resume"]).refusal_with(1, "it was begun with other answers");
     assert_eq!(read(&output), begun);
 }
 
