@@ -45,13 +45,8 @@ fn order_broken_by_path_or_reexport_is_found() {
         violations(&files.map(|(name, text)| (path(name), text.to_owned())).into())
     };
     assert!(tree("// use crate::below::Thing;").is_empty());
-    let wrong = [
-        "use crate::below::Thing;",
-        "use crate::{above, Thing};",
-        "use super::Second;",
-        "fn f(_: super::second::S) {}",
-    ];
-    for wrong in wrong {
+    let uses = ["use crate::below::Thing;", "use crate::{above, Thing};", "use super::Second;"];
+    for wrong in uses.into_iter().chain(["fn f(_: super::second::S) {}"]) {
         assert_eq!(tree(wrong).len(), 1, "{wrong}");
     }
 }

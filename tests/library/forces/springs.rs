@@ -141,41 +141,20 @@ fn held_joint_carries_its_load_through() {
 #[test]
 fn springs_are_refused_with_place_and_remedy() {
     let robot = arm(Base::Floating);
+    let (arm, origin, axes) = (json!({"link": "arm"}), json!({"world": [0, 0]}), "one number along x and one along z");
+    let two_ends = json!({"a": arm, "b": {"link": "body", "world": [0, 0]}});
+    let pitched = json!({"a": arm, "b": origin, "pitch": {"force": 5}});
+    let stiff = json!({"a": arm, "b": {"world": [0, 1e300]}, "stiffness": [0, 1e300]});
     for (spring, place, reason, remedy) in [
-        (json!({"b": {"world": [0, 0]}}), "virtual[0]", "\"a\" is missing", "two ends"),
-        (json!({"a": {"link": "arm"}}), "virtual[0]", "\"b\" is missing", "two ends"),
-        (json!({"a": {"link": "arn"}, "b": {"world": [0, 0]}}), "virtual[0].a.link", "arn", "did you mean arm?"),
-        (json!({"a": {"link": "arm"}, "b": {}}), "virtual[0].b", "\"link\" is missing", "name a link, or give a place"),
-        (
-            json!({"a": {"link": "arm"}, "b": {"link": "body", "world": [0, 0]}}),
-            "virtual[0].b.world",
-            "either on a link or in the world",
-            "leave out either",
-        ),
-        (
-            json!({"a": {"link": "arm"}, "b": {"world": [0, 0, 0]}}),
-            "virtual[0].b.world",
-            "found 3 entries",
-            "one number along x and one along z",
-        ),
-        (
-            json!({"a": {"link": "arm"}, "b": {"world": [0, 0]}, "stiffness": 5}),
-            "virtual[0].stiffness",
-            "a list of 2 numbers",
-            "one number along x and one along z",
-        ),
-        (
-            json!({"a": {"link": "arm"}, "b": {"world": [0, 0]}, "pitch": {"force": 5}}),
-            "virtual[0].pitch.force",
-            "unknown field",
-            "stiffness, damping, target",
-        ),
-        (
-            json!({"a": {"link": "arm"}, "b": {"world": [0, 1e300]}, "stiffness": [0, 1e300]}),
-            "virtual",
-            "the force of a virtual spring",
-            "SI units",
-        ),
+        (json!({"b": origin}), "virtual[0]", "\"a\" is missing", "two ends"),
+        (json!({"a": arm}), "virtual[0]", "\"b\" is missing", "two ends"),
+        (json!({"a": {"link": "arn"}, "b": origin}), "virtual[0].a.link", "arn", "did you mean arm?"),
+        (json!({"a": arm, "b": {}}), "virtual[0].b", "\"link\" is missing", "name a link, or give a place"),
+        (two_ends, "virtual[0].b.world", "either on a link or in the world", "leave out either"),
+        (json!({"a": arm, "b": {"world": [0, 0, 0]}}), "virtual[0].b.world", "found 3 entries", axes),
+        (json!({"a": arm, "b": origin, "stiffness": 5}), "virtual[0].stiffness", "a list of 2 numbers", axes),
+        (pitched, "virtual[0].pitch.force", "unknown field", "stiffness, damping, target"),
+        (stiff, "virtual", "the force of a virtual spring", "SI units"),
     ] {
         let error = try_forces(&robot, json!({"contacts": [], "virtual": [spring]})).unwrap_err();
         assert_eq!(error.place(), Some(place), "{error}");

@@ -63,13 +63,8 @@ fn inner_points_are_reported_and_listed_ones_kept() {
         urdf::link(name, 1.0, [0.0; 2], 0.1, &urdf::collision([0.0; 2], &format!("box size=\"{width} 0.1 0.2\"")))
     };
     let weld = |to: &str| urdf::joint(format!("to_{to}"), urdf::Axis::Fixed, ["foot", to], [0.0; 2], "");
-    let robot = robot(&urdf::robot(&[
-        foot("foot", 0.4),
-        foot("plate", 0.2),
-        weld("plate"),
-        foot("rubber", 0.3),
-        weld("rubber"),
-    ]));
+    let feet = [foot("foot", 0.4), foot("plate", 0.2), foot("rubber", 0.3), weld("plate"), weld("rubber")];
+    let robot = robot(&urdf::robot(&feet));
     let mut state = json!({"position": {"base": {"z": 0.1}}, "velocity": {"base": {"z": -1.0}},
         "friction": {"default": 0.5, "rubber": 0.7}});
     let found = impact(&robot, &state);

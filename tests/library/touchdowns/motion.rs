@@ -151,14 +151,8 @@ fn rates_before_another_foots_impact_are_not_used() {
     let stopped = [[0.04, 0.004, 0.0], [0.05, 0.004, 0.0]];
     let mut table = "time,q_base_z,q_ja,v_ja\n".to_owned();
     table.extend(rows.iter().chain(&stopped).map(|[time, a, rate]| format!("{time},0.1,{a},{rate}\n")));
-    let found = touchdowns(
-        Heights::Recorded,
-        &robot,
-        &[],
-        samples(&table, &robot, Rates::Columns),
-        At::Crossing,
-        Touching::Strike,
-    );
+    let rows = samples(&table, &robot, Rates::Columns);
+    let found = touchdowns(Heights::Recorded, &robot, &[], rows, At::Crossing, Touching::Strike);
     let [Sample { state, time, .. }] = &found[..] else { panic!("one touchdown: {found:?}") };
     assert_near(*time, 0.03 + (0.01 - 0.004), 1e-12);
     assert_near(state.velocity[3], -1.0, 1e-12);
