@@ -1,6 +1,6 @@
 //! Budgets of work: what is open when one ends, and that it costs nothing where it is not needed.
 
-use crate::support::impact::{robot, try_impact};
+use crate::support::impact::{ramone, try_impact};
 use crate::support::nearly::nearly_dependent;
 use crate::sweep::studies::with;
 use heelstrike::budget::{BudgetSpent, SharedBudget};
@@ -8,7 +8,7 @@ use heelstrike::impact::{Analysis, AnalysisOptions, OpenCombinations, Scratch};
 use heelstrike::pipeline::Options;
 use heelstrike::read::{Problem, Study};
 use heelstrike::sweep::{Findings, Workers};
-use heelstrike::{Budget, Defaults, Reason, Robot, Verdict};
+use heelstrike::{Budget, Defaults, Reason, Verdict};
 use serde_json::json;
 use std::cell::Cell;
 use std::time::Duration;
@@ -55,10 +55,6 @@ fn a_budget_that_suffices_changes_nothing() {
 }
 
 const STRIKE: &str = include_str!("../../examples/ramone.json");
-
-fn ramone() -> Robot {
-    robot(include_str!("../../urdf/ramone.urdf"))
-}
 
 #[test]
 fn a_usual_state_never_reads_the_clock() {

@@ -1,6 +1,6 @@
 //! Joints outside the limits of the robot's file: noted, or refused where that is asked for.
 
-use crate::support::impact::{reduced, robot, try_impact};
+use crate::support::impact::{ramone, reduced, robot, try_impact};
 use crate::support::urdf::{self, Axis, HINGE, joint, link};
 use heelstrike::Robot;
 use heelstrike::pipeline::Options;
@@ -65,10 +65,9 @@ fn whole_numbers_beyond_a_turn_look_like_degrees() {
     assert!(notes(&limited(Axis::Prismatic([0.0, 1.0]), ""), 30.0, 0.0).is_empty());
     // A base with legs does not, nor does a hip that carries a knee.
     assert_eq!(notes(&free, 6.0, -12.34), ["pitch = -12.34 rad is more than a turn; degrees?"]);
-    let ramone = Robot::from_urdf(include_str!("../../urdf/ramone.urdf")).expect("a good robot");
     let joints = json!({"left_hip": -28.65, "left_knee": 57.3});
     let state = json!({"position": {"base": {"z": 2}, "joints": joints}, "friction": 1});
-    let notes = try_impact(&ramone, Options::default(), state).expect("an answer").notes;
+    let notes = try_impact(&ramone(), Options::default(), state).expect("an answer").notes;
     let odd: Vec<_> = notes.iter().filter(|note| note.contains("more than a turn")).collect();
     assert_eq!(odd, ["left_hip = -28.65 rad is more than a turn; degrees?"]);
 }
@@ -76,8 +75,7 @@ fn whole_numbers_beyond_a_turn_look_like_degrees() {
 #[test]
 fn a_deep_foot_of_a_pose_in_degrees_is_no_riddle() {
     let state = json!({"position": {"base": {"z": -1, "pitch": 90}}});
-    let ramone = Robot::from_urdf(include_str!("../../urdf/ramone.urdf")).expect("a good robot");
-    let error = try_impact(&ramone, Options::default(), state).expect_err("in the ground");
+    let error = try_impact(&ramone(), Options::default(), state).expect_err("in the ground");
     assert!(error.remedy().is_some_and(|remedy| remedy.ends_with("pitch = 90 rad is more than a turn; degrees?")));
 }
 

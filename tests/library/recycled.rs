@@ -1,6 +1,6 @@
 //! A pipeline keeps memory from answer to answer, and nothing else.
 
-use crate::support::impact::robot;
+use crate::support::impact::ramone;
 use heelstrike::pipeline::{Aspect, Options, Pipeline};
 use heelstrike::{Defaults, Friction, State};
 
@@ -24,7 +24,7 @@ const QUESTIONS: [(Aspect, &str); 8] = [
 
 #[test]
 fn answers_do_not_depend_on_those_before() {
-    let robot = robot(include_str!("../../urdf/ramone.urdf"));
+    let robot = ramone();
     let options = Options { matrices: true, friction_needed: true, explain_up_to: 2, ..Options::default() };
     let defaults = Defaults { friction: Some(Friction::Finite(0.5)), ..Defaults::default() };
     let ask = |pipeline: &mut Pipeline, aspect, text| {

@@ -1,6 +1,6 @@
 //! What once went wrong, each with what it should be; found by reviews and by comparison with an exact solver.
 
-use crate::support::impact::{impact, robot, try_impact};
+use crate::support::impact::{impact, ramone, robot, try_impact};
 use crate::support::urdf::{self, HINGE, POINT, collision, joint, link};
 use heelstrike::Robot;
 use heelstrike::impact::{
@@ -26,10 +26,6 @@ fn modes(analysis: &Analysis) -> Vec<&[Mode]> {
 
 fn near(found: f64, expected: f64) -> bool {
     (found - expected).abs() < 1e-13
-}
-
-fn ramone() -> Robot {
-    robot(include_str!("../../urdf/ramone.urdf"))
 }
 
 /// A body on two legs that end in flat feet, 0.2 m long, of which the left one is 0.3 m ahead.

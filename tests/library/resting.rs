@@ -1,18 +1,15 @@
 //! Contacts that rest but for rounding, and others that depend on them: a state whose numbers are exact has the outcomes
 //! of the same state with its rates off by less than f64 resolves.
 
-use crate::support::impact::{impact, modes, robot, try_impact};
+use crate::support::impact::{impact, is_proven, modes, robot, try_impact};
+use crate::support::mechanism::{point, turned};
 use crate::support::random::Random;
 use crate::support::scaled::near;
 use crate::support::urdf::{self, Axis, HINGE};
 use heelstrike::impact::Mode::{Separate, SlideMinus, Stick};
 use heelstrike::impact::Verdict;
-use heelstrike::pipeline::{Impact, Options};
+use heelstrike::pipeline::Options;
 use serde_json::{Value, json};
-
-fn is_proven(impact: &Impact) -> bool {
-    impact.analysis.as_ref().is_some_and(|analysis| analysis.proven)
-}
 
 /// A slide on the world, one on it and an arm: three contacts on three degrees of freedom, of which the arm's point rests
 /// to 1.6e-16 m/s. The base cannot move with it.
@@ -27,14 +24,13 @@ fn a_bolted_robot_strikes_beside_a_point_that_rests() {
         urdf::joint("up", Axis::Prismatic([0.3, 1.0]), ["first", "second"], [0.0; 2], ""),
         urdf::joint("shoulder", HINGE, ["second", "arm"], [0.0; 2], ""),
     ]));
-    let contact = |link: &str, offset: [f64; 3]| json!({"link": link, "offset": offset});
     let rates = [0.81, 1.705_643_157_221_622_9, 2.576_030_364_490_954_6];
     let found = impact(
         &robot,
         json!({
             "position": {"joints": {"shoulder": 0.4}}, "friction": 1.5,
             "velocity": {"joints": {"along": rates[0], "up": rates[1], "shoulder": rates[2]}},
-            "contacts": [contact("first", [0.0; 3]), contact("second", [0.0; 3]), contact("arm", [0.5, 0.0, -0.2])],
+            "contacts": [point("first", [0.0; 2]), point("second", [0.0; 2]), point("arm", [0.5, -0.2])],
         }),
     );
     assert_eq!(found.resting, [false, false, true]);
@@ -46,12 +42,10 @@ fn a_bolted_robot_strikes_beside_a_point_that_rests() {
 /// A torso on two hinged legs at `rates` [x, z, pitch, left, right]; a point of the torso is between the feet.
 fn squatting(rates: [f64; 5], friction: &Value) -> Value {
     let [x, z, pitch, left, right] = rates;
-    let contact = |link: &str, offset: [f64; 3]| json!({"link": link, "offset": offset});
     json!({
         "position": {"base": {"z": 1}}, "friction": friction,
         "velocity": {"base": {"x": x, "z": z, "pitch": pitch}, "joints": {"left": left, "right": right}},
-        "contacts": [contact("torso", [0.125, 0.0, -1.0]), contact("left_leg", [-0.25, 0.0, -1.0]),
-            contact("right_leg", [0.25, 0.0, -1.0])],
+        "contacts": [point("torso", [0.125, -1.0]), point("left_leg", [-0.25, -1.0]), point("right_leg", [0.25, -1.0])],
     })
 }
 
@@ -84,8 +78,7 @@ fn a_torso_lands_between_two_feet_that_rest_to_rounding() {
 #[test]
 fn two_points_at_rest_hold_their_body() {
     let robot = robot(&urdf::body(0.0625, ""));
-    let contacts = [[0.0, -0.09375], [-0.125, -0.125], [0.25, -0.125]]
-        .map(|[x, z]: [f64; 2]| json!({"link": "body", "offset": [x, 0.0, z]}));
+    let contacts = [[0.0, -0.09375], [-0.125, -0.125], [0.25, -0.125]].map(|at| point("body", at));
     let state = json!({"position": {"base": {"z": 0.125}}, "velocity": {"base": {"x": 0.125, "pitch": 1}},
         "friction": 0.5, "contacts": contacts});
     let options = Options { resting_speed: Some(0.2), ..Options::default() };
@@ -104,14 +97,12 @@ fn a_held_joint_swings_a_leg_over_a_foot_at_rest() {
         urdf::joint("hip", HINGE, ["leg", "stand"], [0.0; 2], ""),
     ]));
     let reach = 1.139_493_927_324_549;
-    let contact = |link: &str, offset: [f64; 3]| json!({"link": link, "offset": offset});
     let found = impact(
         &robot,
         json!({
             "position": {"base": {"z": 1, "pitch": -0.5}, "joints": {"hip": 0.4}}, "friction": 0.5, "held": ["hip"],
             "velocity": {"base": {"pitch": 1}, "joints": {"hip": -1}},
-            "contacts": [contact("stand", [-0.1, 0.0, -0.98]), contact("stand", [0.1, 0.0, -1.0]),
-                contact("leg", [0.0, 0.0, -reach])],
+            "contacts": [point("stand", [-0.1, -0.98]), point("stand", [0.1, -1.0]), point("leg", [0.0, -reach])],
         }),
     );
     // The leg's point moves about the hip.
@@ -141,29 +132,23 @@ fn what_rests_as_given_rests_next_to_a_loop() {
         urdf::joint("j3", HINGE, ["second", "third"], [0.3, -0.58], ""),
     ]));
     // A point of the third link in the frame of the first.
-    let on_first = |[_, j2, j3]: [f64; 3], [x, z]: [f64; 2]| {
-        let turned = |angle: f64, [x, z]: [f64; 2]| {
-            let (sin, cos) = angle.sin_cos();
-            [cos * x + sin * z, cos * z - sin * x]
-        };
-        let [x, z] = turned(j3, [x, z]);
-        let [x, z] = turned(j2, [x + 0.3, z - 0.58]);
-        [x - 0.53, 0.0, z + 0.36]
+    let on_first = |[_, j2, j3]: [f64; 3], at: [f64; 2]| {
+        let [x, z] = turned(at, j3);
+        let [x, z] = turned([x + 0.3, z - 0.58], j2);
+        [x - 0.53, z + 0.36]
     };
     for seed in 0..40 {
         let mut random = Random::new(seed);
         let mut number = || random.between(-1.0, 1.0);
         let (pitch, angles, rate) = (number(), [number(), number(), number()], number());
         let b = [number(), number()];
-        let contact = |x: f64, z: f64| json!({"link": "root", "offset": [x, 0.0, z]});
         let found = impact(
             &robot,
             json!({
                 "position": {"base": {"pitch": pitch}, "joints": {"j1": angles[0], "j2": angles[1], "j3": angles[2]}},
                 "velocity": {"joints": {"j1": rate}}, "friction": 0.8,
-                "contacts": [contact(-0.33, -0.5), contact(0.24, -0.86)],
-                "loops": [{"a": {"link": "first", "offset": on_first(angles, b)}, "b": {"link": "third",
-                    "offset": [b[0], 0.0, b[1]]}}],
+                "contacts": [point("root", [-0.33, -0.5]), point("root", [0.24, -0.86])],
+                "loops": [{"a": point("first", on_first(angles, b)), "b": point("third", b)}],
             }),
         );
         assert!(is_proven(&found), "seed {seed}");

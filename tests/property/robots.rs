@@ -169,18 +169,14 @@ fn units_change_no_verdict_and_no_margin_of_a_robot() {
             let mut units = [1.0; 3];
             units[k] = factor;
             let [mass, length, time] = units;
-            let mut scaled = model.clone();
-            scaled.map_points(|point| point.map(|x| x * length));
-            scaled.contacts.iter_mut().for_each(|(.., radius)| *radius *= length);
-            for link in &mut scaled.mechanism.links {
-                link.mass *= mass;
-                link.moment *= mass * length * length;
+            let mut scaled = Model { mechanism: model.mechanism.in_units(mass, length), ..model.clone() };
+            for (_, point, radius) in &mut scaled.contacts {
+                (*point, *radius) = (point.map(|x| x * length), *radius * length);
             }
-            let slides = |k: usize| k < 2 || (k > 2 && matches!(model.mechanism.links[k - 2].kind, Kind::Slide(_)));
-            let unit = |k: usize| if slides(k) { length } else { 1.0 };
-            scaled.q.iter_mut().enumerate().for_each(|(k, q)| *q *= unit(k));
-            scaled.v.iter_mut().enumerate().for_each(|(k, v)| *v *= unit(k) / time);
-            let seen = |v: &[f64]| v.iter().enumerate().map(|(k, v)| v * time / unit(k)).collect();
+            let units_of_q = model.mechanism.units_of_coordinates(length);
+            scaled.q.iter_mut().zip(&units_of_q).for_each(|(q, unit)| *q *= unit);
+            scaled.v.iter_mut().zip(&units_of_q).for_each(|(v, unit)| *v *= unit / time);
+            let seen = |v: &[f64]| v.iter().zip(&units_of_q).map(|(v, unit)| v * time / unit).collect();
             let context = || format!("units of mass {mass}, length {length}, time {time}, {}", model.report(seed));
             assert_seen([model, &scaled], impact, 1.0, [mass * length / time, length / time], &seen, &context);
         }

@@ -11,6 +11,10 @@ pub fn robot(urdf: &str) -> Robot {
     Robot::from_urdf(urdf).unwrap_or_else(|error| panic!("{error}\n{urdf}"))
 }
 
+pub fn ramone() -> Robot {
+    robot(include_str!("../../urdf/ramone.urdf"))
+}
+
 pub fn reduced(urdf: &str, reduction: &Reduction) -> Robot {
     Robot::reduce(&Description::from_urdf(urdf).expect("a description"), reduction).expect("a robot")
 }
@@ -27,6 +31,10 @@ pub fn impact(robot: &Robot, state: impl Display) -> Box<Impact> {
 
 pub fn outcomes(impact: &Impact) -> &[Outcome] {
     impact.analysis.as_ref().map_or(&[], |analysis| &analysis.outcomes)
+}
+
+pub fn is_proven(impact: &Impact) -> bool {
+    impact.analysis.as_ref().is_some_and(|analysis| analysis.proven)
 }
 
 pub fn modes(impact: &Impact) -> Vec<Vec<Mode>> {

@@ -70,7 +70,7 @@ fn minus([a, b]: Point, [x, z]: Point) -> Point {
 }
 
 /// Turned by a pitch, which tips forward down.
-fn turned([x, z]: Point, pitch: f64) -> Point {
+pub fn turned([x, z]: Point, pitch: f64) -> Point {
     let (sin, cos) = pitch.sin_cos();
     [cos * x + sin * z, cos * z - sin * x]
 }
@@ -135,6 +135,24 @@ impl Mechanism {
                 *point = change(*point);
             }
         }
+    }
+
+    /// In units of which so many make one of the old ones.
+    pub fn in_units(&self, mass: f64, length: f64) -> Self {
+        let mut other = self.clone();
+        other.map_points(|point| point.map(|entry| entry * length));
+        for link in &mut other.links {
+            link.mass *= mass;
+            link.moment *= mass * length * length;
+            link.spheres.iter_mut().for_each(|(_, radius)| *radius *= length);
+        }
+        other
+    }
+
+    /// The unit of length of each coordinate, or 1 of an angle.
+    pub fn units_of_coordinates(&self, length: f64) -> Vec<f64> {
+        let joints = self.links[1..].iter().map(|link| matches!(link.kind, Kind::Slide(_)));
+        [true, true, false].into_iter().chain(joints).map(|slides| if slides { length } else { 1.0 }).collect()
     }
 
     /// Parent and child of a link's joint, seen from this root.

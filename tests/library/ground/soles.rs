@@ -1,6 +1,8 @@
 //! Soles of meshes, whose facets are a micrometer apart: which corners stand.
 
 use super::*;
+use crate::support::impact::is_proven;
+use crate::support::mechanism::turned;
 use crate::support::random::Random;
 use crate::support::scaled::largest;
 use heelstrike::description::Description;
@@ -56,7 +58,7 @@ fn a_symmetric_fall_on_uneven_soles_is_symmetric() {
         for (contact, x) in found.contacts.iter().zip([-0.071, 0.131, -0.071, 0.131]) {
             assert_eq!(contact.point.x, x, "{}", contact.name);
         }
-        assert!(found.analysis.as_ref().is_some_and(|analysis| analysis.proven));
+        assert!(is_proven(&found));
         for outcome in outcomes(&found) {
             assert_eq!(outcome.modes[..2], outcome.modes[2..]);
             let [left_hip, left_ankle, right_hip, right_ankle] = outcome.velocity().skip(3).collect::<Vec<_>>()[..]
@@ -133,10 +135,6 @@ fn a_foot_that_just_misses_is_noted() {
 
 /// A torso, a leg and a foot with a flat sole; torso and leg are pitched by these angles \[rad\] at q = 0.
 fn one_legged([torso, leg]: [f64; 2]) -> Robot {
-    let turned = |[x, z]: [f64; 2], pitch: f64| {
-        let (sin, cos) = pitch.sin_cos();
-        [cos * x + sin * z, cos * z - sin * x]
-    };
     let sole = urdf::collision([0.03, -0.04], "box size=\"0.21 0.1 0.03\"");
     robot(&urdf::robot(&[
         urdf::link("torso", 5.0, turned([0.02, 0.1], torso), 0.07, ""),
@@ -190,6 +188,18 @@ fn circles_on_a_profile_are_not_level_with_points() {
     assert_eq!(analysis.verdict, Verdict::Ambiguous);
 }
 
+/// The state with its foot standing, or with these velocities x and z of its base and the lowest foot on the ground.
+fn placed(mut state: Value, base: Option<[f64; 2]>) -> Value {
+    match base {
+        None => state["stance"] = json!("foot"),
+        Some([x, z]) => {
+            state["place"] = json!("lowest");
+            (state["velocity"]["base"]["x"], state["velocity"]["base"]["z"]) = (json!(x), json!(z));
+        }
+    }
+    state
+}
+
 /// A foot turns about its heel, which rests but for rounding, or for the digits of the rates, and its toe lands: the
 /// answer is that of a heel that stands.
 #[test]
@@ -204,20 +214,13 @@ fn a_toe_lands_about_a_heel_that_rests_to_rounding() {
         let friction = &[json!("infinite"), json!(0.8), json!(0.1)][seed as usize % 3];
         let state = |digits: Option<usize>, base: Option<[f64; 2]>| {
             let written = |rate: f64| digits.map_or(rate, |digits| format!("{rate:.digits$}").parse().unwrap());
-            let mut state = json!({
+            let state = json!({
                 "position": {"base": {"pitch": pitch}, "joints": {"hip": hip, "ankle": -(pitch + hip)}},
                 "velocity": {"base": {"pitch": written(rates[0])},
                     "joints": {joints[0]: written(rates[1]), joints[1]: written(rates[2])}},
                 "friction": friction,
             });
-            match base.map(|base| base.map(written)) {
-                None => state["stance"] = json!("foot"),
-                Some([x, z]) => {
-                    state["place"] = json!("lowest");
-                    (state["velocity"]["base"]["x"], state["velocity"]["base"]["z"]) = (json!(x), json!(z));
-                }
-            }
-            state
+            placed(state, base.map(|base| base.map(written)))
         };
         let options = Options { matrices: true, ..Options::default() };
         let standing = try_impact(&robot, options, state(None, None)).expect("an answer");
@@ -227,7 +230,7 @@ fn a_toe_lands_about_a_heel_that_rests_to_rounding() {
         let base = [along(&jacobian[0]), along(&jacobian[1])];
         for (digits, within) in [(None, 1e-12), (Some(9), 1e-7)] {
             let resting = impact(&robot, state(digits, Some(base)));
-            assert!(resting.resting[0] && resting.analysis.as_ref().is_some_and(|analysis| analysis.proven));
+            assert!(resting.resting[0] && is_proven(&resting));
             assert_eq!(modes(&resting), modes(&standing), "seed {seed}, {digits:?}, turning at {turn}");
             for (one, other) in velocities_after(&resting).iter().zip(velocities_after(&standing)) {
                 assert!(near(one, &other, within * largest(one).max(1.0)), "seed {seed}: {one:?} is not {other:?}");
@@ -256,20 +259,13 @@ fn a_hinged_toe_lands_while_the_heel_rests_to_rounding() {
         let (pitch, hip, rates) = (number(), number(), [number(), number(), 1.5 - number(), number()]);
         let held = if seed % 2 == 0 { json!([]) } else { json!(["ball"]) };
         let state = |base: Option<[f64; 2]>| {
-            let mut state = json!({
+            let state = json!({
                 "position": {"base": {"pitch": pitch}, "joints": {"hip": hip, "ankle": -(pitch + hip)}},
                 "velocity": {"base": {"pitch": rates[0]},
                     "joints": {"hip": rates[1], "ankle": rates[2], "ball": rates[3]}},
                 "friction": if seed % 3 == 0 { json!(0.8) } else { json!("infinite") }, "held": held,
             });
-            match base {
-                None => state["stance"] = json!("foot"),
-                Some([x, z]) => {
-                    state["place"] = json!("lowest");
-                    (state["velocity"]["base"]["x"], state["velocity"]["base"]["z"]) = (json!(x), json!(z));
-                }
-            }
-            state
+            placed(state, base)
         };
         for kept in [false, true] {
             let mut options = Options { matrices: true, ..Options::default() };
@@ -315,8 +311,7 @@ fn a_flat_sole_is_level_in_every_pose() {
         let stands = seed % 4 == 0;
         let posed = impact(&one_legged([0.0; 2]), state([torso, leg - torso, -leg], stands));
         let drawn = impact(&one_legged([torso, leg]), state([0.0; 3], stands));
-        let proven = |impact: &Impact| impact.analysis.as_ref().is_some_and(|analysis| analysis.proven);
-        assert!(proven(&posed) && proven(&drawn), "seed {seed}");
+        assert!(is_proven(&posed) && is_proven(&drawn), "seed {seed}");
         assert_eq!((modes(&posed), posed.contacts.len()), (modes(&drawn), 2), "seed {seed}");
         for (one, other) in velocities_after(&posed).iter().zip(velocities_after(&drawn)) {
             assert!(near(one, &other, 1e-12 * largest(one)), "seed {seed}: {one:?} is not {other:?}");

@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use super::comparison::{FEWER, answer, difference, floating, largest_rate};
 use crate::constraints::assert_struck;
 use crate::support::impact::{modes, outcomes};
-use crate::support::mechanism::{Kind, Link, Mechanism, Point, mechanism, motion};
+use crate::support::mechanism::{Link, Mechanism, Point, mechanism, motion};
 use crate::support::scaled::{largest, near};
 use std::collections::BTreeSet;
 
@@ -114,22 +114,13 @@ proptest! {
     #[test]
     fn units_change_no_outcome(case in case(), exponents in prop::array::uniform3(prop_oneof![Just(0), Just(20), Just(-20)])) {
         let [mass, length, time] = exponents.map(|exponent| f64::exp2(f64::from(exponent)));
-        let Case { mut mechanism, mut q, mut v, mut contacts, .. } = case.clone();
-        let in_length = |point: Point| point.map(|entry| entry * length);
-        mechanism.map_points(in_length);
-        for link in &mut mechanism.links {
-            link.mass *= mass;
-            link.moment *= mass * length * length;
-            link.spheres.iter_mut().for_each(|(_, radius)| *radius *= length);
+        let mut scaled = Case { mechanism: case.mechanism.in_units(mass, length), ..case.clone() };
+        for (_, point, radius) in &mut scaled.contacts {
+            (*point, *radius) = (point.map(|entry| entry * length), *radius * length);
         }
-        for (_, point, radius) in &mut contacts {
-            (*point, *radius) = (in_length(*point), *radius * length);
-        }
-        let slides = |k: usize| k < 2 || (k > 2 && matches!(case.mechanism.links[k - 2].kind, Kind::Slide(_)));
-        let unit = |k: usize| if slides(k) { length } else { 1.0 };
-        q.iter_mut().enumerate().for_each(|(k, q)| *q *= unit(k));
-        v.iter_mut().enumerate().for_each(|(k, v)| *v *= unit(k) / time);
-        let scaled = Case { mechanism, q, v, contacts, ..case.clone() };
+        let units_of_q = case.mechanism.units_of_coordinates(length);
+        scaled.q.iter_mut().zip(&units_of_q).for_each(|(q, unit)| *q *= unit);
+        scaled.v.iter_mut().zip(&units_of_q).for_each(|(v, unit)| *v *= unit / time);
         let [one, other] = [&case, &scaled].map(|case| {
             let robot = floating(&case.mechanism.urdf(0), Reductions::ALL);
             answer(&robot, &case.state(0), Reductions::ALL).expect("an answer")

@@ -1,8 +1,7 @@
 //! Cases whose box is worked out on paper.
 
-use crate::support::impact::{impact, robot, try_impact};
+use crate::support::impact::{impact, ramone, robot, try_impact};
 use crate::support::urdf::{self, HINGE, collision, joint, link};
-use crate::uncertainty::states::ramone;
 use heelstrike::Robot;
 use heelstrike::impact::{Friction, Mode, Verdict};
 use heelstrike::pipeline::robust::Robustness;

@@ -5,11 +5,11 @@
 mod by_hand;
 mod states;
 
-use crate::support::impact::robot;
+use crate::support::impact::{ramone, robot};
 use crate::support::random::Random;
 use heelstrike::pipeline::robust::Robustness;
 use heelstrike::{Robot, state::State};
-use states::{answer, assert_in_the_box, in_the_box, modes, on_both_feet, ramone, walking};
+use states::{answer, assert_in_the_box, in_the_box, modes, on_both_feet, walking};
 use std::time::{Duration, Instant};
 
 /// How many boxes hold, do not, and stay unknown.

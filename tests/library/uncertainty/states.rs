@@ -8,10 +8,6 @@ use heelstrike::pipeline::{Impact, Options, Pipeline};
 use heelstrike::state::{Defaults, State};
 use serde_json::{Value, json};
 
-pub fn ramone() -> Robot {
-    impact::robot(include_str!("../../../urdf/ramone.urdf"))
-}
-
 pub fn answer(robot: &Robot, state: &State) -> Box<Impact> {
     Pipeline::new(robot, Options::default()).impact(state).expect("an answer")
 }
