@@ -78,13 +78,8 @@ impl Table {
     /// That of a robot's feet and contacts that states name.
     pub fn new(aspect: Aspect, robot: &heelstrike::Robot, feet: &[NamedContact], named: &[&str]) -> Self {
         let columns = Columns::without_lines(robot, feet, named, &[], RowKind::of(aspect)).numbered();
-        Self {
-            aspect,
-            coordinates: robot.coordinates().map(str::to_owned).collect(),
-            empty: Arrays::new(&columns),
-            columns,
-            spare: Mutex::default(),
-        }
+        let coordinates = robot.coordinates().map(str::to_owned).collect();
+        Self { aspect, coordinates, empty: Arrays::new(&columns), columns, spare: Mutex::default() }
     }
 
     /// No answer yet, with room for those to so many states.
@@ -213,12 +208,8 @@ impl Answers {
     /// Of each outcome and contact the `Mode`, (m, contacts) of int8; OPEN if the contact is not closed.
     #[getter]
     fn modes(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.array(
-            py,
-            &self.lists.modes,
-            |arrays| &mut arrays.modes,
-            &[self.outcomes, self.table.columns.contacts().len()],
-        )
+        let contacts = self.table.columns.contacts().len();
+        self.array(py, &self.lists.modes, |arrays| &mut arrays.modes, &[self.outcomes, contacts])
     }
 
     /// Of each outcome and contact [tangential, normal] [N s], (m, contacts, 2); NaN if the contact is not closed or the
@@ -226,12 +217,8 @@ impl Answers {
     #[getter]
     fn impulse(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.of(Aspect::Impact, "impulse")?;
-        self.array(
-            py,
-            &self.lists.impulse,
-            |arrays| &mut arrays.impulse,
-            &[self.outcomes, self.table.columns.contacts().len(), 2],
-        )
+        let contacts = self.table.columns.contacts().len();
+        self.array(py, &self.lists.impulse, |arrays| &mut arrays.impulse, &[self.outcomes, contacts, 2])
     }
 
     /// Of each outcome and contact [tangential, normal] [N], (m, contacts, 2); NaN if the contact is not closed or the
@@ -239,36 +226,24 @@ impl Answers {
     #[getter]
     fn force(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.of(Aspect::Forces, "force")?;
-        self.array(
-            py,
-            &self.lists.impulse,
-            |arrays| &mut arrays.impulse,
-            &[self.outcomes, self.table.columns.contacts().len(), 2],
-        )
+        let contacts = self.table.columns.contacts().len();
+        self.array(py, &self.lists.impulse, |arrays| &mut arrays.impulse, &[self.outcomes, contacts, 2])
     }
 
     /// Of each outcome v after the impact, (m, nq) in the order of `coordinates` [m/s, rad/s]; NaN if it is not decided.
     #[getter]
     fn velocity_after(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.of(Aspect::Impact, "velocity_after")?;
-        self.array(
-            py,
-            &self.lists.velocity_after,
-            |arrays| &mut arrays.velocity_after,
-            &[self.outcomes, self.table.coordinates.len()],
-        )
+        let shape = [self.outcomes, self.table.coordinates.len()];
+        self.array(py, &self.lists.velocity_after, |arrays| &mut arrays.velocity_after, &shape)
     }
 
     /// Of each outcome the rate of v, (m, nq) in the order of `coordinates` [m/s^2, rad/s^2]; NaN if it is not decided.
     #[getter]
     fn acceleration(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.of(Aspect::Forces, "acceleration")?;
-        self.array(
-            py,
-            &self.lists.velocity_after,
-            |arrays| &mut arrays.velocity_after,
-            &[self.outcomes, self.table.coordinates.len()],
-        )
+        let shape = [self.outcomes, self.table.coordinates.len()];
+        self.array(py, &self.lists.velocity_after, |arrays| &mut arrays.velocity_after, &shape)
     }
 
     /// Of each outcome the smallest slack, free of units, (m,); NaN if it has no inequality.
