@@ -1,7 +1,6 @@
 //! The robots of the suite, from this repository's URDFs or link by link.
 
 use crate::Result;
-
 use crate::planar::Vector;
 use crate::robot::{Axis, Base, Body, FootShape, Joint, Link, ParentJoint, Robot};
 
@@ -37,13 +36,8 @@ pub fn with_massless_feet() -> Result<Robot> {
         let name = format!("{} foot", robot.links[leg].name);
         let (joint, body) = (robot.joints.len(), robot.bodies.len());
         robot.joints.push(hinge(format!("{name} ankle"), robot.links[leg].body, body, Vector::new(0.0, -1.0)));
-        robot.bodies.push(Body {
-            name: name.clone(),
-            joint: Some(ParentJoint::Joint(joint)),
-            mass: 0.0,
-            com: Vector::zero(),
-            moment: 0.0,
-        });
+        let joint = Some(ParentJoint::Joint(joint));
+        robot.bodies.push(Body { name: name.clone(), joint, mass: 0.0, com: Vector::zero(), moment: 0.0 });
         robot.links.push(point_foot(name, body, Vector::new(0.05, -0.05)));
     }
     Ok(robot)
@@ -123,12 +117,6 @@ fn hinge(name: String, parent: usize, child: usize, origin: Vector<f64>) -> Join
 
 /// A link that is its body and touches the ground with a point.
 fn point_foot(name: String, body: usize, center: Vector<f64>) -> Link {
-    Link {
-        name,
-        body,
-        pose: [[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]],
-        shapes: vec![FootShape::disc(center, 0.0)],
-        has_inertial: true,
-        line: None,
-    }
+    let pose = [[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
+    Link { name, body, pose, shapes: vec![FootShape::disc(center, 0.0)], has_inertial: true, line: None }
 }

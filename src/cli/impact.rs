@@ -65,14 +65,8 @@ impl StateArgs {
         let feet = self.robot.feet(&robot)?;
         let by_input = if input::is_ndjson(&self.state) { Format::Json } else { Format::Text };
         let format = self.output.chosen().unwrap_or(by_input);
-        let detail = self.detail.detail();
-        let mut options = pipeline_options(
-            &self.scene.contacts,
-            feet.clone(),
-            self.detail,
-            &self.robot.reductions,
-            self.budget.budget(),
-        );
+        let (detail, contacts, budget) = (self.detail.detail(), &self.scene.contacts, self.budget.budget());
+        let mut options = pipeline_options(contacts, feet.clone(), self.detail, &self.robot.reductions, budget);
         if format == Format::Text && !detail.brief {
             // The text sums up why the other combinations fail even if it does not list them.
             options.explain_up_to = options.explain_up_to.max(SUMMED_UP);

@@ -31,18 +31,9 @@ impl Terrain {
         if let (Some(&first), Some(&last)) = (faces.first(), faces.last()) {
             let below =
                 |Vector { x, z }: Vector<f64>, beside: Face| Vector::new(x, z - (beside.to - beside.from).length());
-            let rear = Face {
-                from: below(first.from, first),
-                to: first.from,
-                tangent: Vector::new(0.0, 1.0),
-                normal: Vector::new(-1.0, 0.0),
-            };
-            let front = Face {
-                from: last.to,
-                to: below(last.to, last),
-                tangent: Vector::new(0.0, -1.0),
-                normal: Vector::new(1.0, 0.0),
-            };
+            let [rear, front] = [-1.0, 1.0].map(|side| (Vector::new(0.0, -side), Vector::new(side, 0.0)));
+            let rear = Face { from: below(first.from, first), to: first.from, tangent: rear.0, normal: rear.1 };
+            let front = Face { from: last.to, to: below(last.to, last), tangent: front.0, normal: front.1 };
             faces.insert(0, rear);
             faces.push(front);
         }

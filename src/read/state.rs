@@ -322,11 +322,8 @@ fn springs(field: Node, robot: &Robot) -> Result<Vec<VirtualSpring>> {
             None => [Ok(0.0), Ok(0.0), Ok(0.0)],
         };
         let pitch = SpringLaw { stiffness: stiffness?, damping: damping?, target: target?, constant: number(moment)? };
-        Ok(VirtualSpring {
-            a: link_point(a, link, offset, robot)?,
-            b: spring_end(b, robot)?,
-            laws: [along(0), along(1), pitch],
-        })
+        let (a, b) = (link_point(a, link, offset, robot)?, spring_end(b, robot)?);
+        Ok(VirtualSpring { a, b, laws: [along(0), along(1), pitch] })
     };
     field.entries()?.map(spring).collect()
 }

@@ -159,11 +159,8 @@ impl<'a> Solver<'a> {
         let dependent = |(contacts, analysis): &(Vec<String>, Analysis)| {
             analysis.rank.is_some_and(|rank| rank < 2 * contacts.len())
         };
-        Inner {
-            dependent: found.as_ref().is_ok_and(dependent),
-            verdict: found.as_ref().ok().map(|(_, analysis)| analysis.verdict),
-            refused: found.err(),
-        }
+        let verdict = found.as_ref().ok().map(|(_, analysis)| analysis.verdict);
+        Inner { dependent: found.as_ref().is_ok_and(dependent), verdict, refused: found.err() }
     }
 
     /// The regime of a point.

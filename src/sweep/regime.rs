@@ -37,11 +37,8 @@ impl Regime {
         let open = analysis.outcomes.iter().filter(|outcome| !outcome.decided);
         let mut undecided: Vec<Vec<Mode>> = open.map(|outcome| outcome.modes.clone()).collect();
         undecided.sort();
-        Self::Answered {
-            contacts: impact.contacts.iter().map(|contact| contact.name.to_string()).collect(),
-            outcomes: analysis.modes(),
-            undecided,
-        }
+        let contacts = impact.contacts.iter().map(|contact| contact.name.to_string()).collect();
+        Self::Answered { contacts, outcomes: analysis.modes(), undecided }
     }
 
     /// The modes of every outcome; `None` if the state is refused.

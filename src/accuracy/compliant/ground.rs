@@ -72,14 +72,11 @@ impl Suspension {
         let push = [self.stiffness[1], 0.0, 0.0, -self.damping[1]];
         let mu = self.friction[contact];
         let slips = tangential.abs() >= mu * normal;
-        [
-            if slips {
-                push.map(|part| mu * part * tangential.signum())
-            } else {
-                [0.0, -self.stiffness[0], -self.damping[0], 0.0]
-            },
-            push,
-        ]
+        let along = match slips {
+            true => push.map(|part| mu * part * tangential.signum()),
+            false => [0.0, -self.stiffness[0], -self.damping[0], 0.0],
+        };
+        [along, push]
     }
 
     /// The derivatives of the stretch's rate, from those of the tangential force.

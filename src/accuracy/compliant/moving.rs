@@ -100,13 +100,10 @@ impl<'a> Equation<'a> {
         let contacts = robot.contacts.len();
         let mean_mobility = mean_mobility(|row, column| workspace.delassus[row * 2 * contacts + column], contacts);
         let damping = 2.0 * ground.damping_ratio * (stiffness / mean_mobility).sqrt();
+        let points = robot.contacts.iter().map(|contact| place(robot.plan, contact, &Vector::zero(), workspace));
         Self {
             suspension: Suspension::new(ground, stiffness, damping, robot.friction.iter().copied()),
-            start: robot
-                .contacts
-                .iter()
-                .map(|contact| place(robot.plan, contact, &Vector::zero(), workspace))
-                .collect(),
+            start: points.collect(),
             period: (1.0 / (stiffness * mean_mobility)).sqrt(),
             speed: robot.velocity.iter().fold(f64::MIN_POSITIVE, |speed: f64, rate| speed.max(rate.abs())),
             memory: RefCell::new(memory),

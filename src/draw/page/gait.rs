@@ -100,8 +100,8 @@ impl Gait {
             (panel.bands, panel.x.bare) = (bands(&self.states, &order, reach), at < last);
         }
         if crowd > 1 {
-            panels[0].title =
-                format!("\ncontacts of one state stand side by side{}", panels[0].title.replace('\n', ", "));
+            let more = panels[0].title.replace('\n', ", ");
+            panels[0].title = format!("\ncontacts of one state stand side by side{more}");
         }
         let looks =
             LOOKS.iter().filter(|look| self.states.iter().any(|state| StateLook::of(state).answer == look.answer));
@@ -112,13 +112,9 @@ impl Gait {
         let legend = legend.chain(shapes.map(|(_, shape, words)| entry(words, LegendKey::Mark(*shape, Color::Gray))));
         let line = given_friction.map(|mu| entry(&format!("friction {mu}"), LegendKey::Line(GIVEN)));
         let legend = legend.chain(line);
+        let (count, all, remark) = (self.impacts().count(), self.states.len(), self.forward.remark());
         Picture {
-            title: format!(
-                "{robot}: {} of {} states have {given}s{}",
-                self.impacts().count(),
-                self.states.len(),
-                self.forward.remark()
-            ),
+            title: format!("{robot}: {count} of {all} states have {given}s{remark}"),
             rows: panels.into_iter().map(|panel| vec![panel]).collect(),
             legend: legend.chain(looks.map(|look| entry(look.words, LegendKey::Fill(look.fill)))).collect(),
         }
@@ -198,8 +194,8 @@ fn bands(states: &[ListedKeyframe], order: &[f64], reach: f64) -> Vec<Band> {
     let mut last = None;
     for (number, (look, &at)) in states.iter().map(StateLook::of).zip(order).enumerate() {
         let half = |other: Option<&f64>| other.map(|other| 0.5 * (other - at).abs());
-        let [before, after] =
-            [number.checked_sub(1).and_then(|before| order.get(before)), order.get(number + 1)].map(half);
+        let before = number.checked_sub(1).and_then(|before| order.get(before));
+        let [before, after] = [before, order.get(number + 1)].map(half);
         // The first and the last state lie in the middle of their parts, too.
         let side = |own: Option<f64>, other: Option<f64>| own.or(other).unwrap_or(0.0).min(reach);
         let (from, to) = (at - side(before, after), at + side(after, before));
@@ -291,17 +287,12 @@ impl StateLook {
     }
 }
 
-static LOOKS: [StateLook; 7] = {
-    const fn look(answer: Option<Verdict>, words: &'static str, fill: Color) -> StateLook {
-        StateLook { answer, words, fill }
-    }
-    [
-        look(Some(Verdict::Unique), "unique", Color::Tint(0)),
-        look(Some(Verdict::Ambiguous), "ambiguous", Color::Tint(1)),
-        look(Some(Verdict::None), "none", Color::Tint(5)),
-        look(Some(Verdict::Undecided), "undecided", Color::Tint(11)),
-        look(Some(Verdict::NoImpact), "no impact", Color::Tint(2)),
-        look(Some(Verdict::NoContact), "no contact", Color::White),
-        look(None, "refused", Color::Pale),
-    ]
-};
+static LOOKS: [StateLook; 7] = [
+    StateLook { answer: Some(Verdict::Unique), words: "unique", fill: Color::Tint(0) },
+    StateLook { answer: Some(Verdict::Ambiguous), words: "ambiguous", fill: Color::Tint(1) },
+    StateLook { answer: Some(Verdict::None), words: "none", fill: Color::Tint(5) },
+    StateLook { answer: Some(Verdict::Undecided), words: "undecided", fill: Color::Tint(11) },
+    StateLook { answer: Some(Verdict::NoImpact), words: "no impact", fill: Color::Tint(2) },
+    StateLook { answer: Some(Verdict::NoContact), words: "no contact", fill: Color::White },
+    StateLook { answer: None, words: "refused", fill: Color::Pale },
+];
