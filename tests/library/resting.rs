@@ -25,14 +25,12 @@ fn a_bolted_robot_strikes_beside_a_point_that_rests() {
         urdf::joint("shoulder", HINGE, ["second", "arm"], [0.0; 2], ""),
     ]));
     let rates = [0.81, 1.705_643_157_221_622_9, 2.576_030_364_490_954_6];
-    let found = impact(
-        &robot,
-        json!({
-            "position": {"joints": {"shoulder": 0.4}}, "friction": 1.5,
-            "velocity": {"joints": {"along": rates[0], "up": rates[1], "shoulder": rates[2]}},
-            "contacts": [point("first", [0.0; 2]), point("second", [0.0; 2]), point("arm", [0.5, -0.2])],
-        }),
-    );
+    let state = json!({
+        "position": {"joints": {"shoulder": 0.4}}, "friction": 1.5,
+        "velocity": {"joints": {"along": rates[0], "up": rates[1], "shoulder": rates[2]}},
+        "contacts": [point("first", [0.0; 2]), point("second", [0.0; 2]), point("arm", [0.5, -0.2])],
+    });
+    let found = impact(&robot, state);
     assert_eq!(found.resting, [false, false, true]);
     assert!(is_proven(&found));
     // By an enumeration with linear programs.
@@ -97,14 +95,12 @@ fn a_held_joint_swings_a_leg_over_a_foot_at_rest() {
         urdf::joint("hip", HINGE, ["leg", "stand"], [0.0; 2], ""),
     ]));
     let reach = 1.139_493_927_324_549;
-    let found = impact(
-        &robot,
-        json!({
-            "position": {"base": {"z": 1, "pitch": -0.5}, "joints": {"hip": 0.4}}, "friction": 0.5, "held": ["hip"],
-            "velocity": {"base": {"pitch": 1}, "joints": {"hip": -1}},
-            "contacts": [point("stand", [-0.1, -0.98]), point("stand", [0.1, -1.0]), point("leg", [0.0, -reach])],
-        }),
-    );
+    let state = json!({
+        "position": {"base": {"z": 1, "pitch": -0.5}, "joints": {"hip": 0.4}}, "friction": 0.5, "held": ["hip"],
+        "velocity": {"base": {"pitch": 1}, "joints": {"hip": -1}},
+        "contacts": [point("stand", [-0.1, -0.98]), point("stand", [0.1, -1.0]), point("leg", [0.0, -reach])],
+    });
+    let found = impact(&robot, state);
     // The leg's point moves about the hip.
     let moving = [-reach * 0.5_f64.cos(), -reach * 0.5_f64.sin()];
     for (contact, expected) in found
@@ -142,15 +138,13 @@ fn what_rests_as_given_rests_next_to_a_loop() {
         let mut number = || random.between(-1.0, 1.0);
         let (pitch, angles, rate) = (number(), [number(), number(), number()], number());
         let b = [number(), number()];
-        let found = impact(
-            &robot,
-            json!({
-                "position": {"base": {"pitch": pitch}, "joints": {"j1": angles[0], "j2": angles[1], "j3": angles[2]}},
-                "velocity": {"joints": {"j1": rate}}, "friction": 0.8,
-                "contacts": [point("root", [-0.33, -0.5]), point("root", [0.24, -0.86])],
-                "loops": [{"a": point("first", on_first(angles, b)), "b": point("third", b)}],
-            }),
-        );
+        let state = json!({
+            "position": {"base": {"pitch": pitch}, "joints": {"j1": angles[0], "j2": angles[1], "j3": angles[2]}},
+            "velocity": {"joints": {"j1": rate}}, "friction": 0.8,
+            "contacts": [point("root", [-0.33, -0.5]), point("root", [0.24, -0.86])],
+            "loops": [{"a": point("first", on_first(angles, b)), "b": point("third", b)}],
+        });
+        let found = impact(&robot, state);
         assert!(is_proven(&found), "seed {seed}");
         assert_eq!(found.analysis.expect("an analysis").verdict, Verdict::NoImpact, "seed {seed}");
     }
