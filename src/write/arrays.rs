@@ -3,7 +3,7 @@
 use super::csv::{border, families, no_column, notes};
 use super::{Columns, ErrorObject};
 use crate::impact::CONTACT_LIMIT;
-use crate::{Impact, Result};
+use crate::{Impact, Result, Verdict};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ pub struct Arrays {
     /// The contacts of a matrix's columns; read back, there are no more answers to come.
     #[serde(skip)]
     contacts: Arc<[String]>,
-    /// Per state: the verdict as a number, in the order of [`Verdict`](crate::Verdict); [`Arrays::REFUSED`] of a
+    /// Per state: the verdict as a number, in the order of [`Verdict`]; [`Arrays::REFUSED`] of a
     /// refused state.
     pub verdict: Vec<u8>,
     /// Per state: whether every combination is decided by an error bound.
@@ -96,7 +96,7 @@ impl Texts {
 
 impl Arrays {
     /// The verdict of a refused state.
-    pub const REFUSED: u8 = 6;
+    pub const REFUSED: u8 = Verdict::ALL.len() as u8;
     /// The mode of a contact that is not closed.
     pub const OPEN: i8 = -1;
 

@@ -27,7 +27,7 @@ impl Writer<'_> {
         }
         match (others, outcomes) {
             (0, _) => return Ok(()),
-            (1, 0) => write!(self.out, "\nthe other combination of modes fails")?,
+            (1, 0) => write!(self.out, "\nThe only combination of modes fails")?,
             (1, _) => write!(self.out, "\nNothing else: the other combination of modes fails")?,
             (_, 0) => write!(self.out, "\nAll {others} combinations of modes fail")?,
             _ => write!(self.out, "\nNothing else: the other {others} combinations of modes fail")?,
