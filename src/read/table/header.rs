@@ -451,14 +451,14 @@ fn is_of_states(name: &str, robot: &Robot) -> bool {
     OF_STATES.contains(&name.as_str())
         || matches!(name.as_str(), "slope" | "ground_slope")
         || entry("gravity").is_some_and(|axis| matches!(axis, "x" | "y" | "z"))
-        || ["held", "rotor_inertia"].iter().any(|field| of_joint(&field))
+        || ["held", "rotor_inertia"].iter().any(of_joint)
 }
 
 /// What is left of a name without one of its parts that is such a word, as `base_z` is of `base_vel_z`.
-fn without_one_of<'n>(name: &'n str, words: &'n [&str]) -> impl Iterator<Item = String> + 'n {
+fn without_one_of(name: &str, words: &[&str]) -> Vec<String> {
     let parts: Vec<&str> = name.split('_').collect();
-    (0..parts.len())
-        .filter_map(move |at| words.contains(&parts[at]).then(|| [&parts[..at], &parts[at + 1..]].concat().join("_")))
+    let places = (0..parts.len()).filter(|&at| words.contains(&parts[at]));
+    places.map(|at| [&parts[..at], &parts[at + 1..]].concat().join("_")).collect()
 }
 
 /// Whether a name is that of a coordinate and such a word.
@@ -467,7 +467,7 @@ fn is_of_coordinate(name: &str, words: &[&str], robot: &Robot) -> bool {
     // What is much longer is none, and comparing it takes time.
     let longest = in_columns(robot).map(|own| own.len()).max().unwrap_or_default();
     let is_coordinate = |rest: String| in_columns(robot).any(|own| plain(&own) == rest);
-    name.len() <= longest + 16 && without_one_of(&name, words).any(is_coordinate)
+    name.len() <= longest + 16 && without_one_of(&name, words).into_iter().any(is_coordinate)
 }
 
 /// A name as an option takes it.
@@ -501,7 +501,7 @@ fn resembles(name: &str, known: &str) -> bool {
     };
     if let (Some((_, coordinate)), false) = (known.split_once('_'), words.is_empty()) {
         let alone = |name: &str| name == coordinate || Some(name) == coordinate.strip_prefix("base_");
-        let with_word = without_one_of(&name, words).any(|rest| alone(&rest));
+        let with_word = without_one_of(&name, words).iter().any(|rest| alone(rest));
         // Another quantity of this coordinate, such as a torque, is none of its state.
         let other = name.strip_suffix(coordinate).is_some_and(|rest| rest.ends_with('_'));
         if alone(&name) || with_word || other {
