@@ -6,7 +6,7 @@ use super::input::InputFile;
 use super::meshes::Meshes;
 use super::options::{Choices, ReductionOptions, choice, from_zero};
 use crate::description::Description;
-use crate::robot::{Base, Plane, Reduction, WIDE};
+use crate::robot::{Base, Plane, Reduction};
 use crate::state::NamedContact;
 use crate::{Error, Reason, Robot};
 use std::path::PathBuf;
@@ -65,8 +65,8 @@ pub(super) struct Hold {
 /// Reads an angle that is small against a right one.
 fn tolerance(text: &str) -> Result<f64, String> {
     match from_zero(text)? {
-        angle if angle <= WIDE => Ok(angle),
-        _ => Err(format!("expected at most {WIDE} rad")),
+        angle if angle <= Reduction::WIDEST_TOLERANCE => Ok(angle),
+        _ => Err(format!("expected at most {} rad", Reduction::WIDEST_TOLERANCE)),
     }
 }
 

@@ -31,7 +31,6 @@ pub(crate) use caution::LONGEST;
 pub use plane::Plane;
 pub use reading::{FreezeReason, FrozenJoint, PlaneReason, Reading};
 pub use reduce::Reduction;
-pub(crate) use reduce::WIDE;
 pub use shape::{FootShape, Rim};
 
 use crate::error::Reason;

@@ -31,8 +31,11 @@ pub struct Reduction {
     pub reductions: Reductions,
 }
 
-/// An axis farther off the normal lies rather in the plane \[rad\].
-pub(crate) const WIDE: f64 = 0.5;
+impl Reduction {
+    /// The greatest [`axis_tolerance`](Self::axis_tolerance): a hinge farther off lies rather in the plane \[rad\].
+    pub const WIDEST_TOLERANCE: f64 = 0.5;
+}
+
 /// No legged robot without shapes is taken to be smaller \[m\].
 const USUAL: f64 = 1.0;
 
@@ -56,10 +59,10 @@ impl Robot {
     /// # Errors
     /// [`Reason::Inconsistent`] for joints that follow each other in a circle, for a joint that cannot be frozen at a
     /// value, and where nothing that moves has mass; [`Reason::OutOfRange`] for a negative moment of inertia about the
-    /// normal; [`Reason::NotFinite`] where sizes or masses add up to more than an f64 holds.
+    /// normal, and for an axis tolerance beyond [`Reduction::WIDEST_TOLERANCE`]; [`Reason::NotFinite`] where sizes or masses add up to more than an f64 holds.
     pub fn reduce(description: &Description, reduction: &Reduction) -> Result<Self> {
         let tolerance = reduction.axis_tolerance.unwrap_or(PARALLEL);
-        if !(0.0..=WIDE).contains(&tolerance) {
+        if !(0.0..=Reduction::WIDEST_TOLERANCE).contains(&tolerance) {
             let (what, allowed) = ("`axis_tolerance`".to_owned(), "between 0 and 0.5 rad");
             return Err(Reason::OutOfRange { what, allowed, value: tolerance }.into());
         }
