@@ -59,7 +59,8 @@ impl Robot {
     /// # Errors
     /// [`Reason::Inconsistent`] for joints that follow each other in a circle, for a joint that cannot be frozen at a
     /// value, and where nothing that moves has mass; [`Reason::OutOfRange`] for a negative moment of inertia about the
-    /// normal, and for an axis tolerance beyond [`Reduction::WIDEST_TOLERANCE`]; [`Reason::NotFinite`] where sizes or masses add up to more than an f64 holds.
+    /// normal, and for an axis tolerance beyond [`Reduction::WIDEST_TOLERANCE`]; [`Reason::NotFinite`] where sizes or
+    /// masses add up to more than an f64 holds.
     pub fn reduce(description: &Description, reduction: &Reduction) -> Result<Self> {
         let tolerance = reduction.axis_tolerance.unwrap_or(PARALLEL);
         if !(0.0..=Reduction::WIDEST_TOLERANCE).contains(&tolerance) {
