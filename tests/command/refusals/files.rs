@@ -42,6 +42,28 @@ fn what_cannot_be_read_is_refused() {
 }
 
 #[test]
+fn fields_of_problems_and_endings_of_outputs_are_not_passed_over() {
+    let problem = |field: &str| {
+        let text = r#"{"delassus": [[2, 1], [1, 2]], "velocity_before": [[0.5, -1]], "friction": 0.9, "FIELD": "e"}"#;
+        heelstrike_reads(&["solve", "-"], text.replace("FIELD", field))
+    };
+    let refused = problem("restituion").refusal(1);
+    assert!(
+        refused.contains("unknown field \"restituion\"") && refused.contains("did you mean restitution?"),
+        "{refused}"
+    );
+    // A comment, and short names that are near to others.
+    for field in ["notes", "named", "comment"] {
+        problem(field).well();
+    }
+    for ending in ["csv.gz", "xls", "pq"] {
+        let output = format!("examples/none.{ending}");
+        let refused = heelstrike_reads(&["batch", RAMONE, "-", "-o", &output], "{}").refusal(2);
+        assert!(refused.contains("name a file with one of these endings, or say --output-format"), "{refused}");
+    }
+}
+
+#[test]
 fn bytes_that_are_no_text_are_refused() {
     let hint = "hint: save it as UTF-8; iconv -f LATIN1 -t UTF-8 converts what older editors wrote";
     for (arguments, stdin, place) in [
