@@ -176,8 +176,8 @@ pub(super) fn run(args: &Args) -> Completion {
 impl Args {
     /// The formats of input and output, which must have room for what is asked.
     fn formats(&self) -> Result<[RecordFormat; 2], Failure> {
-        let input = RecordFormat::of(Some(&self.states), self.input_format, "--input-format")?;
-        let output = RecordFormat::of(self.output.as_deref(), self.output_format, "--output-format")?;
+        let input = RecordFormat::of((Some(&self.states), false), self.input_format, "--input-format")?;
+        let output = RecordFormat::of((self.output.as_deref(), true), self.output_format, "--output-format")?;
         self.csv.check(matches!(output, RecordFormat::Csv | RecordFormat::Tsv))?;
         let Detail { explain, matrices, .. } = self.detail.detail();
         let refuse = |reason: &str, hint: &str| {

@@ -40,11 +40,12 @@ impl RecordFormat {
         named.filter(|format| *format != Self::Ndjson)
     }
 
-    /// What is `chosen` by the option of this name, or by the file's ending; else lines of JSON.
-    pub(super) fn of(path: Option<&Path>, chosen: Option<Self>, option: &str) -> Result<Self, Failure> {
+    /// What is `chosen` by the option of this name, or by the ending of a file, which may be written; else lines of JSON.
+    pub(super) fn of(file: (Option<&Path>, bool), chosen: Option<Self>, option: &str) -> Result<Self, Failure> {
+        let (path, _) = file;
         let format = chosen.or_else(|| path.and_then(Self::table)).unwrap_or(Self::Ndjson);
         if chosen.is_none() && format == Self::Ndjson {
-            check_ending(path, "states and answers are .ndjson, .csv, .tsv, .parquet or .arrow", option)?;
+            check_ending(file, "states and answers are .ndjson, .csv, .tsv, .parquet or .arrow", option)?;
         }
         #[cfg(not(feature = "columnar"))]
         if !format.is_text() {

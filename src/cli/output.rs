@@ -45,7 +45,7 @@ impl OutputOptions {
     /// Refuses an output whose ending means a format that is not written here, unless the form is said.
     pub fn check_ending(&self) -> Result<(), Failure> {
         let written = "a result is written as .json, .ndjson or .txt, and tables by `batch`";
-        if self.format.is_some() { Ok(()) } else { check_ending(self.path(), written, "--format") }
+        if self.format.is_some() { Ok(()) } else { check_ending((self.path(), true), written, "--format") }
     }
 
     /// The file; `None` for standard output.
@@ -73,13 +73,16 @@ const FORMATS: [&str; 22] = [
 /// Those of inputs whose first bytes show what they are, with a better remedy.
 const PACKED: [&str; 8] = ["bz2", "gz", "ods", "pq", "xls", "xz", "zip", "zst"];
 
-/// Refuses a file whose ending means a format, for the `reason`: the command has another one for it; `option` overrules
-/// the ending.
-pub(super) fn check_ending(path: Option<&Path>, reason: &'static str, option: &str) -> Result<(), Failure> {
+/// Refuses a file, and whether it is written, whose ending means a format, for the `reason`: the command has another one
+/// for it; `option` overrules the ending.
+pub(super) fn check_ending(
+    (path, is_written): (Option<&Path>, bool),
+    reason: &'static str,
+    option: &str,
+) -> Result<(), Failure> {
     let ending = path.and_then(Path::extension).and_then(|ending| ending.to_str()).unwrap_or_default();
     let ending = ending.to_ascii_lowercase();
-    let is_read = option == "--input-format";
-    if !FORMATS.contains(&&*ending) && (is_read || !PACKED.contains(&&*ending)) {
+    if !(FORMATS.contains(&&*ending) || is_written && PACKED.contains(&&*ending)) {
         return Ok(());
     }
     let error = Error::new(Reason::Unsupported(reason.to_owned()));

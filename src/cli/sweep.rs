@@ -87,7 +87,7 @@ fn format(args: &Args) -> Result<SweepFormat, Failure> {
         let hint = "name a file with one of these endings, or say --format; pictures and pages go to --plot";
         Failure::Usage(Error::new(reason).at("--output").hint(hint))
     })?;
-    RecordFormat::of(args.output.as_deref(), format.or(Some(RecordFormat::Ndjson)), "--format")?;
+    RecordFormat::of((args.output.as_deref(), true), format.or(Some(RecordFormat::Ndjson)), "--format")?;
     Ok(format)
 }
 

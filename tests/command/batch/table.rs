@@ -162,8 +162,8 @@ fn recordings_in_other_units_or_axes_are_noted() {
     assert!(!as_it_is.contains(misfit) && !as_it_is.contains("far under z = 0"), "{as_it_is}");
     for (change, words) in [
         ((|name, cell| if name.starts_with("v_") { -cell } else { cell }) as fn(&str, f64) -> f64, "the opposite sign"),
-        (|name, cell| if name.starts_with("v_left") { cell.to_degrees() } else { cell }, "5"),
-        (|name, cell| if name == "time" { 1e3 * cell } else { cell }, "1000"),
+        (|name, cell| if name.starts_with("v_left") { cell.to_degrees() } else { cell }, " is 57."),
+        (|name, cell| if name == "time" { 1e3 * cell } else { cell }, " is 1000."),
     ] {
         let stderr = stderr(change);
         let note = stderr.lines().find(|line| line.contains(misfit)).unwrap_or_else(|| panic!("{words}: {stderr}"));
