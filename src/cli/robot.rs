@@ -121,6 +121,10 @@ impl RobotOptions {
         let text = input.text().map_err(|error| error.in_file(&input.name))?;
         let refuse = |error: Error| input.refuse(error);
         let mut description = Description::from_urdf(text).map_err(refuse)?;
+        if let Some(folder) = self.package_path.iter().find(|folder| !folder.is_dir()) {
+            let reason = format!("there is no folder {}", folder.display());
+            return Err(Failure::Usage(Error::new(Reason::Io(reason)).at("--package-path")));
+        }
         let meshes = Meshes::of(&self.robot, &self.package_path);
         description.read_meshes(|name| meshes.fetch(name));
         let reduction = Reduction {

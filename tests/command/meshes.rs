@@ -2,7 +2,7 @@
 //! or hostile, and the feet that they give. Readers and hulls are tested next to their code.
 
 use super::support::urdf;
-use super::{command, each, finished, fs, list, place};
+use super::{command, each, finished, fs, heelstrike, list, place};
 use assert_cmd::Command;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -80,6 +80,9 @@ fn packages_are_found_by_option_variable_and_folder() {
     write(&urdf, mesh("package://a_description/meshes/sole.obj"));
     let missing = "package a_description is not here: name the folder that holds it by --package-path";
     assert_eq!(foot(&mut inspecting(), &urdf), Err(missing.to_owned()));
+
+    let gone = heelstrike(&["inspect", &urdf.to_string_lossy(), "--package-path", "no/such/folder"]);
+    gone.refusal_with(2, "there is no folder no/such/folder");
 
     let elsewhere = folder.join("elsewhere");
     write(&elsewhere.join("share/a_description/meshes/sole.obj"), sole());
