@@ -2,7 +2,7 @@
 
 use super::enumerate::Leaf;
 use super::problem::{ContactProblem, Errors};
-use crate::law::{Condition, Inequality, Law, Mode};
+use crate::law::{Condition, Law, Mode};
 use crate::planar::Pair;
 use crate::scalar::{Ball, Ordered, Real, Rounded};
 
@@ -35,8 +35,6 @@ pub struct Scale {
     pub speed: f64,
     /// sqrt(G_ii) of every row \[1/sqrt(kg)\]; of a row that nothing moves the largest of the others.
     pub mobility: Vec<f64>,
-    /// [`Condition::scale`] of every contact's cone, the same for both edges; 0 without one.
-    cone: Vec<f64>,
     /// What the scaled velocities of the f64 problem may be off by.
     pub noise: f64,
     /// What they are likely to be off by.
@@ -63,16 +61,6 @@ impl Scale {
                 *mobility = fallback;
             }
         }
-        self.cone.clear();
-        self.cone.extend(problem.laws().iter().zip(self.mobility.chunks_exact(2)).map(|(law, mobility)| {
-            let mut cone = 0.0;
-            law.conditions(Mode::Stick, |inequality, function| {
-                if inequality == Inequality::FrictionCone {
-                    cone = Condition { inequality, function }.scale([mobility[0], mobility[1]]);
-                }
-            });
-            cone
-        }));
         let entries = problem.velocity_free().iter().flatten().zip(&self.mobility);
         self.speed = entries.map(|(c, mobility)| c.abs() / mobility).fold(0.0, f64::max);
         let bounces = (0..problem.contacts()).map(|i| problem.bounce(i).abs() / self.mobility[2 * i + 1]);
@@ -178,9 +166,6 @@ impl Scale {
     /// What the value of a contact's inequality, divided by S, is multiplied by to be free of units.
     #[inline]
     pub fn factor(&self, contact: usize, condition: &Condition) -> f64 {
-        match condition.inequality {
-            Inequality::FrictionCone => self.cone[contact],
-            _ => condition.scale([self.mobility[2 * contact], self.mobility[2 * contact + 1]]),
-        }
+        condition.scale([self.mobility[2 * contact], self.mobility[2 * contact + 1]])
     }
 }

@@ -228,10 +228,11 @@ impl<T: Real> Assembly<T> {
         if !rows.is_empty() {
             let left = &mut self.left;
             left.clone_from(delassus);
+            let size = 2 * contacts.len();
             for (done, &row) in rows.iter().enumerate() {
-                report(row, [speeds[row / 2][row % 2], left[row * (2 * contacts.len() + 1)]], delassus);
-                for other in (0..2 * contacts.len()).filter(|other| !rows[..=done].contains(other)) {
-                    let share = eliminate(left, row, other);
+                report(row, [speeds[row / 2][row % 2], left[row * (size + 1)]], delassus);
+                for other in (0..size).filter(|other| !rows[..=done].contains(other)) {
+                    let share = eliminate(left, size, row, other);
                     speeds[other / 2][other % 2] = speeds[other / 2][other % 2] - share * speeds[row / 2][row % 2];
                 }
             }
