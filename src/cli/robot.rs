@@ -140,15 +140,19 @@ impl RobotOptions {
 
     /// The joints given by `--hold`.
     fn held(&self, description: &Description) -> Result<Vec<(usize, f64)>, Failure> {
-        let held = |Hold { joint, value }: &Hold| {
+        let refuse = |reason| Error::new(reason).at("--hold");
+        let held = |(at, Hold { joint, value }): (usize, &Hold)| {
+            if self.hold[..at].iter().any(|before| before.joint == *joint) {
+                return Err(Failure::Usage(refuse(Reason::Duplicate { what: "joint", name: joint.clone() })));
+            }
             let found = description.joint(joint).ok_or_else(|| {
-                let reason = Reason::UnknownName { what: "joint", name: joint.clone() };
                 let known = description.joints.iter().map(|joint| joint.name.as_str());
-                Failure::Usage(Error::new(reason).at("--hold").did_you_mean(joint, known))
+                let unknown = Reason::UnknownName { what: "joint", name: joint.clone() };
+                Failure::Usage(refuse(unknown).did_you_mean(joint, known))
             })?;
             Ok((found, *value))
         };
-        self.hold.iter().map(held).collect()
+        self.hold.iter().enumerate().map(held).collect()
     }
 
     /// The feet given by `--contact`.

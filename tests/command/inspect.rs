@@ -64,6 +64,8 @@ fn plane_hold_and_base_shape_the_robot() {
     let left = json!({"name": "FR_calf_joint", "body": "FR_thigh", "why": "frozen at -1.5 as asked"});
     assert!(list(&held["held"]).contains(&left), "{}", held["held"]);
 
+    let twice = heelstrike(&["inspect", A1, "--hold", "FR_calf_joint=0", "--hold", "FR_calf_joint=1"]).refusal(2);
+    assert_eq!(twice, "error: --hold: joint \"FR_calf_joint\" is given twice\n");
     let unknown = heelstrike(&["inspect", A1, "--hold", "FR_calf=0"]).refusal(2);
     let expected = "error: --hold: the robot has no joint named \"FR_calf\"\nhint: did you mean FR_calf_joint?\n";
     assert_eq!(unknown, expected);
