@@ -22,11 +22,11 @@ pub fn mass_matrix_condition(plan: &Plan, workspace: &Workspace) -> f64 {
         let x: Vec<f64> = x.iter().zip(&size).map(|(x, size)| x / size).collect();
         let mut y: Vec<f64> = x.iter().zip(&size).map(|(x, size)| x * size * size).collect();
         for i in 0..nv {
-            for j in plan.branch(plan.parents[i]) {
+            plan.for_ancestors(i, |j| {
                 let entry = mass[i * nv + j];
                 y[i] += entry * x[j];
                 y[j] += entry * x[i];
-            }
+            });
         }
         y.iter().zip(&size).map(|(y, size)| y / size).collect()
     };

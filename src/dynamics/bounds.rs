@@ -293,13 +293,13 @@ impl RoundingBounds {
 /// (M^-1)_ii of one column: |D^-1/2 L^-T e_i|^2; `y` has an entry for each column and is scratch.
 fn squared_ease(plan: &Plan, factor: &LtlFactor, column: usize, y: &mut [f64]) -> f64 {
     // Entries off the branch of the column are zero; those of `y` are stale, and not read.
-    let (ancestors, row) = (|column: usize| plan.branch(plan.parents[column]), factor.row(column));
-    ancestors(column).for_each(|j| y[j] = -row[j]);
+    let (y, row) = (&mut y[..column], factor.row(column));
+    plan.for_ancestors(column, |j| y[j] = -row[j]);
     let mut sum = 1.0 / factor.pivot(column);
-    for i in ancestors(column) {
-        let (own, row) = (y[i], factor.row(i));
-        ancestors(i).for_each(|j| y[j] -= row[j] * own);
+    plan.for_ancestors(column, |i| {
+        let (own, y, row) = (y[i], &mut y[..i], factor.row(i));
+        plan.for_ancestors(i, |j| y[j] -= row[j] * own);
         sum += own * own / factor.pivot(i);
-    }
+    });
     sum
 }

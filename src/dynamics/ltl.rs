@@ -21,16 +21,16 @@ impl<T: Real> LtlFactor<T> {
         mass_matrix.clone_into(&mut self.entries);
         for k in (0..nv).rev() {
             let (above, own) = self.entries.split_at_mut(k * nv);
-            let own = &mut own[..nv];
-            for i in plan.branch(plan.parents[k]) {
-                let row = &mut above[i * nv..][..nv];
+            let own = &mut own[..=k];
+            plan.for_ancestors(k, |i| {
                 // u (u / D), never u u (1 / D): the latter underflows for small masses.
                 let a = own[i] / own[k];
-                for j in plan.branch(Some(i)) {
-                    row[j] = row[j] - a * own[j];
-                }
+                let row = &mut above[i * nv..][..=i];
+                row[i] = row[i] - a * own[i];
+                let (row, others) = (&mut row[..i], &own[..i]);
+                plan.for_ancestors(i, |j| row[j] = row[j] - a * others[j]);
                 own[i] = a;
-            }
+            });
         }
     }
 
@@ -53,18 +53,15 @@ impl<T: Real> LtlFactor<T> {
         for i in columns {
             let (above, rest) = y.split_at_mut(i);
             let (own, row) = (rest[0], self.row(i));
-            for j in plan.branch(plan.parents[i]) {
-                subtract(&mut above[j], &own, row[j]);
-            }
+            plan.for_ancestors(i, |j| subtract(&mut above[j], &own, row[j]));
         }
     }
 
     /// x := L^-1 x.
     pub fn other_half_solve(&self, plan: &Plan<T>, x: &mut [T]) {
         for i in 0..self.columns {
-            for j in plan.branch(plan.parents[i]) {
-                x[i] = x[i] - self.row(i)[j] * x[j];
-            }
+            let ((above, rest), row) = (x.split_at_mut(i), self.row(i));
+            plan.for_ancestors(i, |j| rest[0] = rest[0] - row[j] * above[j]);
         }
     }
 

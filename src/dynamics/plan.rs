@@ -24,13 +24,17 @@ use crate::scalar::{Real, Trigonometry};
 /// From how many columns on in one branch a plan is long.
 const LONG: usize = 12;
 
+/// The parent of a column that has none.
+const NONE: usize = usize::MAX;
+
 /// A robot compiled in numbers of kind `T`.
 #[derive(Debug, Clone, Default)]
 pub struct Plan<T = f64> {
     /// Bodies from the root outward.
     pub(crate) bodies: Vec<PlanBody<T>>,
-    /// Parent of each column in the elimination tree of M; without mimic joints the nearest moving joint below it.
-    pub(crate) parents: Vec<Option<usize>>,
+    /// Parent of each column in the elimination tree of M, [`NONE`] if it has none; without mimic joints the nearest moving
+    /// joint below it.
+    parents: Vec<usize>,
     /// The coordinate (index into q) of each column, from the root outward.
     pub(crate) coordinates: Vec<usize>,
     /// Entries of a [`Configuration`]: coordinates and mimic joints.
@@ -163,7 +167,7 @@ impl<T: Real> Plan<T> {
         let floating = robot.base == Base::Floating;
         let mut plan = Self {
             bodies: Vec::with_capacity(robot.bodies.len()),
-            parents: if floating { vec![None, Some(0), Some(1)] } else { Vec::new() },
+            parents: if floating { vec![NONE, 0, 1] } else { Vec::new() },
             coordinates: (0..base).collect(),
             places: robot.dofs() + robot.mimic_joints.len(),
             floating,
@@ -257,7 +261,7 @@ impl<T: Real> Plan<T> {
     fn column(&mut self, known: &mut Option<usize>, coordinate: usize) -> usize {
         self.has_mimics |= known.is_some();
         *known.get_or_insert_with(|| {
-            self.parents.push(None);
+            self.parents.push(NONE);
             self.coordinates.push(coordinate);
             self.coordinates.len() - 1
         })
@@ -285,14 +289,14 @@ impl<T: Real> Plan<T> {
     fn join(&mut self, mut column: usize, mut ancestor: usize) {
         while column != ancestor {
             match self.parents[column] {
-                Some(parent) if parent >= ancestor => column = parent,
-                Some(parent) => {
-                    self.parents[column] = Some(ancestor);
-                    (column, ancestor) = (ancestor, parent);
-                }
-                None => {
-                    self.parents[column] = Some(ancestor);
+                NONE => {
+                    self.parents[column] = ancestor;
                     return;
+                }
+                parent if parent >= ancestor => column = parent,
+                parent => {
+                    self.parents[column] = ancestor;
+                    (column, ancestor) = (ancestor, parent);
                 }
             }
         }
@@ -307,7 +311,24 @@ impl<T: Real> Plan<T> {
     /// A column, if there is one, and its ancestors in the elimination tree, the nearest first.
     #[inline]
     pub(crate) fn branch(&self, column: Option<usize>) -> impl Iterator<Item = usize> {
-        std::iter::successors(column, |&column| self.parents[column])
+        std::iter::successors(column, |&column| self.parent(column))
+    }
+
+    #[inline]
+    fn parent(&self, column: usize) -> Option<usize> {
+        Some(self.parents[column]).filter(|&parent| parent != NONE)
+    }
+
+    /// Visits the ancestors of a column in the elimination tree, the nearest first. All come before it, which is all that
+    /// ends the walk: slices of `column` entries are indexed without a check.
+    #[inline]
+    pub(crate) fn for_ancestors(&self, column: usize, mut visit: impl FnMut(usize)) {
+        let parents = &self.parents[..=column];
+        let mut at = parents[column];
+        while at < column {
+            visit(at);
+            at = parents[at];
+        }
     }
 
     /// The greatest column that two branches share, which have these at their ends.
@@ -315,7 +336,7 @@ impl<T: Real> Plan<T> {
         let (mut a, mut b) = (a?, b?);
         while a != b {
             let greater = if a > b { &mut a } else { &mut b };
-            *greater = self.parents[*greater]?;
+            *greater = self.parent(*greater)?;
         }
         Some(a)
     }
