@@ -84,8 +84,7 @@ impl Pivoting<'_> {
         let mut determinant = 1.0;
         for row in 0..size {
             determinant *= self.share(row);
-            // Not of what is not a number, either.
-            if !(determinant > REGULAR.max(2.0 * self.tolerance)) {
+            if determinant.is_nan() || determinant <= REGULAR.max(2.0 * self.tolerance) {
                 return false;
             }
             let (above, below) = self.left.split_at_mut((row + 1) * size);
