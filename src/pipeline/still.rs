@@ -87,6 +87,7 @@ impl Pivoting<'_> {
             if determinant.is_nan() || determinant <= REGULAR.max(2.0 * self.tolerance) {
                 return false;
             }
+            // Only below the diagonal: nothing else is read here.
             let (above, below) = self.left.split_at_mut((row + 1) * size);
             let own = &above[row * size + row..];
             for other in below.chunks_exact_mut(size) {
