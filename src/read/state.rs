@@ -303,12 +303,20 @@ fn impulses(field: Node, robot: &Robot) -> Result<Vec<AppliedImpulse>> {
 fn springs(field: Node, robot: &Robot) -> Result<Vec<VirtualSpring>> {
     let of_axes = |entry: Option<Node>| entry.map_or(Ok([0.0; 2]), axes);
     let number = |entry: Option<Node>| entry.map_or(Ok(0.0), |entry| entry.number());
+    let pulled = |stiffness: &Option<Node>, target: &Option<Node>| match (stiffness, target) {
+        (None, Some(target)) => {
+            let reason = Reason::Inconsistent("nothing pulls to the target: the spring has no stiffness".into());
+            Err(target.refuse(reason).hint("give `stiffness`, which may be 0, or leave the target out"))
+        }
+        _ => Ok(()),
+    };
     let spring = |entry: Node| {
         let names = ["a", "b", "stiffness", "damping", "target", "force", "pitch", "moment"];
         let [a, b, along @ .., pitch, moment] = entry.object("Spring", names)?;
         let lacks = |name| entry.missing(name).hint("a spring has two ends, a and b, and b may be a place");
         let (a, b) = (a.ok_or_else(|| lacks("a"))?, b.ok_or_else(|| lacks("b"))?);
         let [link, offset] = a.object("LinkPoint", ["link", "offset"])?;
+        pulled(&along[0], &along[2])?;
         let [stiffness, damping, target, constant] = along.map(of_axes);
         let [stiffness, damping, target, constant] = [stiffness?, damping?, target?, constant?];
         let along = |axis: usize| SpringLaw {
@@ -318,7 +326,11 @@ fn springs(field: Node, robot: &Robot) -> Result<Vec<VirtualSpring>> {
             constant: constant[axis],
         };
         let [stiffness, damping, target] = match pitch {
-            Some(pitch) => pitch.object("PitchSpring", ["stiffness", "damping", "target"])?.map(number),
+            Some(pitch) => {
+                let parts = pitch.object("PitchSpring", ["stiffness", "damping", "target"])?;
+                pulled(&parts[0], &parts[2])?;
+                parts.map(number)
+            }
             None => [Ok(0.0), Ok(0.0), Ok(0.0)],
         };
         let pitch = SpringLaw { stiffness: stiffness?, damping: damping?, target: target?, constant: number(moment)? };

@@ -145,6 +145,8 @@ fn springs_are_refused_with_place_and_remedy() {
     let two_ends = json!({"a": arm, "b": {"link": "body", "world": [0, 0]}});
     let pitched = json!({"a": arm, "b": origin, "pitch": {"force": 5}});
     let stiff = json!({"a": arm, "b": {"world": [0, 1e300]}, "stiffness": [0, 1e300]});
+    let aimless = json!({"a": arm, "b": origin, "target": [0, 0.5], "damping": [1, 1]});
+    let level = json!({"a": arm, "b": origin, "pitch": {"target": 0.1}});
     for (spring, place, reason, remedy) in [
         (json!({"b": origin}), "virtual[0]", "\"a\" is missing", "two ends"),
         (json!({"a": arm}), "virtual[0]", "\"b\" is missing", "two ends"),
@@ -154,6 +156,8 @@ fn springs_are_refused_with_place_and_remedy() {
         (json!({"a": arm, "b": {"world": [0, 0, 0]}}), "virtual[0].b.world", "found 3 entries", axes),
         (json!({"a": arm, "b": origin, "stiffness": 5}), "virtual[0].stiffness", "a list of 2 numbers", axes),
         (pitched, "virtual[0].pitch.force", "unknown field", "stiffness, damping, target"),
+        (aimless, "virtual[0].target", "no stiffness", "leave the target out"),
+        (level, "virtual[0].pitch.target", "no stiffness", "leave the target out"),
         (stiff, "virtual", "the force of a virtual spring", "SI units"),
     ] {
         let error = try_forces(&robot, json!({"contacts": [], "virtual": [spring]})).unwrap_err();
