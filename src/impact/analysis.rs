@@ -32,7 +32,7 @@ pub const CONTACT_LIMIT: usize = 16;
 
 pub fn too_many_contacts(contacts: usize) -> Error {
     Error::new(Reason::TooManyContacts { contacts, limit: CONTACT_LIMIT })
-        .hint("name the contacts that matter by hand, or lower the contact tolerance")
+        .hint("leave out the contacts that matter least")
 }
 
 /// Memory that is reused from problem to problem.

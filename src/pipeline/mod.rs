@@ -30,7 +30,7 @@ use crate::budget::{Budget, is_spent, within};
 use crate::contact::{Contact, Feet, Merged, Placement};
 use crate::dynamics::plan::Plan;
 use crate::dynamics::{Closed, RoundingBounds};
-use crate::error::{Result, finite};
+use crate::error::{Error, Result, finite};
 use crate::impact::{
     Analysis, AnalysisOptions, ContactProblem, Errors, ListedRejections, Scratch, Verdict, too_many_contacts,
 };
@@ -151,7 +151,7 @@ impl Impact {
     /// # Errors
     /// [`TooManyContacts`](crate::Reason::TooManyContacts) for more contacts than are enumerated.
     pub fn analyzed(&self) -> Result<&Analysis> {
-        self.analysis.as_ref().map_or_else(|| Err(too_many_contacts(self.contacts.len())), Ok)
+        self.analysis.as_ref().ok_or_else(|| unlisted(self.contacts.len()))
     }
 
     /// What it answers.
@@ -164,8 +164,13 @@ impl Impact {
     /// # Errors
     /// As [`Impact::analyzed`].
     pub fn into_analysis(self) -> Result<Analysis> {
-        self.analysis.ok_or_else(|| too_many_contacts(self.contacts.len()))
+        self.analysis.ok_or_else(|| unlisted(self.contacts.len()))
     }
+}
+
+/// The refusal of a state with so many contacts.
+fn unlisted(contacts: usize) -> Error {
+    too_many_contacts(contacts).hint("name the contacts that matter by hand, or lower the contact tolerance")
 }
 
 /// Something that this scene does not need; what the file does not is in [`Robot`].

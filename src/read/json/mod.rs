@@ -12,7 +12,7 @@ mod value;
 
 pub(crate) use value::{Value, id_in, id_of, raw_fields};
 
-use crate::read::expression::{FUNCTIONS, Fault, Names};
+use crate::read::expression::{CONSTANTS, FUNCTIONS, Fault, Names};
 use crate::{Error, Reason, Result};
 use std::borrow::Cow;
 use std::collections::HashSet;
@@ -174,7 +174,7 @@ impl<'n> Node<'n> {
         if unknown == "log" {
             return error.hint("write ln or log10: log is the one to some and the other to others");
         }
-        let known = names.iter().collect::<Vec<_>>().join(", ");
+        let known = names.iter().filter(|name| !CONSTANTS.contains(name)).collect::<Vec<_>>().join(", ");
         let error = match known.as_str() {
             "" => error.hint("only pi, e and functions such as sin and atan2 are known here"),
             _ => error.hint(format!("known here are {known}, pi, e and functions such as sin and atan2")),
