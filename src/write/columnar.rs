@@ -4,10 +4,10 @@
 //!     rows of cells --[RowSink]--> Block, one per task --> RecordBatch --[Writer]--> bytes, some row groups at a time
 //! ```
 
-use super::csv::{Cell, Columns, Kind, RowSink};
+use super::csv::{Columns, Kind, Row, RowSink};
 use crate::read::table::Carried;
 use crate::{Error, Reason, Result};
-use arrow_array::builder::{BooleanBuilder, Float64Builder, Int64Builder, StringBuilder};
+use arrow_array::builder::{ArrayBuilder, BooleanBuilder, Float64Builder, Int64Builder, StringBuilder};
 use arrow_array::{Array, ArrayRef, RecordBatch, new_null_array};
 use arrow_ipc::writer::{FileWriter, StreamWriter};
 use arrow_schema::{DataType, Field, Schema, SchemaRef};
@@ -37,12 +37,15 @@ pub enum ColumnarFormat {
 
 /// Rows of results in the making.
 #[derive(Debug)]
-pub struct ColumnBlock(Vec<Column>);
+pub struct ColumnBlock {
+    columns: Vec<Column>,
+    /// How many there are; a column lacks those at its end that are empty.
+    rows: usize,
+}
 
 #[derive(Debug)]
 enum Column {
-    /// With so many rows at the end that are not in it yet, because they are empty.
-    Text(StringBuilder, usize),
+    Text(StringBuilder),
     Number(Float64Builder),
     Integer(Int64Builder),
     Boolean(BooleanBuilder),
@@ -54,26 +57,57 @@ enum Column {
     },
 }
 
+impl Column {
+    /// Makes it as long as so many `rows`.
+    fn pad(&mut self, rows: usize) {
+        match self {
+            Self::Text(texts) => texts.append_nulls(rows - texts.len()),
+            Self::Number(numbers) => numbers.append_nulls(rows - numbers.len()),
+            Self::Integer(numbers) => numbers.append_nulls(rows - numbers.len()),
+            Self::Boolean(values) => values.append_nulls(rows - values.len()),
+            Self::Carried { at, .. } => at.resize(rows, (0, 0)),
+        }
+    }
+
+    fn len(&self) -> usize {
+        match self {
+            Self::Text(texts) => texts.len(),
+            Self::Number(numbers) => numbers.len(),
+            Self::Integer(numbers) => numbers.len(),
+            Self::Boolean(values) => values.len(),
+            Self::Carried { at, .. } => at.len(),
+        }
+    }
+}
+
 impl ColumnBlock {
     /// No row yet of these columns.
     pub fn new(columns: &Columns) -> Self {
         let column = |kind: &Kind| match *kind {
-            Kind::Text => Column::Text(StringBuilder::new(), 0),
+            Kind::Text => Column::Text(StringBuilder::new()),
             Kind::Number => Column::Number(Float64Builder::new()),
             Kind::Integer => Column::Integer(Int64Builder::new()),
             Kind::Boolean => Column::Boolean(BooleanBuilder::new()),
             Kind::Carried(which) => Column::Carried { which, sources: Vec::new(), at: Vec::new() },
         };
-        Self(columns.kinds().iter().map(column).collect())
+        Self { columns: columns.kinds().iter().map(column).collect(), rows: 0 }
+    }
+
+    /// A column, as long as there are rows.
+    #[inline]
+    fn column(&mut self, at: usize) -> &mut Column {
+        let column = &mut self.columns[at];
+        if column.len() < self.rows {
+            column.pad(self.rows);
+        }
+        column
     }
 
     fn finish(self, schema: &SchemaRef) -> Result<RecordBatch> {
-        let array = |(column, field): (Column, &Arc<Field>)| -> Result<ArrayRef> {
+        let array = |(mut column, field): (Column, &Arc<Field>)| -> Result<ArrayRef> {
+            column.pad(self.rows);
             Ok(match column {
-                Column::Text(mut texts, empty) => {
-                    texts.append_nulls(empty);
-                    Arc::new(texts.finish())
-                }
+                Column::Text(mut texts) => Arc::new(texts.finish()),
                 Column::Number(mut numbers) => Arc::new(numbers.finish()),
                 Column::Integer(mut numbers) => Arc::new(numbers.finish()),
                 Column::Boolean(mut values) => Arc::new(values.finish()),
@@ -85,46 +119,59 @@ impl ColumnBlock {
                 }
             })
         };
-        let arrays = self.0.into_iter().zip(schema.fields()).map(array).collect::<Result<_>>()?;
+        let arrays = self.columns.into_iter().zip(schema.fields()).map(array).collect::<Result<_>>()?;
         RecordBatch::try_new(Arc::clone(schema), arrays).map_err(unwritable)
     }
 }
 
-/// Appends the rows that are empty, and a text.
-fn append_text(texts: &mut StringBuilder, empty: &mut usize, text: &str) {
-    if *empty > 0 {
-        texts.append_nulls(std::mem::take(empty));
+impl RowSink for ColumnBlock {
+    fn row(&mut self, _: &Columns, fill: &mut dyn FnMut(&mut dyn Row)) {
+        fill(self);
+        self.rows += 1;
     }
-    texts.append_value(text);
 }
 
-impl RowSink for ColumnBlock {
-    fn row(&mut self, _: &Columns, cells: &[Cell]) {
-        for (column, cell) in self.0.iter_mut().zip(cells) {
-            match (column, cell) {
-                (Column::Text(texts, empty), Cell::Text(text)) => append_text(texts, empty, text),
-                (Column::Text(texts, empty), Cell::Carried(carried, which)) if !carried.text(*which).is_empty() => {
-                    append_text(texts, empty, &String::from_utf8_lossy(&carried.text(*which)));
+/// What a column cannot hold stays empty.
+impl Row for ColumnBlock {
+    fn text(&mut self, at: usize, text: &str) {
+        if let Column::Text(texts) = self.column(at)
+            && !text.is_empty()
+        {
+            texts.append_value(text);
+        }
+    }
+
+    fn number(&mut self, at: usize, number: f64) {
+        if let Column::Number(numbers) = self.column(at) {
+            numbers.append_value(number);
+        }
+    }
+
+    fn integer(&mut self, at: usize, number: i64) {
+        if let Column::Integer(numbers) = self.column(at) {
+            numbers.append_value(number);
+        }
+    }
+
+    fn boolean(&mut self, at: usize, holds: bool) {
+        if let Column::Boolean(values) = self.column(at) {
+            values.append_value(holds);
+        }
+    }
+
+    fn carried(&mut self, at: usize, carried: &Carried, which: usize) {
+        match (self.column(at), carried) {
+            (Column::Carried { sources, at, .. }, Carried::Columns(source, row)) => {
+                if sources.last().is_none_or(|last| !Arc::ptr_eq(last, source)) {
+                    sources.push(Arc::clone(source));
                 }
-                (Column::Text(_, empty), _) => *empty += 1,
-                (Column::Number(numbers), Cell::Number(number)) => numbers.append_value(*number),
-                (Column::Number(numbers), Cell::Carried(carried, which)) => {
-                    let text = carried.text(*which);
-                    numbers.append_option(std::str::from_utf8(&text).ok().and_then(|text| text.parse().ok()));
-                }
-                (Column::Number(numbers), _) => numbers.append_null(),
-                (Column::Integer(numbers), Cell::Integer(number)) => numbers.append_value(*number),
-                (Column::Integer(numbers), _) => numbers.append_null(),
-                (Column::Boolean(values), Cell::Boolean(value)) => values.append_value(*value),
-                (Column::Boolean(values), _) => values.append_null(),
-                (Column::Carried { sources, at, .. }, Cell::Carried(Carried::Columns(source, row), _)) => {
-                    if sources.last().is_none_or(|last| !Arc::ptr_eq(last, source)) {
-                        sources.push(Arc::clone(source));
-                    }
-                    at.push((sources.len(), *row));
-                }
-                (Column::Carried { at, .. }, _) => at.push((0, 0)),
+                at.push((sources.len(), *row));
             }
+            (Column::Number(numbers), _) => {
+                let text = carried.text(which);
+                numbers.append_option(std::str::from_utf8(&text).ok().and_then(|text| text.parse().ok()));
+            }
+            _ => self.text(at, &String::from_utf8_lossy(&carried.text(which))),
         }
     }
 }

@@ -9,8 +9,8 @@ use crate::write::{Refused, Touchdown, words};
 use crate::{Error, Mode, Outcome, Reason, Result, Robot};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use std::borrow::Cow;
 use std::collections::HashSet;
+use std::ops::Range;
 
 /// The columns between those that name the state and those of the contacts.
 const FIRST: [&str; 4] = ["verdict", "outcome", "margin", "proven"];
@@ -76,50 +76,79 @@ pub enum Kind {
     Carried(usize),
 }
 
-/// What is in a cell.
-#[derive(Debug, Clone)]
-pub enum Cell<'c> {
-    /// Nothing.
-    Empty,
-    /// Text that is not empty.
-    Text(Cow<'c, str>),
-    /// A number.
-    Number(f64),
-    /// A whole number.
-    Integer(i64),
-    /// True or false.
-    Boolean(bool),
-    /// A cell of the input that is carried through, and which of these it is.
-    Carried(&'c Carried, usize),
-}
-
 /// Takes the rows of a table of results.
 pub trait RowSink {
-    /// Takes the next row, with a cell for each of the columns.
-    fn row(&mut self, columns: &Columns, cells: &[Cell]);
+    /// Takes the next row, whose cells `fill` sets, none twice.
+    fn row(&mut self, columns: &Columns, fill: &mut dyn FnMut(&mut dyn Row));
+}
+
+/// A row in the making, whose cells are empty until they are set.
+pub trait Row {
+    /// Sets the cell of a column to text, if there is some.
+    fn text(&mut self, at: usize, text: &str);
+
+    /// Sets it to a number.
+    fn number(&mut self, at: usize, number: f64);
+
+    /// Sets it to a whole number.
+    fn integer(&mut self, at: usize, number: i64);
+
+    /// Sets it to true or false.
+    fn boolean(&mut self, at: usize, holds: bool);
+
+    /// Sets it to a cell of the input that is carried through: which of them.
+    fn carried(&mut self, at: usize, carried: &Carried, which: usize);
+}
+
+/// A row as text.
+struct TextRow<'c> {
+    columns: &'c Columns,
+    /// The text of all cells, as they were set, and where in it each column's is.
+    text: Vec<u8>,
+    cells: Vec<Range<usize>>,
+}
+
+impl TextRow<'_> {
+    fn set(&mut self, at: usize, append: impl FnOnce(&mut Vec<u8>)) {
+        let start = self.text.len();
+        append(&mut self.text);
+        self.cells[at] = start..self.text.len();
+    }
+
+    fn bytes(&mut self, at: usize, bytes: &[u8]) {
+        let quote = self.columns.guarded && is_formula(bytes);
+        self.set(at, |text| text.extend(b"'".iter().filter(|_| quote).chain(bytes)));
+    }
+}
+
+impl Row for TextRow<'_> {
+    fn text(&mut self, at: usize, text: &str) {
+        self.bytes(at, text.as_bytes());
+    }
+
+    fn number(&mut self, at: usize, number: f64) {
+        self.set(at, |text| append_number(number, text));
+    }
+
+    fn integer(&mut self, at: usize, number: i64) {
+        self.bytes(at, number.to_string().as_bytes());
+    }
+
+    fn boolean(&mut self, at: usize, holds: bool) {
+        self.bytes(at, holds.to_string().as_bytes());
+    }
+
+    fn carried(&mut self, at: usize, carried: &Carried, which: usize) {
+        self.bytes(at, &carried.text(which));
+    }
 }
 
 /// Rows as text.
 impl RowSink for Vec<u8> {
-    fn row(&mut self, columns: &Columns, cells: &[Cell]) {
-        let (mut row, mut digits) = (columns.text_row(self), Vec::new());
-        // Writing into memory cannot fail.
-        for cell in cells {
-            digits.clear();
-            let _ = match cell {
-                Cell::Empty => row.write_field([]),
-                Cell::Text(text) => columns.append_text(text.as_bytes(), &mut row),
-                Cell::Number(number) => {
-                    append_number(*number, &mut digits);
-                    row.write_field(&digits)
-                }
-                Cell::Integer(number) => row.write_field(number.to_string()),
-                Cell::Boolean(holds) => row.write_field(holds.to_string()),
-                Cell::Carried(carried, which) => columns.append_text(&carried.text(*which), &mut row),
-            };
-        }
-        let _ = row.write_record(None::<&[u8]>);
-        let _ = row.flush();
+    fn row(&mut self, columns: &Columns, fill: &mut dyn FnMut(&mut dyn Row)) {
+        let mut row = TextRow { columns, text: Vec::new(), cells: vec![0..0; columns.names.len()] };
+        fill(&mut row);
+        columns.append_record(row.cells.into_iter().map(|cell| &row.text[cell]), self);
     }
 }
 
@@ -158,21 +187,6 @@ impl RowKind {
             Aspect::Impact => Self::State,
             Aspect::Forces => Self::Forces,
         }
-    }
-}
-
-/// A row in the making; cells that are not set stay empty.
-pub(super) struct Cells<'c>(pub Vec<Cell<'c>>);
-
-impl<'c> Cells<'c> {
-    /// Sets a cell to text; an empty one stays empty.
-    pub fn text(&mut self, at: usize, text: impl Into<Cow<'c, str>>) {
-        let text = text.into();
-        self.0[at] = if text.is_empty() { Cell::Empty } else { Cell::Text(text) };
-    }
-
-    pub fn number(&mut self, at: usize, number: f64) {
-        self.0[at] = Cell::Number(number);
     }
 }
 
@@ -345,10 +359,7 @@ impl Columns {
     }
 
     pub fn append_header(&self, out: &mut Vec<u8>) {
-        let mut row = self.text_row(out);
-        // Writing into memory cannot fail.
-        let _ = self.names.iter().try_for_each(|name| self.append_text(name.as_bytes(), &mut row));
-        let _ = row.write_record(None::<&[u8]>);
+        out.row(self, &mut |row| (0..).zip(&self.names).for_each(|(at, name)| row.text(at, name)));
     }
 
     /// Appends the rows of a result, one per outcome, with the state's id, line and touchdown.
@@ -368,111 +379,122 @@ impl Columns {
         for (place, contact) in places.iter_mut().zip(&impact.contacts) {
             *place = self.place(&contact.name)?;
         }
-        let mut cells = self.cells(id, line, carried);
-        cells.text(self.named, analysis.verdict.name());
-        cells.0[self.named + 3] = Cell::Boolean(analysis.proven);
-        if let Some(touchdown) = touchdown.filter(|_| self.kind == RowKind::Touchdown) {
-            let start = self.velocities() + self.coordinates;
-            cells.0[start] = Cell::Integer(touchdown.row as i64);
-            cells.number(start + 1, touchdown.time);
-            cells.text(start + 2, &*touchdown.striking);
-            cells.number(start + 3, touchdown.shift_z);
-            cells.text(start + 4, &*touchdown.at);
-            cells.text(start + 5, &touchdown.touching);
-            let coordinates = (start + TOUCHDOWN.len()..).zip(&touchdown.coordinates);
-            coordinates.for_each(|(at, &number)| cells.number(at, number));
-        }
-        if !self.brief {
-            cells.text(self.family() + 3, notes(&impact.notes));
-        }
         if analysis.outcomes.is_empty() {
-            out.row(self, &cells.0);
+            out.row(self, &mut |row| {
+                self.state((id, line, touchdown), impact, carried, row);
+                row.text(self.named, analysis.verdict.name());
+                row.boolean(self.named + 3, analysis.proven);
+            });
         }
         for (at, outcome) in analysis.outcomes.iter().enumerate() {
-            // Every outcome sets the same cells.
-            self.outcome(at + 1, outcome, &places, &mut cells);
-            if !analysis.families.is_empty() {
-                cells.text(self.family() + 1, families(&analysis.families, at));
-            }
-            out.row(self, &cells.0);
+            out.row(self, &mut |row| {
+                self.state((id, line, touchdown), impact, carried, row);
+                row.text(self.named, analysis.verdict.name());
+                self.outcome(at + 1, outcome, &places, row);
+                if !analysis.families.is_empty() {
+                    row.text(self.family() + 1, &families(&analysis.families, at));
+                }
+            });
         }
         Ok(())
     }
 
     pub fn append_refused(&self, refused: &Refused, carried: Option<&Carried>, out: &mut dyn RowSink) {
         let error = format!("line {}: {}", refused.line, refused.error);
-        self.append_error(self.cells(refused.id.as_ref(), Some(refused.line), carried), error, out);
+        self.append_error((refused.id.as_ref(), Some(refused.line), carried), &error, out);
     }
 
     /// Appends the row of a state without an id that has an error in place of outcomes.
-    pub fn append_unnamed(&self, error: String, carried: &Carried, out: &mut dyn RowSink) {
-        self.append_error(self.cells(None, None, Some(carried)), error, out);
+    pub fn append_unnamed(&self, error: &str, carried: &Carried, out: &mut dyn RowSink) {
+        self.append_error((None, None, Some(carried)), error, out);
     }
 
-    fn append_error(&self, mut cells: Cells, error: String, out: &mut dyn RowSink) {
-        cells.text(self.named, "refused");
-        cells.text(self.family() + 2, error);
-        out.row(self, &cells.0);
-    }
-
-    /// A row with the id, the line and what is carried through.
-    pub(super) fn cells<'c>(
+    fn append_error(
         &self,
-        id: Option<&'c Value>,
-        line: Option<usize>,
-        carried: Option<&'c Carried>,
-    ) -> Cells<'c> {
-        let mut cells = Cells(self.names.iter().map(|_| Cell::Empty).collect());
+        (id, line, carried): (Option<&Value>, Option<usize>, Option<&Carried>),
+        error: &str,
+        out: &mut dyn RowSink,
+    ) {
+        out.row(self, &mut |row| {
+            self.name_state((id, line, carried), row);
+            row.text(self.named, "refused");
+            row.text(self.family() + 2, error);
+        });
+    }
+
+    /// Sets the id, the line and what is carried through.
+    fn name_state(&self, (id, line, carried): (Option<&Value>, Option<usize>, Option<&Carried>), row: &mut dyn Row) {
         match (id, self.kinds[0]) {
-            (Some(Value::Number(id)), Kind::Integer) => cells.0[0] = id.as_i64().map_or(Cell::Empty, Cell::Integer),
-            (id, _) => cells.text(0, id.map_or("".into(), words::id)),
+            (Some(Value::Number(id)), Kind::Integer) => id.as_i64().into_iter().for_each(|id| row.integer(0, id)),
+            (id, _) => id.into_iter().for_each(|id| row.text(0, &words::id(id))),
         }
         if let Some(line) = line {
-            cells.0[1] = Cell::Integer(line as i64);
+            row.integer(1, line as i64);
         }
         if let Some(carried) = carried {
             let places = self.last() - self.carried..self.last();
-            places.zip(0..carried.len()).for_each(|(at, which)| cells.0[at] = Cell::Carried(carried, which));
+            places.zip(0..carried.len()).for_each(|(at, which)| row.carried(at, carried, which));
         }
-        cells
     }
 
-    fn outcome(&self, count: usize, outcome: &Outcome, places: &[usize], cells: &mut Cells) {
-        // Of what is not decided no number is known.
-        let number = |entry| if outcome.decided { Cell::Number(entry) } else { Cell::Empty };
-        cells.0[self.named + 1] = Cell::Integer(count as i64);
-        cells.0[self.named + 2] = outcome.margin.map_or(Cell::Empty, Cell::Number);
-        cells.0[self.named + 3] = Cell::Boolean(outcome.proven);
+    /// Sets what all outcomes of a state have in common, except the verdict.
+    fn state(
+        &self,
+        (id, line, touchdown): (Option<&Value>, Option<usize>, Option<&Touchdown>),
+        impact: &Impact,
+        carried: Option<&Carried>,
+        row: &mut dyn Row,
+    ) {
+        self.name_state((id, line, carried), row);
+        if let Some(touchdown) = touchdown.filter(|_| self.kind == RowKind::Touchdown) {
+            let start = self.velocities() + self.coordinates;
+            row.integer(start, touchdown.row as i64);
+            row.number(start + 1, touchdown.time);
+            row.text(start + 2, &touchdown.striking);
+            row.number(start + 3, touchdown.shift_z);
+            row.text(start + 4, &touchdown.at);
+            row.text(start + 5, &touchdown.touching);
+            let coordinates = (start + TOUCHDOWN.len()..).zip(&touchdown.coordinates);
+            coordinates.for_each(|(at, &number)| row.number(at, number));
+        }
+        if !self.brief {
+            row.text(self.family() + 3, &notes(&impact.notes));
+        }
+    }
+
+    fn outcome(&self, count: usize, outcome: &Outcome, places: &[usize], row: &mut dyn Row) {
+        row.integer(self.named + 1, count as i64);
+        outcome.margin.into_iter().for_each(|margin| row.number(self.named + 2, margin));
+        row.boolean(self.named + 3, outcome.proven);
         for ((&place, mode), impulse) in places.iter().zip(&outcome.modes).zip(&outcome.impulse) {
-            cells.text(place, mode.name());
-            if !self.brief {
-                impulse.iter().zip(place + 1..).for_each(|(&entry, at)| cells.0[at] = number(entry));
+            row.text(place, mode.name());
+            // Of what is not decided no number is known.
+            if outcome.decided && !self.brief {
+                impulse.iter().zip(place + 1..).for_each(|(&entry, at)| row.number(at, entry));
             }
         }
         if let Some(Next { verdict, modes, .. }) = outcome.next.as_ref().filter(|_| self.next) {
             let name = |mode: &Option<Mode>| mode.map_or("open", Mode::name);
             let modes = modes.iter().map(|own| own.iter().map(name).collect::<Vec<_>>().join("/"));
-            cells.text(self.named + FIRST.len(), verdict.name());
-            cells.text(self.named + FIRST.len() + 1, modes.collect::<Vec<_>>().join("; "));
+            row.text(self.named + FIRST.len(), verdict.name());
+            row.text(self.named + FIRST.len() + 1, &modes.collect::<Vec<_>>().join("; "));
         }
-        let velocities = outcome.velocity().take(self.coordinates);
-        velocities.zip(self.velocities()..).for_each(|(velocity, at)| cells.0[at] = number(velocity));
+        if outcome.decided {
+            let velocities = outcome.velocity().take(self.coordinates);
+            velocities.zip(self.velocities()..).for_each(|(velocity, at)| row.number(at, velocity));
+        }
         if !self.brief {
-            cells.text(self.last(), border(outcome));
+            row.text(self.last(), &border(outcome));
         }
-        cells.0[self.family()] = Cell::Boolean(outcome.family);
+        row.boolean(self.family(), outcome.family);
     }
 
-    /// A row of text that ends `out`.
-    fn text_row<'o>(&self, out: &'o mut Vec<u8>) -> csv::Writer<&'o mut Vec<u8>> {
-        csv::WriterBuilder::new().delimiter(self.form.delimiter()).buffer_capacity(1 << 10).from_writer(out)
-    }
-
-    fn append_text(&self, text: &[u8], row: &mut csv::Writer<&mut Vec<u8>>) -> csv::Result<()> {
-        match self.guarded && is_formula(text) {
-            true => row.write_field([b"'", text].concat()),
-            false => row.write_field(text),
-        }
+    /// Appends a row of text.
+    fn append_record<'t>(&self, cells: impl Iterator<Item = &'t [u8]>, out: &mut Vec<u8>) {
+        let mut row =
+            csv::WriterBuilder::new().delimiter(self.form.delimiter()).buffer_capacity(1 << 10).from_writer(out);
+        // Writing into memory cannot fail.
+        let _ = row.write_record(cells);
     }
 
     /// The first of the last columns.

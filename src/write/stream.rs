@@ -1,7 +1,7 @@
 //! Arrays of answers as a table.
 
 use super::columnar::{ColumnBlock, ColumnWriter, ColumnarFormat, TOGETHER};
-use super::csv::{Cell, RowSink};
+use super::csv::{Row, RowSink};
 use super::{Arrays, Columns};
 use crate::{Mode, Result, Verdict};
 use std::ops::Range;
@@ -9,40 +9,58 @@ use std::ops::Range;
 impl Arrays {
     /// Appends the rows of these states, of which nothing is carried through; their ids are their numbers from 0.
     fn append_rows(&self, columns: &Columns, states: Range<usize>, out: &mut dyn RowSink) {
-        let contacts = columns.contacts().len();
-        let number = |own: f64| if own.is_nan() { Cell::Empty } else { Cell::Number(own) };
         for state in states {
-            let mut cells = columns.cells(None, None, None);
-            let verdict = Verdict::ALL.get(usize::from(self.verdict[state]));
-            cells.0[0] = Cell::Integer(state as i64);
-            cells.text(columns.named, verdict.map_or("refused", |verdict| verdict.name()));
-            cells.0[columns.named + 3] = verdict.map_or(Cell::Empty, |_| Cell::Boolean(self.all_proven[state]));
-            cells.text(columns.family() + 2, self.error.get(state));
-            cells.text(columns.family() + 3, self.notes.get(state));
             let outcomes = self.offsets[state] as usize..self.offsets[state + 1] as usize;
             if outcomes.is_empty() {
-                out.row(columns, &cells.0);
+                out.row(columns, &mut |row| {
+                    if self.state(columns, state, row).is_some() {
+                        row.boolean(columns.named + 3, self.all_proven[state]);
+                    }
+                });
             }
-            for (at, row) in outcomes.enumerate() {
-                cells.0[columns.named + 1] = Cell::Integer(at as i64 + 1);
-                cells.0[columns.named + 2] = number(self.margin[row]);
-                cells.0[columns.named + 3] = Cell::Boolean(self.proven[row]);
-                let modes = &self.modes[row * contacts..][..contacts];
-                let impulses = self.impulse[2 * row * contacts..].chunks_exact(2);
-                let places = (columns.contacts_start()..).step_by(columns.of_contact());
-                for ((place, mode), impulse) in places.zip(modes).zip(impulses) {
-                    let mode = usize::try_from(*mode).ok().and_then(|mode| Mode::ALL.get(mode));
-                    cells.text(place, mode.map_or("", |mode| mode.name()));
-                    impulse.iter().zip(place + 1..).for_each(|(&entry, at)| cells.0[at] = number(entry));
-                }
-                let velocity = &self.velocity_after[row * columns.coordinates..][..columns.coordinates];
-                velocity.iter().zip(columns.velocities()..).for_each(|(&entry, at)| cells.number(at, entry));
-                cells.text(columns.last(), self.border.get(row));
-                cells.0[columns.family()] = Cell::Boolean(self.family[row]);
-                cells.text(columns.family() + 1, self.families.get(row));
-                out.row(columns, &cells.0);
+            for (count, at) in (1..).zip(outcomes) {
+                out.row(columns, &mut |row| {
+                    self.state(columns, state, row);
+                    self.outcome(columns, (count, at), row);
+                });
             }
         }
+    }
+
+    /// Sets what all outcomes of a state have in common; gives its verdict, if it is not refused.
+    fn state(&self, columns: &Columns, state: usize, row: &mut dyn Row) -> Option<Verdict> {
+        let verdict = Verdict::ALL.get(usize::from(self.verdict[state])).copied();
+        row.integer(0, state as i64);
+        row.text(columns.named, verdict.map_or("refused", Verdict::name));
+        row.text(columns.family() + 2, self.error.get(state));
+        row.text(columns.family() + 3, self.notes.get(state));
+        verdict
+    }
+
+    /// Sets the cells of an outcome, which is the state's number `count` and is `at` in the arrays.
+    fn outcome(&self, columns: &Columns, (count, at): (i64, usize), row: &mut dyn Row) {
+        let contacts = columns.contacts().len();
+        let mut number = |place: usize, own: f64| {
+            if !own.is_nan() {
+                row.number(place, own);
+            }
+        };
+        number(columns.named + 2, self.margin[at]);
+        let places = || (columns.contacts_start()..).step_by(columns.of_contact());
+        for (place, impulse) in places().zip(self.impulse[2 * at * contacts..][..2 * contacts].chunks_exact(2)) {
+            impulse.iter().zip(place + 1..).for_each(|(&entry, place)| number(place, entry));
+        }
+        row.integer(columns.named + 1, count);
+        row.boolean(columns.named + 3, self.proven[at]);
+        for (place, mode) in places().zip(&self.modes[at * contacts..][..contacts]) {
+            let mode = usize::try_from(*mode).ok().and_then(|mode| Mode::ALL.get(mode));
+            row.text(place, mode.map_or("", |mode| mode.name()));
+        }
+        let velocity = &self.velocity_after[at * columns.coordinates..][..columns.coordinates];
+        velocity.iter().zip(columns.velocities()..).for_each(|(&entry, place)| row.number(place, entry));
+        row.text(columns.last(), self.border.get(at));
+        row.boolean(columns.family(), self.family[at]);
+        row.text(columns.family() + 1, self.families.get(at));
     }
 
     /// All rows of these columns, as Arrow's stream: one per outcome, with the numbers of states from 0 for ids.

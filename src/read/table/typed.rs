@@ -88,8 +88,10 @@ impl Typed {
                 TableColumn::Velocity(to) => Some((1, to)),
                 _ => None,
             };
+            // Without a branch for each value.
             let is_whole = |numbers: &Float64Array| {
-                numbers.null_count() == 0 && numbers.values().iter().all(|value| value.is_finite())
+                let finite = || numbers.values().iter().fold(true, |finite, value| finite & value.is_finite());
+                numbers.null_count() == 0 && finite()
             };
             match (coordinate, typed) {
                 (Some((part, to)), Column::Numbers(numbers)) if to >= least && is_whole(numbers) => {
@@ -105,7 +107,7 @@ impl Typed {
     pub fn fill(&self, row: usize, state: &mut State) {
         for (part, coordinates) in self.whole.iter().zip([&mut state.position, &mut state.velocity]) {
             for (to, numbers) in part {
-                coordinates[*to] = numbers.value(row);
+                coordinates[*to] = numbers.values()[row];
             }
         }
     }
