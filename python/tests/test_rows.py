@@ -144,6 +144,10 @@ def test_numbers_that_are_not_decided_are_nan(walk):
     assert rows
     for row in rows:
         assert np.isnan(answers.impulse[row]).all() and np.isnan(answers.velocity_after[row]).all()
+    table = answers.to_arrow()
+    named = zip(table["verdict"].to_pylist(), table["proven"].to_pylist(), table["v_after_base_x"].to_pylist())
+    velocities = [velocity for verdict, proven, velocity in named if verdict == "undecided" and proven is False]
+    assert velocities and set(velocities) == {None}
 
 
 def test_foot_in_a_notch_has_two_contacts():

@@ -58,14 +58,21 @@ enum Column {
 }
 
 impl Column {
-    /// Makes it as long as so many `rows`.
+    /// Makes it as long as so many `rows`; one that is as long has no bitmap of empty cells.
+    #[inline]
     fn pad(&mut self, rows: usize) {
+        if self.len() < rows {
+            self.append_empty(rows - self.len());
+        }
+    }
+
+    fn append_empty(&mut self, count: usize) {
         match self {
-            Self::Text(texts) => texts.append_nulls(rows - texts.len()),
-            Self::Number(numbers) => numbers.append_nulls(rows - numbers.len()),
-            Self::Integer(numbers) => numbers.append_nulls(rows - numbers.len()),
-            Self::Boolean(values) => values.append_nulls(rows - values.len()),
-            Self::Carried { at, .. } => at.resize(rows, (0, 0)),
+            Self::Text(texts) => texts.append_nulls(count),
+            Self::Number(numbers) => numbers.append_nulls(count),
+            Self::Integer(numbers) => numbers.append_nulls(count),
+            Self::Boolean(values) => values.append_nulls(count),
+            Self::Carried { at, .. } => at.resize(at.len() + count, (0, 0)),
         }
     }
 
@@ -93,14 +100,12 @@ impl ColumnBlock {
         Self { columns: columns.kinds().iter().map(column).collect(), rows: 0 }
     }
 
-    /// A column, as long as there are rows.
+    /// A column whose cell in this row is not set yet.
     #[inline]
-    fn column(&mut self, at: usize) -> &mut Column {
+    fn column(&mut self, at: usize) -> Option<&mut Column> {
         let column = &mut self.columns[at];
-        if column.len() < self.rows {
-            column.pad(self.rows);
-        }
-        column
+        column.pad(self.rows);
+        (column.len() == self.rows).then_some(column)
     }
 
     fn finish(self, schema: &SchemaRef) -> Result<RecordBatch> {
@@ -131,43 +136,43 @@ impl RowSink for ColumnBlock {
     }
 }
 
-/// What a column cannot hold stays empty.
+/// What a column cannot hold stays empty, and what is set twice is what it was first.
 impl Row for ColumnBlock {
     fn text(&mut self, at: usize, text: &str) {
-        if let Column::Text(texts) = self.column(at)
-            && !text.is_empty()
+        if !text.is_empty()
+            && let Some(Column::Text(texts)) = self.column(at)
         {
             texts.append_value(text);
         }
     }
 
     fn number(&mut self, at: usize, number: f64) {
-        if let Column::Number(numbers) = self.column(at) {
+        if let Some(Column::Number(numbers)) = self.column(at) {
             numbers.append_value(number);
         }
     }
 
     fn integer(&mut self, at: usize, number: i64) {
-        if let Column::Integer(numbers) = self.column(at) {
+        if let Some(Column::Integer(numbers)) = self.column(at) {
             numbers.append_value(number);
         }
     }
 
     fn boolean(&mut self, at: usize, holds: bool) {
-        if let Column::Boolean(values) = self.column(at) {
+        if let Some(Column::Boolean(values)) = self.column(at) {
             values.append_value(holds);
         }
     }
 
     fn carried(&mut self, at: usize, carried: &Carried, which: usize) {
         match (self.column(at), carried) {
-            (Column::Carried { sources, at, .. }, Carried::Columns(source, row)) => {
+            (Some(Column::Carried { sources, at, .. }), Carried::Columns(source, row)) => {
                 if sources.last().is_none_or(|last| !Arc::ptr_eq(last, source)) {
                     sources.push(Arc::clone(source));
                 }
                 at.push((sources.len(), *row));
             }
-            (Column::Number(numbers), _) => {
+            (Some(Column::Number(numbers)), _) => {
                 let text = carried.text(which);
                 numbers.append_option(std::str::from_utf8(&text).ok().and_then(|text| text.parse().ok()));
             }
@@ -291,5 +296,29 @@ impl ColumnWriter {
         finished.map_err(unwritable)?;
         bytes.append(&mut self.taken());
         Ok(bytes)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Robot;
+    use crate::write::RowKind;
+    use arrow_array::cast::AsArray;
+
+    #[test]
+    fn every_column_has_a_cell_of_each_row() -> Result<()> {
+        let robot = Robot::from_urdf(include_str!("../../urdf/block.urdf"))?;
+        let columns = Columns::without_lines(&robot, &[], &[], &[], RowKind::State);
+        let mut block = ColumnBlock::new(&columns);
+        for verdicts in [&["unique", "none"][..], &[], &["ambiguous"]] {
+            block.row(&columns, &mut |row| verdicts.iter().for_each(|verdict| row.text(1, verdict)));
+        }
+        let schema = ColumnWriter::new(&columns, ColumnarFormat::Arrow)?.schema;
+        let batch = block.finish(&schema)?;
+        assert_eq!((batch.num_rows(), batch.num_columns()), (3, columns.names().len()));
+        let texts: Vec<_> = batch.column(1).as_string::<i32>().iter().collect();
+        assert_eq!(texts, [Some("unique"), None, Some("ambiguous")]);
+        Ok(())
     }
 }

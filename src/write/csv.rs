@@ -103,8 +103,9 @@ pub trait Row {
 /// A row as text.
 struct TextRow<'c> {
     columns: &'c Columns,
-    /// The text of all cells, as they were set, and where in it each column's is.
+    /// The text of all cells, as they were set.
     text: Vec<u8>,
+    /// Where in it each column's is.
     cells: Vec<Range<usize>>,
 }
 

@@ -40,6 +40,7 @@ impl Arrays {
     /// Sets the cells of an outcome, which is the state's number `count` and is `at` in the arrays.
     fn outcome(&self, columns: &Columns, (count, at): (i64, usize), row: &mut dyn Row) {
         let contacts = columns.contacts().len();
+        // Of what is not decided no number is known.
         let mut number = |place: usize, own: f64| {
             if !own.is_nan() {
                 row.number(place, own);
@@ -50,14 +51,14 @@ impl Arrays {
         for (place, impulse) in places().zip(self.impulse[2 * at * contacts..][..2 * contacts].chunks_exact(2)) {
             impulse.iter().zip(place + 1..).for_each(|(&entry, place)| number(place, entry));
         }
+        let velocity = &self.velocity_after[at * columns.coordinates..][..columns.coordinates];
+        velocity.iter().zip(columns.velocities()..).for_each(|(&entry, place)| number(place, entry));
         row.integer(columns.named + 1, count);
         row.boolean(columns.named + 3, self.proven[at]);
         for (place, mode) in places().zip(&self.modes[at * contacts..][..contacts]) {
             let mode = usize::try_from(*mode).ok().and_then(|mode| Mode::ALL.get(mode));
             row.text(place, mode.map_or("", |mode| mode.name()));
         }
-        let velocity = &self.velocity_after[at * columns.coordinates..][..columns.coordinates];
-        velocity.iter().zip(columns.velocities()..).for_each(|(&entry, place)| row.number(place, entry));
         row.text(columns.last(), self.border.get(at));
         row.boolean(columns.family(), self.family[at]);
         row.text(columns.family() + 1, self.families.get(at));

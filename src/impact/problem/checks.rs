@@ -13,7 +13,7 @@ pub(crate) fn check_matrix_size(contacts: usize) -> Result<()> {
         return Ok(());
     }
     let reason = Reason::MatricesTooLarge { contacts, limit: MATRIX_LIMIT };
-    Err(Error::new(reason).hint("name the contacts that matter by hand, or lower the contact tolerance"))
+    Err(Error::new(reason).hint("leave out the contacts that matter least"))
 }
 
 /// Diagonal entries of G outside these would let products of two of them underflow or overflow \[1/kg\].

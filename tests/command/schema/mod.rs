@@ -190,6 +190,22 @@ fn the_schema_of_states_has_the_reader_s_fields() {
 }
 
 #[test]
+fn a_target_needs_a_stiffness() {
+    for (spring, is_complete) in [
+        (json!({"target": [0, 1]}), false),
+        (json!({"target": [0, 1], "stiffness": [0, 0]}), true),
+        (json!({"pitch": {"target": 1}}), false),
+        (json!({"pitch": {"target": 1, "stiffness": 5}}), true),
+    ] {
+        let mut whole = json!({"a": {"link": "torso"}, "b": {"world": [0, 0]}});
+        whole.as_object_mut().expect("an object").extend(spring.as_object().expect("an object").clone());
+        let state = json!({"virtual": [whole]});
+        assert_eq!(is_valid(&schema::state(), &state), is_complete, "{state}");
+        assert_eq!(read_state(&state.to_string()).is_ok(), is_complete, "{state}");
+    }
+}
+
+#[test]
 fn every_example_is_valid() {
     for (folder, at_least, schema) in [
         ("examples", 7, schema::state()),
