@@ -7,8 +7,8 @@
 use super::csv::{Columns, Kind, Row, RowSink};
 use crate::read::table::Carried;
 use crate::{Error, Reason, Result};
-use arrow_array::builder::{ArrayBuilder, BooleanBuilder, Float64Builder, Int64Builder, StringBuilder};
-use arrow_array::{Array, ArrayRef, RecordBatch, new_null_array};
+use arrow_array::builder::{ArrayBuilder, Float64Builder, Int64Builder, StringBuilder};
+use arrow_array::{Array, ArrayRef, BooleanArray, RecordBatch, new_null_array};
 use arrow_ipc::writer::{FileWriter, StreamWriter};
 use arrow_schema::{DataType, Field, Schema, SchemaRef};
 use arrow_select::concat::concat_batches;
@@ -48,7 +48,7 @@ enum Column {
     Text(StringBuilder),
     Number(Float64Builder),
     Integer(Int64Builder),
-    Boolean(BooleanBuilder),
+    Boolean(Vec<Option<bool>>),
     /// Cells of these columns: which column, and of each row which of its arrays and where; the first array is null.
     Carried {
         which: usize,
@@ -57,34 +57,14 @@ enum Column {
     },
 }
 
-impl Column {
-    /// Makes it as long as so many `rows`; one that is as long has no bitmap of empty cells.
-    #[inline]
-    fn pad(&mut self, rows: usize) {
-        if self.len() < rows {
-            self.append_empty(rows - self.len());
-        }
+/// Whether the cell of a row, before which there are so many `rows`, is not set yet; then the column has the cells before.
+#[inline]
+fn has_room<B: ArrayBuilder>(builder: &mut B, rows: usize, append_nulls: impl FnOnce(&mut B, usize)) -> bool {
+    let own = builder.len();
+    if own < rows {
+        append_nulls(builder, rows - own);
     }
-
-    fn append_empty(&mut self, count: usize) {
-        match self {
-            Self::Text(texts) => texts.append_nulls(count),
-            Self::Number(numbers) => numbers.append_nulls(count),
-            Self::Integer(numbers) => numbers.append_nulls(count),
-            Self::Boolean(values) => values.append_nulls(count),
-            Self::Carried { at, .. } => at.resize(at.len() + count, (0, 0)),
-        }
-    }
-
-    fn len(&self) -> usize {
-        match self {
-            Self::Text(texts) => texts.len(),
-            Self::Number(numbers) => numbers.len(),
-            Self::Integer(numbers) => numbers.len(),
-            Self::Boolean(values) => values.len(),
-            Self::Carried { at, .. } => at.len(),
-        }
-    }
+    own <= rows
 }
 
 impl ColumnBlock {
@@ -94,29 +74,34 @@ impl ColumnBlock {
             Kind::Text => Column::Text(StringBuilder::new()),
             Kind::Number => Column::Number(Float64Builder::new()),
             Kind::Integer => Column::Integer(Int64Builder::new()),
-            Kind::Boolean => Column::Boolean(BooleanBuilder::new()),
+            Kind::Boolean => Column::Boolean(Vec::new()),
             Kind::Carried(which) => Column::Carried { which, sources: Vec::new(), at: Vec::new() },
         };
         Self { columns: columns.kinds().iter().map(column).collect(), rows: 0 }
     }
 
-    /// A column whose cell in this row is not set yet.
-    #[inline]
-    fn column(&mut self, at: usize) -> Option<&mut Column> {
-        let column = &mut self.columns[at];
-        column.pad(self.rows);
-        (column.len() == self.rows).then_some(column)
-    }
-
     fn finish(self, schema: &SchemaRef) -> Result<RecordBatch> {
-        let array = |(mut column, field): (Column, &Arc<Field>)| -> Result<ArrayRef> {
-            column.pad(self.rows);
+        let rows = self.rows;
+        let array = |(column, field): (Column, &Arc<Field>)| -> Result<ArrayRef> {
             Ok(match column {
-                Column::Text(mut texts) => Arc::new(texts.finish()),
-                Column::Number(mut numbers) => Arc::new(numbers.finish()),
-                Column::Integer(mut numbers) => Arc::new(numbers.finish()),
-                Column::Boolean(mut values) => Arc::new(values.finish()),
-                Column::Carried { which, sources, at } => {
+                Column::Text(mut texts) => {
+                    has_room(&mut texts, rows, StringBuilder::append_nulls);
+                    Arc::new(texts.finish())
+                }
+                Column::Number(mut numbers) => {
+                    has_room(&mut numbers, rows, Float64Builder::append_nulls);
+                    Arc::new(numbers.finish())
+                }
+                Column::Integer(mut numbers) => {
+                    has_room(&mut numbers, rows, Int64Builder::append_nulls);
+                    Arc::new(numbers.finish())
+                }
+                Column::Boolean(mut values) => {
+                    values.resize(rows, None);
+                    Arc::new(BooleanArray::from(values))
+                }
+                Column::Carried { which, sources, mut at } => {
+                    at.resize(rows, (0, 0));
                     let null = new_null_array(field.data_type(), 1);
                     let arrays = sources.iter().map(|source| source.column(which).as_ref());
                     let arrays: Vec<&dyn Array> = std::iter::once(null.as_ref()).chain(arrays).collect();
@@ -139,42 +124,52 @@ impl RowSink for ColumnBlock {
 /// What a column cannot hold stays empty, and what is set twice is what it was first.
 impl Row for ColumnBlock {
     fn text(&mut self, at: usize, text: &str) {
-        if !text.is_empty()
-            && let Some(Column::Text(texts)) = self.column(at)
+        if let Column::Text(texts) = &mut self.columns[at]
+            && !text.is_empty()
+            && has_room(texts, self.rows, StringBuilder::append_nulls)
         {
             texts.append_value(text);
         }
     }
 
     fn number(&mut self, at: usize, number: f64) {
-        if let Some(Column::Number(numbers)) = self.column(at) {
+        if let Column::Number(numbers) = &mut self.columns[at]
+            && has_room(numbers, self.rows, Float64Builder::append_nulls)
+        {
             numbers.append_value(number);
         }
     }
 
     fn integer(&mut self, at: usize, number: i64) {
-        if let Some(Column::Integer(numbers)) = self.column(at) {
+        if let Column::Integer(numbers) = &mut self.columns[at]
+            && has_room(numbers, self.rows, Int64Builder::append_nulls)
+        {
             numbers.append_value(number);
         }
     }
 
     fn boolean(&mut self, at: usize, holds: bool) {
-        if let Some(Column::Boolean(values)) = self.column(at) {
-            values.append_value(holds);
+        if let Column::Boolean(values) = &mut self.columns[at]
+            && values.len() <= self.rows
+        {
+            values.resize(self.rows, None);
+            values.push(Some(holds));
         }
     }
 
     fn carried(&mut self, at: usize, carried: &Carried, which: usize) {
-        match (self.column(at), carried) {
-            (Some(Column::Carried { sources, at, .. }), Carried::Columns(source, row)) => {
+        match (&mut self.columns[at], carried) {
+            (Column::Carried { sources, at, .. }, Carried::Columns(source, row)) if at.len() <= self.rows => {
                 if sources.last().is_none_or(|last| !Arc::ptr_eq(last, source)) {
                     sources.push(Arc::clone(source));
                 }
+                at.resize(self.rows, (0, 0));
                 at.push((sources.len(), *row));
             }
-            (Some(Column::Number(numbers)), _) => {
+            (Column::Number(_), _) => {
                 let text = carried.text(which);
-                numbers.append_option(std::str::from_utf8(&text).ok().and_then(|text| text.parse().ok()));
+                let number = std::str::from_utf8(&text).ok().and_then(|text| text.parse().ok());
+                number.into_iter().for_each(|number| self.number(at, number));
             }
             _ => self.text(at, &String::from_utf8_lossy(&carried.text(which))),
         }
