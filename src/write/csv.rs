@@ -1,7 +1,7 @@
 //! Results as tables: one row per outcome.
 
 use crate::contact::Feet;
-use crate::impact::{CONTACT_LIMIT, Family, Next};
+use crate::impact::{Analysis, CONTACT_LIMIT, Family, Next};
 use crate::pipeline::{AT_REST, Aspect, Impact};
 use crate::read::table::{Carried, Form, Header, in_columns};
 use crate::state::NamedContact;
@@ -10,7 +10,6 @@ use crate::{Error, Mode, Outcome, Reason, Result, Robot};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::HashSet;
-use std::ops::Range;
 
 /// The columns between those that name the state and those of the contacts.
 const FIRST: [&str; 4] = ["verdict", "outcome", "margin", "proven"];
@@ -52,7 +51,7 @@ pub struct Columns {
     next: bool,
     brief: bool,
     /// Whether cells of text are kept from being formulas.
-    guarded: bool,
+    pub(super) guarded: bool,
     form: Form,
     /// The columns that are carried through, if they have types.
     #[cfg(feature = "columnar")]
@@ -98,76 +97,6 @@ pub trait Row {
 
     /// Sets it to a cell of the input that is carried through: which of them.
     fn carried(&mut self, at: usize, carried: &Carried, which: usize);
-}
-
-/// A row as text.
-struct TextRow<'c> {
-    columns: &'c Columns,
-    /// The text of all cells, as they were set.
-    text: Vec<u8>,
-    /// Where in it each column's is.
-    cells: Vec<Range<usize>>,
-}
-
-impl TextRow<'_> {
-    fn set(&mut self, at: usize, append: impl FnOnce(&mut Vec<u8>)) {
-        let start = self.text.len();
-        append(&mut self.text);
-        self.cells[at] = start..self.text.len();
-    }
-
-    fn bytes(&mut self, at: usize, bytes: &[u8]) {
-        let quote = self.columns.guarded && is_formula(bytes);
-        self.set(at, |text| text.extend(b"'".iter().filter(|_| quote).chain(bytes)));
-    }
-}
-
-impl Row for TextRow<'_> {
-    fn text(&mut self, at: usize, text: &str) {
-        self.bytes(at, text.as_bytes());
-    }
-
-    fn number(&mut self, at: usize, number: f64) {
-        self.set(at, |text| append_number(number, text));
-    }
-
-    fn integer(&mut self, at: usize, number: i64) {
-        self.bytes(at, number.to_string().as_bytes());
-    }
-
-    fn boolean(&mut self, at: usize, holds: bool) {
-        self.bytes(at, holds.to_string().as_bytes());
-    }
-
-    fn carried(&mut self, at: usize, carried: &Carried, which: usize) {
-        self.bytes(at, &carried.text(which));
-    }
-}
-
-/// Rows as text.
-impl RowSink for Vec<u8> {
-    fn row(&mut self, columns: &Columns, fill: &mut dyn FnMut(&mut dyn Row)) {
-        let mut row = TextRow { columns, text: Vec::new(), cells: vec![0..0; columns.names.len()] };
-        fill(&mut row);
-        columns.append_record(row.cells.into_iter().map(|cell| &row.text[cell]), self);
-    }
-}
-
-/// The shortest digits that read back as the same number, as in JSON.
-fn append_number(number: f64, out: &mut Vec<u8>) {
-    if number.is_finite() {
-        // Writing into memory cannot fail.
-        let _ = serde_json::to_writer(out, &number);
-    } else {
-        out.extend(number.to_string().into_bytes());
-    }
-}
-
-/// The same as text.
-pub(super) fn number_text(number: f64) -> String {
-    let mut digits = Vec::new();
-    append_number(number, &mut digits);
-    String::from_utf8_lossy(&digits).into_owned()
 }
 
 /// What a row of results is about.
@@ -382,15 +311,13 @@ impl Columns {
         }
         if analysis.outcomes.is_empty() {
             out.row(self, &mut |row| {
-                self.state((id, line, touchdown), impact, carried, row);
-                row.text(self.named, analysis.verdict.name());
+                self.state((id, line, touchdown), (impact, analysis), carried, row);
                 row.boolean(self.named + 3, analysis.proven);
             });
         }
         for (at, outcome) in analysis.outcomes.iter().enumerate() {
             out.row(self, &mut |row| {
-                self.state((id, line, touchdown), impact, carried, row);
-                row.text(self.named, analysis.verdict.name());
+                self.state((id, line, touchdown), (impact, analysis), carried, row);
                 self.outcome(at + 1, outcome, &places, row);
                 if !analysis.families.is_empty() {
                     row.text(self.family() + 1, &families(&analysis.families, at));
@@ -438,15 +365,16 @@ impl Columns {
         }
     }
 
-    /// Sets what all outcomes of a state have in common, except the verdict.
+    /// Sets what all outcomes of a state have in common.
     fn state(
         &self,
         (id, line, touchdown): (Option<&Value>, Option<usize>, Option<&Touchdown>),
-        impact: &Impact,
+        (impact, analysis): (&Impact, &Analysis),
         carried: Option<&Carried>,
         row: &mut dyn Row,
     ) {
         self.name_state((id, line, carried), row);
+        row.text(self.named, analysis.verdict.name());
         if let Some(touchdown) = touchdown.filter(|_| self.kind == RowKind::Touchdown) {
             let start = self.velocities() + self.coordinates;
             row.integer(start, touchdown.row as i64);
@@ -488,14 +416,6 @@ impl Columns {
             row.text(self.last(), &border(outcome));
         }
         row.boolean(self.family(), outcome.family);
-    }
-
-    /// Appends a row of text.
-    fn append_record<'t>(&self, cells: impl Iterator<Item = &'t [u8]>, out: &mut Vec<u8>) {
-        let mut row =
-            csv::WriterBuilder::new().delimiter(self.form.delimiter()).buffer_capacity(1 << 10).from_writer(out);
-        // Writing into memory cannot fail.
-        let _ = row.write_record(cells);
     }
 
     /// The first of the last columns.
@@ -548,12 +468,6 @@ fn contacts(robot: &Robot, feet: &[NamedContact], kind: RowKind) -> Vec<String> 
     names
 }
 
-/// Whether a spreadsheet would compute the text of a cell.
-fn is_formula(text: &[u8]) -> bool {
-    let is_number = || std::str::from_utf8(text).is_ok_and(|text| text.parse::<f64>().is_ok());
-    matches!(text.first(), Some(b'=' | b'+' | b'-' | b'@' | b'\t' | b'\r')) && !is_number()
-}
-
 /// The refusal of a state with a contact that the robot's feet cannot make.
 pub(super) fn no_column(contact: &str) -> Error {
     let reason = Reason::Unsupported(format!("the table of results has no columns for contact \"{contact}\""));
@@ -581,23 +495,4 @@ pub(super) fn notes(notes: &[String]) -> String {
 /// A note without the speeds of a resting contact: in a walk every row has such a contact.
 fn short(note: &str) -> &str {
     memchr::memmem::find(note.as_bytes(), AT_REST.as_bytes()).map_or(note, |end| &note[..end + AT_REST.len()])
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_have_the_notation_of_json() {
-        for (number, text) in [
-            (5e-5, "0.00005"),
-            (5.46e16, "5.46e+16"),
-            (1.0, "1.0"),
-            (-0.0, "-0.0"),
-            (f64::NAN, "NaN"),
-            (f64::NEG_INFINITY, "-inf"),
-        ] {
-            assert_eq!(number_text(number), text);
-        }
-    }
 }

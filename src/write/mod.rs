@@ -19,6 +19,7 @@ mod result;
 mod forces;
 mod text;
 mod csv;
+mod text_row;
 #[cfg(feature = "columnar")]
 mod columnar;
 mod arrays;

@@ -3,7 +3,7 @@
 use crate::read::table::Carried;
 use crate::state::NamedContact;
 use crate::sweep::{Regime, RobotStudy, Solver};
-use crate::write::csv::number_text;
+use crate::write::text_row::number_text;
 use crate::write::{Columns, Detail, ErrorObject, Kind, Report, RowKind, RowSink, append_line};
 use crate::{Impact, Result};
 use serde::Serialize;

@@ -1,0 +1,104 @@
+//! Rows of results as the text of a table.
+
+use super::csv::{Columns, Row, RowSink};
+use crate::read::table::Carried;
+use std::ops::Range;
+
+/// A row as text.
+struct TextRow {
+    guarded: bool,
+    /// The text of all cells, as they were set.
+    text: Vec<u8>,
+    /// Where in it each column's is.
+    cells: Vec<Range<usize>>,
+}
+
+impl TextRow {
+    fn set(&mut self, at: usize, append: impl FnOnce(&mut Vec<u8>)) {
+        let start = self.text.len();
+        append(&mut self.text);
+        self.cells[at] = start..self.text.len();
+    }
+
+    fn bytes(&mut self, at: usize, bytes: &[u8]) {
+        let quote = self.guarded && is_formula(bytes);
+        self.set(at, |text| text.extend(b"'".iter().filter(|_| quote).chain(bytes)));
+    }
+}
+
+impl Row for TextRow {
+    fn text(&mut self, at: usize, text: &str) {
+        self.bytes(at, text.as_bytes());
+    }
+
+    fn number(&mut self, at: usize, number: f64) {
+        self.set(at, |text| append_number(number, text));
+    }
+
+    fn integer(&mut self, at: usize, number: i64) {
+        self.bytes(at, number.to_string().as_bytes());
+    }
+
+    fn boolean(&mut self, at: usize, holds: bool) {
+        self.bytes(at, holds.to_string().as_bytes());
+    }
+
+    fn carried(&mut self, at: usize, carried: &Carried, which: usize) {
+        self.bytes(at, &carried.text(which));
+    }
+}
+
+/// Rows as text.
+impl RowSink for Vec<u8> {
+    fn row(&mut self, columns: &Columns, fill: &mut dyn FnMut(&mut dyn Row)) {
+        let cells = vec![0..0; columns.names().len()];
+        let mut row = TextRow { guarded: columns.guarded, text: Vec::new(), cells };
+        fill(&mut row);
+        let mut writer = csv::WriterBuilder::new();
+        let mut writer = writer.delimiter(columns.form().delimiter()).buffer_capacity(1 << 10).from_writer(self);
+        // Writing into memory cannot fail.
+        let _ = writer.write_record(row.cells.into_iter().map(|cell| &row.text[cell]));
+    }
+}
+
+/// The shortest digits that read back as the same number, as in JSON.
+fn append_number(number: f64, out: &mut Vec<u8>) {
+    if number.is_finite() {
+        // Writing into memory cannot fail.
+        let _ = serde_json::to_writer(out, &number);
+    } else {
+        out.extend(number.to_string().into_bytes());
+    }
+}
+
+/// The same as text.
+pub(super) fn number_text(number: f64) -> String {
+    let mut digits = Vec::new();
+    append_number(number, &mut digits);
+    String::from_utf8_lossy(&digits).into_owned()
+}
+
+/// Whether a spreadsheet would compute the text of a cell.
+fn is_formula(text: &[u8]) -> bool {
+    let is_number = || std::str::from_utf8(text).is_ok_and(|text| text.parse::<f64>().is_ok());
+    matches!(text.first(), Some(b'=' | b'+' | b'-' | b'@' | b'\t' | b'\r')) && !is_number()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_the_notation_of_json() {
+        for (number, text) in [
+            (5e-5, "0.00005"),
+            (5.46e16, "5.46e+16"),
+            (1.0, "1.0"),
+            (-0.0, "-0.0"),
+            (f64::NAN, "NaN"),
+            (f64::NEG_INFINITY, "-inf"),
+        ] {
+            assert_eq!(number_text(number), text);
+        }
+    }
+}
