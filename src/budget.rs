@@ -8,7 +8,7 @@
 //! that a linear program in the middle of a proof ends as soon as one at its edge: every sign that is asked for then is
 //! unknown, which is always a right answer.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
@@ -64,6 +64,9 @@ pub struct BudgetSpent(pub Duration);
 
 thread_local! {
     static WORK: Work = const { Work { running: Cell::new(None), rounds: Cell::new(ROUNDS), spent: Cell::new(false) } };
+    /// What all that share the budget of this thread's work have spent \[ns\]. It is not part of the work, since what needs
+    /// no drop is quicker to reach.
+    static SHARED: RefCell<Option<Arc<AtomicU64>>> = const { RefCell::new(None) };
 }
 
 /// What the thread is at work on.
@@ -74,24 +77,32 @@ struct Work {
     spent: Cell<bool>,
 }
 
+#[derive(Clone, Copy)]
 struct Running {
     budget: Budget,
     /// When the clock was last read.
     last: Option<Duration>,
     /// Of this work alone \[ns\].
     own: u64,
-    /// Of all that share the budget \[ns\].
-    shared: Option<Arc<AtomicU64>>,
+    /// Whether others share the budget, by [`SHARED`].
+    is_shared: bool,
 }
 
-impl Running {
+impl Work {
     /// Reads the clock; whether everything is spent.
-    fn read(&mut self) -> bool {
-        let now = (self.budget.clock)();
-        let used = nanoseconds(now.saturating_sub(self.last.replace(now).unwrap_or(now)));
-        self.own = self.own.saturating_add(used);
-        let shared = self.shared.as_ref().map(|all| all.fetch_add(used, Ordering::Relaxed).saturating_add(used));
-        shared.unwrap_or(self.own) >= nanoseconds(self.budget.time)
+    fn is_spent_now(&self) -> bool {
+        // Taken meanwhile: a clock may itself work within a budget.
+        let Some(Running { budget, last, own, is_shared }) = self.running.take() else { return false };
+        let all = if is_shared { SHARED.take() } else { None };
+        let now = (budget.clock)();
+        let used = nanoseconds(now.saturating_sub(last.unwrap_or(now)));
+        let own = own.saturating_add(used);
+        let shared = all.as_ref().map(|all| all.fetch_add(used, Ordering::Relaxed).saturating_add(used));
+        if is_shared {
+            SHARED.set(all);
+        }
+        self.running.set(Some(Running { budget, last: Some(now), own, is_shared }));
+        shared.unwrap_or(own) >= nanoseconds(budget.time)
     }
 }
 
@@ -105,9 +116,11 @@ struct Ending;
 impl Drop for Ending {
     fn drop(&mut self) {
         WORK.with(|work| {
-            if let Some(mut running) = work.running.take().filter(|running| running.shared.is_some()) {
-                running.read();
+            if work.running.get().is_some_and(|running| running.is_shared) {
+                work.is_spent_now();
+                SHARED.set(None);
             }
+            work.running.set(None);
             work.spent.set(false);
         });
     }
@@ -117,7 +130,7 @@ impl Budget {
     /// Does the work; what of it cannot be done within the budget is left open by [`Pipeline`](crate::Pipeline) and
     /// [`analyze`](crate::analyze). Within the work of another budget, that one goes on.
     pub fn within<R>(self, work: impl FnOnce() -> R) -> R {
-        Running { budget: self, last: None, own: 0, shared: None }.during(work)
+        Running { budget: self, last: None, own: 0, is_shared: false }.during(None, work)
     }
 }
 
@@ -167,29 +180,25 @@ impl SharedBudget {
     /// As [`SharedBudget::within`], by a thread whose work is part of another one's.
     pub(crate) fn share<R>(&self, work: impl FnOnce() -> R) -> R {
         let (budget, last) = (self.budget, Some((self.budget.clock)()));
-        Running { budget, last, own: 0, shared: Some(Arc::clone(&self.spent)) }.during(work)
+        Running { budget, last, own: 0, is_shared: true }.during(Some(&self.spent), work)
     }
 
     /// That within which this thread is at work.
     pub(crate) fn current() -> Option<Self> {
-        WORK.with(|work| {
-            let running = work.running.take();
-            let shared = running
-                .as_ref()
-                .and_then(|running| Some(Self { budget: running.budget, spent: Arc::clone(running.shared.as_ref()?) }));
-            work.running.set(running);
-            shared
-        })
+        let running = WORK.with(|work| work.running.get()).filter(|running| running.is_shared)?;
+        Some(Self { budget: running.budget, spent: SHARED.with_borrow(Clone::clone)? })
     }
 }
 
 impl Running {
-    fn during<R>(self, work: impl FnOnce() -> R) -> R {
+    fn during<R>(self, shared: Option<&Arc<AtomicU64>>, work: impl FnOnce() -> R) -> R {
         let _ending = WORK.with(|own| {
-            let outer = own.running.take();
-            let begins = outer.is_none();
-            own.running.set(Some(outer.unwrap_or(self)));
+            let begins = own.running.get().is_none();
             if begins {
+                if let Some(shared) = shared {
+                    SHARED.set(Some(Arc::clone(shared)));
+                }
+                own.running.set(Some(self));
                 own.rounds.set(ROUNDS);
             }
             begins.then(|| Ending)
@@ -219,11 +228,8 @@ pub(crate) fn is_spent_after(rounds: u32) -> bool {
         if left > 0 {
             return work.spent.get();
         }
-        if !work.spent.get()
-            && let Some(mut running) = work.running.take()
-        {
-            work.spent.set(running.read());
-            work.running.set(Some(running));
+        if !work.spent.get() {
+            work.spent.set(work.is_spent_now());
         }
         work.spent.get()
     })
@@ -260,6 +266,17 @@ mod tests {
         assert!(!is_spent_now(), "the budget ends with its work");
         let inner = seconds(2).within(|| (seconds(0).within(is_spent_now), (1..10).find(|_| is_spent_now())));
         assert_eq!(inner, (false, Some(2)), "the outer budget goes on within the inner one and behind it");
+    }
+
+    #[test]
+    fn clocks_may_work_within_budgets() {
+        fn working() -> Duration {
+            assert!(!SharedBudget::new(seconds(9)).share(is_spent_now), "a budget of its own");
+            ticking()
+        }
+        let shared = SharedBudget::new(Budget { time: Duration::from_secs(1000), clock: working });
+        assert_eq!(shared.within(|| (0..3).any(|_| is_spent_now())), Ok(false));
+        assert!(SharedBudget::current().is_none() && shared.spent.load(Ordering::Relaxed) > 0);
     }
 
     #[test]
