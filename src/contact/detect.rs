@@ -3,9 +3,10 @@
 use super::Contact;
 use super::feet::Feet;
 use super::merge::{Merged, merge};
+use super::outline::Outline;
 use super::placement::Placement;
 use super::point::{Point, Touch};
-use super::profile::Closeness;
+use super::profile::{Closeness, left_behind};
 use super::surface::{Sunk, Surface};
 use crate::error::{Error, Reason, Result};
 use crate::law::Friction;
@@ -200,9 +201,10 @@ impl Footing<'_> {
 
     /// The links of feet that reach beyond an end of the ground, at most `tolerance` above it, and the end's x \[m\].
     pub fn left_behind(&self, tolerance: f64) -> Vec<(&str, f64)> {
+        let Surface::Profile(terrain) = self.surface else { return Vec::new() };
         let mut found: Vec<(usize, f64)> = Vec::new();
         for foot in self.feet.iter() {
-            let end = self.surface.left_behind(foot, self.placement, tolerance).map(|end| (foot.link, end));
+            let end = left_behind(terrain, &Outline::new(foot, self.placement), tolerance).map(|end| (foot.link, end));
             found.extend(end.filter(|end| !found.contains(end)));
         }
         found.into_iter().map(|(link, end)| (self.name(link), end)).collect()

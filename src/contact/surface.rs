@@ -64,6 +64,7 @@ impl Surface {
     }
 
     /// How far heights are off by rounding alone \[m\].
+    #[inline]
     pub(super) fn rounding(&self, placement: &Placement, size: f64) -> f64 {
         match self {
             Self::HalfPlane(plane) => plane.rounding(placement, size),
@@ -128,14 +129,6 @@ impl Surface {
         same_place && (a.link, a.body, a.radius) == (b.link, b.body, b.radius)
     }
 
-    /// The end of the profile that a foot reaches beyond, not higher than `tolerance` above it.
-    pub(super) fn left_behind(&self, foot: &Foot, placement: &Placement, tolerance: f64) -> Option<f64> {
-        match self {
-            Self::HalfPlane(_) => None,
-            Self::Profile(terrain) => profile::left_behind(terrain, &Outline::new(foot, placement), tolerance),
-        }
-    }
-
     /// Whether a contact's normal is that of no straight piece of the ground.
     pub fn is_corner(&self, contact: &Contact) -> bool {
         match self {
@@ -145,6 +138,7 @@ impl Surface {
     }
 
     /// How far a foot is from the ground \[m\].
+    #[inline]
     pub fn clearance(&self, foot: &Foot, placement: &Placement) -> f64 {
         match self {
             Self::HalfPlane(plane) => plane.clearance(foot, placement),

@@ -150,13 +150,14 @@ impl Scratch {
         }
         self.tableau.load_entries(problem.laws(), delassus, free);
         let name = |contact| source.contact_name(contact);
+        let mut collected = Collected::new(problem, &self.scale, options, &name, &mut self.memory);
         let mut pass = F64Pass {
             labels: &mut self.labels,
             shares: options.reductions.frictionless
                 && problem.laws().iter().any(|law| law.modes().iter().any(|group| group.len() > 1)),
             regular: contacts == 0,
             undecided: Vec::new(),
-            collected: Collected::new(problem, &self.scale, options, &name, &mut self.memory),
+            collected: &mut collected,
         };
         let lists_all = options.rejections == ListedRejections::Everything;
         let mut kernel = None;
@@ -177,7 +178,7 @@ impl Scratch {
                 pass.collected.unlisted = pass.collected.total - search.survivors.len() as u64;
             }
         }
-        let F64Pass { mut regular, mut undecided, mut collected, .. } = pass;
+        let F64Pass { mut regular, mut undecided, .. } = pass;
         // Slow contacts often lack only digits of their own velocities, and these are soon computed.
         let is_blurred = !undecided.is_empty() && self.scale.is_slow() && !is_spent();
         let sharper = if is_blurred { source.velocity() } else { None }.map(|velocity| problem.moving(&velocity));
@@ -191,9 +192,10 @@ impl Scratch {
             collected.total -= undecided.len() as u64;
             (collected.problem, collected.scale) = (problem, scale);
             let again = std::mem::take(&mut undecided);
-            let mut pass = F64Pass { labels: &mut self.labels, shares: false, regular, undecided, collected };
+            let (labels, collected) = (&mut self.labels, &mut collected);
+            let mut pass = F64Pass { labels, shares: false, regular, undecided, collected };
             again.iter().for_each(|pending| self.tableau.visit_one(&pending.modes, &mut pass));
-            F64Pass { regular, undecided, collected, .. } = pass;
+            F64Pass { regular, undecided, .. } = pass;
         }
         let is_asked = !(options.brief || self.tableau.without_slip);
         // If all combinations are visited, so is the one in which every contact sticks, which shows it by itself.

@@ -304,8 +304,8 @@ impl<'a> Collected<'a> {
         self.rejected.sort_by_key(|(number, _)| *number);
         Findings {
             outcomes,
-            families: self.families.into_iter().map(|(_, family)| family).collect(),
-            rejected: self.rejected.into_iter().map(|(_, rejection)| rejection).collect(),
+            families: unnumbered(self.families),
+            rejected: unnumbered(self.rejected),
             unlisted: self.unlisted,
             effort: self.effort,
             visited: self.total,
@@ -343,6 +343,11 @@ impl<'a> Collected<'a> {
             next: None,
         });
     }
+}
+
+/// What is listed, without its numbers. Nearly always it is nothing, and collecting in place is slow to begin.
+fn unnumbered<T>(listed: Vec<(u64, T)>) -> Vec<T> {
+    if listed.is_empty() { Vec::new() } else { listed.into_iter().map(|(_, own)| own).collect() }
 }
 
 /// What there is to say of an outcome beside its numbers.

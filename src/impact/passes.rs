@@ -28,7 +28,8 @@ pub struct F64Pass<'a, 'm> {
     pub regular: bool,
     /// What f64 does not decide, or not with all digits of an outcome.
     pub undecided: Vec<Pending>,
-    pub collected: Collected<'a>,
+    /// Where it stays: it is large.
+    pub collected: &'m mut Collected<'a>,
 }
 
 impl Visitor<Rounded> for F64Pass<'_, '_> {
@@ -49,7 +50,7 @@ impl Visitor<Rounded> for F64Pass<'_, '_> {
 
     fn leaf(&mut self, leaf: &Leaf<'_, Rounded>) {
         let Self { labels, shares, regular, undecided, collected } = self;
-        let Collected { problem, scale, options, .. } = *collected;
+        let Collected { problem, scale, options, .. } = **collected;
         let laws = problem.laws();
         // If every impulse is free, the pivots are those of the whole matrix.
         *regular = *regular || is_free(leaf.modes, laws) && leaf.is_known();

@@ -131,7 +131,8 @@ impl Pipeline<'_> {
         let left_out = if self.options.brief { Vec::new() } else { self.left_out(scene, &prepared) };
         let Unforced { driven, rounding, .. } = unforced;
         let sustained = Sustained { slips, shock, gravity: scene.gravity(), driven, rounding };
-        let mut impact = self.unanswered(prepared);
+        let mut impact = self.unanswered(&mut prepared);
+        self.spare = Some(prepared);
         impact.velocity_before.clone_from(&self.assembly.workspace.contact_velocity);
         impact.matrices = self.options.matrices.then(|| self.matrices());
         (impact.left_out, impact.analysis) = (left_out, analysis);

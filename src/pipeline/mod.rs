@@ -24,7 +24,6 @@ pub(crate) use self::prepared::Prepared;
 use self::response::Unstruck;
 pub(crate) use self::resting::AT_REST;
 pub use self::springs::{Driven, SpringForce, Unrealized};
-use self::still::Still;
 pub use self::unsolved::Unsolved;
 use crate::budget::{Budget, is_spent, within};
 use crate::contact::{Contact, Feet, Merged, Placement};
@@ -41,7 +40,7 @@ use crate::robot::Robot;
 use crate::scalar::Magnitude;
 use crate::state::{NamedContact, Scene, State};
 use serde::{Deserialize, Serialize};
-use std::mem::{replace, take};
+use std::mem::replace;
 use std::sync::Arc;
 
 /// What is asked about a state.
@@ -193,8 +192,8 @@ pub enum LeftOut {
 /// The answer for one state, and what of its contacts was taken as given.
 struct Answer {
     impact: Box<Impact>,
-    foot: Option<Contact>,
-    still: Still,
+    /// Of which the answer was taken: the `impact` in it is memory.
+    prepared: Box<Prepared>,
     /// The rows of the loops that count.
     rows: Vec<usize>,
 }
@@ -366,27 +365,22 @@ impl<'r> Pipeline<'r> {
         let matrices = self.options.matrices.then(|| self.matrices());
         let followed = analysis.as_mut().filter(|_| next).map(|analysis| self.follow(state, &prepared, analysis));
         prepared.impact.notes.extend(followed.into_iter().flatten());
-        let (foot, still) = (prepared.foot.take(), take(&mut prepared.still));
-        let mut impact = self.unanswered(prepared);
+        let mut impact = self.unanswered(&mut prepared);
         (impact.analysis, impact.friction_needed) = (analysis, friction_needed);
         impact.slides_regardless = slides_regardless;
         (impact.left_out, impact.matrices) = (left_out, matrices);
-        Ok(Answer { impact, foot, still, rows: self.assembly.rows.clone() })
+        Ok(Answer { impact, prepared, rows: self.assembly.rows.clone() })
     }
 
     /// What an answer is asked for; the rest of its memory goes to the next state.
-    fn finished(&mut self, Answer { impact, still, .. }: Answer) -> Box<Impact> {
-        if let Some(spare) = &mut self.spare {
-            spare.still = still;
-        }
+    fn finished(&mut self, Answer { impact, prepared, .. }: Answer) -> Box<Impact> {
+        self.spare = Some(prepared);
         impact
     }
 
     /// The answer without its analysis, of which the memory is exchanged with that of the next state.
-    fn unanswered(&mut self, mut prepared: Box<Prepared>) -> Box<Impact> {
-        let impact = replace(&mut prepared.impact, self.recycled.take().unwrap_or_default());
-        self.spare = Some(prepared);
-        impact
+    fn unanswered(&mut self, prepared: &mut Prepared) -> Box<Impact> {
+        replace(&mut prepared.impact, self.recycled.take().unwrap_or_default())
     }
 
     /// Takes the memory of an answer that is no longer needed. With it the answer to a state of up to three contacts, of

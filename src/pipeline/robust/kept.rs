@@ -1,7 +1,7 @@
 //! A state whose numbers vary in a box while its contacts are kept.
 
 use super::super::exact::{Contacts, ExactState, Inputs};
-use super::super::{Answer, Impact, Pipeline};
+use super::super::{Answer, Impact, Pipeline, Prepared};
 use super::Counterexample;
 use super::combination::UncertainProblem;
 use super::state_box::{Quantity, StateBox};
@@ -50,8 +50,9 @@ impl KeptContacts<'_, '_> {
     /// The proven answer at a point, if its contacts are the same.
     fn analysis(&mut self, point: &[f64]) -> Option<(State, Analysis)> {
         let state = self.at(point);
-        let Answer { impact, foot, still, rows } = self.pipeline.strike(&state, Some(&[])).ok()?;
-        let same_foot = match (&foot, &self.answer.foot) {
+        let answer = self.pipeline.strike(&state, Some(&[])).ok()?;
+        let [own, given] = [&answer, self.answer];
+        let same_foot = match (&own.prepared.foot, &given.prepared.foot) {
             (Some(one), Some(other)) => {
                 let far = one.center - other.center;
                 (one.body, one.radius) == (other.body, other.radius) && far.dot(far) <= self.place_rounding()
@@ -59,10 +60,12 @@ impl KeptContacts<'_, '_> {
             (one, other) => one.is_none() == other.is_none(),
         };
         // Elsewhere on a profile a named contact may have another normal.
-        let mut contacts = impact.contacts.iter().zip(&self.answer.impact.contacts);
+        let mut contacts = own.impact.contacts.iter().zip(&given.impact.contacts);
         let same_axes = contacts.all(|(one, other)| one.ground == other.ground);
-        let same_rests = impact.stance == self.answer.impact.stance && still == self.answer.still;
-        (same_foot && same_axes && same_rests && rows == self.answer.rows).then_some((state, impact.analysis?))
+        let same_rests = own.impact.stance == given.impact.stance && own.prepared.still == given.prepared.still;
+        let same = same_foot && same_axes && same_rests && own.rows == given.rows;
+        let impact = self.pipeline.finished(answer);
+        same.then_some((state, impact.analysis?))
     }
 
     /// The square of how far a foot that is named may lie from the same foot as it was found \[m^2\].
@@ -93,7 +96,8 @@ impl KeptContacts<'_, '_> {
 
     /// The contact problems of all states of the box.
     pub fn problem<const N: usize>(&self, whole: &StateBox) -> UncertainProblem<Affine<N>> {
-        let Answer { impact, foot, still, rows } = self.answer;
+        let Answer { impact, prepared, rows } = self.answer;
+        let Prepared { foot, still, .. } = &**prepared;
         let (robot, scene) = (self.pipeline.robot, &self.state.scene);
         // Where angles vary a sole is not level.
         let exact = ExactState::of(robot, self.state, (impact, foot.as_ref()), still, Constraints { kept: &[], rows });
