@@ -121,7 +121,7 @@ impl<'q> Batch<'q> {
     /// Answers records that do not depend on each other.
     pub fn records(&mut self, chunk: &Chunk) -> Block {
         let Self { reader, answerer, state, most } = self;
-        let mut block = Block { out: Vec::with_capacity(*most), ..answerer.block() };
+        let mut block = Block { out: Vec::with_capacity(*most), ..answerer.block(chunk.records().count()) };
         for (line, record) in chunk.records() {
             let around = Around { line, record, ..Around::default() };
             match reader {
@@ -144,7 +144,7 @@ impl<'q> Batch<'q> {
     #[cfg(feature = "columnar")]
     pub fn part(&mut self, part: &Part) -> Block {
         let Self { answerer, state, .. } = self;
-        let mut block = answerer.block();
+        let mut block = answerer.block(part.count());
         for row in answerer.question.header.into_iter().flat_map(|header| part.rows(header)) {
             answerer.row(Ok(row), state, Around { line: row.line(), ..Around::default() }, &mut block);
         }
@@ -153,7 +153,7 @@ impl<'q> Batch<'q> {
 
     /// Answers samples of a recording.
     pub fn samples(&mut self, samples: Vec<Sampled<RowOrigin>>) -> Block {
-        let mut block = self.answerer.block();
+        let mut block = self.answerer.block(samples.len());
         for sampled in samples {
             let (origin, state, time, landing) = match sampled {
                 Ok(Sample { source, state, time, landing, .. }) => (source, Ok(state), Some(time), landing),
@@ -187,15 +187,15 @@ impl Answerer<'_> {
         self.answer(state, || utf8(record).ok().and_then(State::id_in), Around { record, ..around }, block);
     }
 
-    /// No answer yet.
-    fn block(&self) -> Block {
+    /// No answer yet of so many records.
+    fn block(&self, #[cfg_attr(not(feature = "columnar"), expect(unused_variables))] records: usize) -> Block {
         Block {
             #[cfg(feature = "columnar")]
             columns: self
                 .question
                 .columns
                 .filter(|columns| columns.form() == Form::Columns)
-                .map(write::ColumnBlock::new),
+                .map(|columns| write::ColumnBlock::new(columns, records)),
             ..Block::default()
         }
     }
@@ -252,7 +252,11 @@ impl Answerer<'_> {
         let touchdown = landing.and_then(|(landing, time)| Touchdown::of(robot, state, landing, around.line, time));
         if let Some(columns) = columns {
             let named = (state.id.as_ref(), Some(around.line), touchdown.as_ref());
-            columns.append_result(named, impact, around.carried, block.rows())?;
+            match block.rows() {
+                run::Rows::Text(rows) => columns.append_result(named, impact, around.carried, rows)?,
+                #[cfg(feature = "columnar")]
+                run::Rows::Columns(rows) => columns.append_result(named, impact, around.carried, rows)?,
+            }
         } else {
             let mut report = Report::of_state(robot, state, impact, detail)?;
             (report.line, report.touchdown) = (Some(around.line), touchdown);
@@ -289,7 +293,11 @@ impl Answerer<'_> {
         self.keep(id.as_ref(), around, block, || Keyframe::refused(error.clone()));
         let refused = Refused::new(id, around.line, &error);
         match self.question.columns {
-            Some(columns) => columns.append_refused(&refused, around.carried, block.rows()),
+            Some(columns) => match block.rows() {
+                run::Rows::Text(rows) => columns.append_refused(&refused, around.carried, rows),
+                #[cfg(feature = "columnar")]
+                run::Rows::Columns(rows) => columns.append_refused(&refused, around.carried, rows),
+            },
             None => write::append_line(&mut block.out, &refused),
         }
         block.refuse(error, around);

@@ -11,7 +11,8 @@
 use super::Summary;
 use crate::draw::ListedKeyframe;
 use crate::error::excerpt::Excerpt;
-use crate::write::RowSink;
+#[cfg(feature = "columnar")]
+use crate::write::ColumnBlock;
 use crate::{Error, Result};
 use std::sync::Mutex;
 use std::sync::mpsc::{Receiver, SendError, TryRecvError, channel, sync_channel};
@@ -39,7 +40,7 @@ pub struct Block {
     pub out: Vec<u8>,
     /// The answers as columns, if these are asked for.
     #[cfg(feature = "columnar")]
-    pub columns: Option<crate::write::ColumnBlock>,
+    pub columns: Option<ColumnBlock>,
     pub refused: Vec<RefusedRecord>,
     /// The summary of these records; see [`Summary::merge`].
     pub summary: Summary,
@@ -49,13 +50,20 @@ pub struct Block {
 
 impl Block {
     /// Where rows of a table go.
-    pub(super) fn rows(&mut self) -> &mut dyn RowSink {
+    pub(super) fn rows(&mut self) -> Rows<'_> {
         #[cfg(feature = "columnar")]
         if let Some(columns) = &mut self.columns {
-            return columns;
+            return Rows::Columns(columns);
         }
-        &mut self.out
+        Rows::Text(&mut self.out)
     }
+}
+
+/// The rows of a block.
+pub(super) enum Rows<'b> {
+    Text(&'b mut Vec<u8>),
+    #[cfg(feature = "columnar")]
+    Columns(&'b mut ColumnBlock),
 }
 
 /// A refused record.

@@ -8,6 +8,7 @@ use crate::write::{notes, words};
 use serde::{Serialize, Serializer};
 use serde_json::Value;
 use std::fmt;
+use std::sync::Arc;
 
 /// How many states with the smallest margins are listed.
 const NAMED: usize = 10;
@@ -153,10 +154,14 @@ pub struct Needed {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct ModeCount {
     /// The names of the contacts.
-    pub contacts: Vec<String>,
+    #[serde(serialize_with = "strings")]
+    pub contacts: Vec<Arc<str>>,
     pub modes: Vec<Mode>,
     /// How many outcomes have these modes.
     pub outcomes: u64,
+    /// By which most lists differ at once.
+    #[serde(skip)]
+    key: u64,
 }
 
 impl Summary {
@@ -173,16 +178,22 @@ impl Summary {
         }
         self.slides_regardless += u64::from(impact.slides_regardless);
         for outcome in analysis.outcomes.iter().filter(|outcome| outcome.decided) {
-            let names = impact.contacts.iter().map(|contact| &*contact.name);
+            let names = impact.contacts.iter().map(|contact| &contact.name);
+            let key = impact
+                .contacts
+                .iter()
+                .zip(&outcome.modes)
+                .fold(0, |key: u64, (contact, &mode)| key.rotate_left(7) ^ (4 * contact.link as u64 + mode as u64));
             let known = |list: &&mut ModeCount| {
-                list.modes == outcome.modes && names.clone().eq(list.contacts.iter().map(String::as_str))
+                list.key == key && list.modes == outcome.modes && list.contacts.iter().eq(names.clone())
             };
             match self.modes.iter_mut().find(known) {
                 Some(list) => list.outcomes += 1,
                 None => self.modes.push(ModeCount {
-                    contacts: names.map(str::to_owned).collect(),
+                    contacts: names.cloned().collect(),
                     modes: outcome.modes.clone(),
                     outcomes: 1,
+                    key,
                 }),
             }
         }
@@ -255,6 +266,10 @@ impl MoreFriction {
 
 fn is_zero(count: &u64) -> bool {
     *count == 0
+}
+
+fn strings<S: Serializer>(names: &[Arc<str>], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(names.iter().map(|name| &**name))
 }
 
 fn coefficient<S: Serializer>(friction: &f64, serializer: S) -> Result<S::Ok, S::Error> {

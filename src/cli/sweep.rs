@@ -176,7 +176,7 @@ pub(super) fn run(args: &Args) -> Completion {
                         sample.append_rows(solver, &columns, letter, out)
                     };
                     let write = |out| Ok(writer.write_all(&typed.write(out)?)?);
-                    let block = || ColumnBlock::new(&columns);
+                    let block = || ColumnBlock::new(&columns, 1);
                     let refused = samples(&model, (workers, &budget), block, append, write)?;
                     writer.write_all(&typed.finish()?)?;
                     refused

@@ -68,13 +68,13 @@ fn has_room<B: ArrayBuilder>(builder: &mut B, rows: usize, append_nulls: impl Fn
 }
 
 impl ColumnBlock {
-    /// No row yet of these columns.
-    pub fn new(columns: &Columns) -> Self {
+    /// No row yet of these columns, with room for so many `rows`.
+    pub fn new(columns: &Columns, rows: usize) -> Self {
         let column = |kind: &Kind| match *kind {
-            Kind::Text => Column::Text(StringBuilder::new()),
-            Kind::Number => Column::Number(Float64Builder::new()),
-            Kind::Integer => Column::Integer(Int64Builder::new()),
-            Kind::Boolean => Column::Boolean(Vec::new()),
+            Kind::Text => Column::Text(StringBuilder::with_capacity(rows, 8 * rows)),
+            Kind::Number => Column::Number(Float64Builder::with_capacity(rows)),
+            Kind::Integer => Column::Integer(Int64Builder::with_capacity(rows)),
+            Kind::Boolean => Column::Boolean(Vec::with_capacity(rows)),
             Kind::Carried(which) => Column::Carried { which, sources: Vec::new(), at: Vec::new() },
         };
         Self { columns: columns.kinds().iter().map(column).collect(), rows: 0 }
@@ -115,7 +115,9 @@ impl ColumnBlock {
 }
 
 impl RowSink for ColumnBlock {
-    fn row(&mut self, _: &Columns, fill: &mut dyn FnMut(&mut dyn Row)) {
+    type Row = Self;
+
+    fn row(&mut self, _: &Columns, fill: impl FnOnce(&mut Self)) {
         fill(self);
         self.rows += 1;
     }
@@ -123,6 +125,7 @@ impl RowSink for ColumnBlock {
 
 /// What a column cannot hold stays empty, and what is set twice is what it was first.
 impl Row for ColumnBlock {
+    #[inline]
     fn text(&mut self, at: usize, text: &str) {
         if let Column::Text(texts) = &mut self.columns[at]
             && !text.is_empty()
@@ -132,6 +135,7 @@ impl Row for ColumnBlock {
         }
     }
 
+    #[inline]
     fn number(&mut self, at: usize, number: f64) {
         if let Column::Number(numbers) = &mut self.columns[at]
             && has_room(numbers, self.rows, Float64Builder::append_nulls)
@@ -140,6 +144,7 @@ impl Row for ColumnBlock {
         }
     }
 
+    #[inline]
     fn integer(&mut self, at: usize, number: i64) {
         if let Column::Integer(numbers) = &mut self.columns[at]
             && has_room(numbers, self.rows, Int64Builder::append_nulls)
@@ -148,6 +153,7 @@ impl Row for ColumnBlock {
         }
     }
 
+    #[inline]
     fn boolean(&mut self, at: usize, holds: bool) {
         if let Column::Boolean(values) = &mut self.columns[at]
             && values.len() <= self.rows
@@ -305,9 +311,9 @@ mod tests {
     fn every_column_has_a_cell_of_each_row() -> Result<()> {
         let robot = Robot::from_urdf(include_str!("../../urdf/block.urdf"))?;
         let columns = Columns::without_lines(&robot, &[], &[], &[], RowKind::State);
-        let mut block = ColumnBlock::new(&columns);
+        let mut block = ColumnBlock::new(&columns, 1);
         for verdicts in [&["unique", "none"][..], &[], &["ambiguous"]] {
-            block.row(&columns, &mut |row| verdicts.iter().for_each(|verdict| row.text(1, verdict)));
+            block.row(&columns, |row| verdicts.iter().for_each(|verdict| row.text(1, verdict)));
         }
         let schema = ColumnWriter::new(&columns, ColumnarFormat::Arrow)?.schema;
         let batch = block.finish(&schema)?;

@@ -77,8 +77,11 @@ pub enum Kind {
 
 /// Takes the rows of a table of results.
 pub trait RowSink {
+    /// A row in the making.
+    type Row: Row;
+
     /// Takes the next row, whose cells `fill` sets, none twice.
-    fn row(&mut self, columns: &Columns, fill: &mut dyn FnMut(&mut dyn Row));
+    fn row(&mut self, columns: &Columns, fill: impl FnOnce(&mut Self::Row));
 }
 
 /// A row in the making, whose cells are empty until they are set.
@@ -289,7 +292,7 @@ impl Columns {
     }
 
     pub fn append_header(&self, out: &mut Vec<u8>) {
-        out.row(self, &mut |row| (0..).zip(&self.names).for_each(|(at, name)| row.text(at, name)));
+        out.row(self, |row| (0..).zip(&self.names).for_each(|(at, name)| row.text(at, name)));
     }
 
     /// Appends the rows of a result, one per outcome, with the state's id, line and touchdown.
@@ -302,7 +305,7 @@ impl Columns {
         (id, line, touchdown): (Option<&Value>, Option<usize>, Option<&Touchdown>),
         impact: &Impact,
         carried: Option<&Carried>,
-        out: &mut dyn RowSink,
+        out: &mut impl RowSink,
     ) -> Result<()> {
         let analysis = impact.analyzed()?;
         let mut places = [0; CONTACT_LIMIT];
@@ -310,13 +313,13 @@ impl Columns {
             *place = self.place(&contact.name)?;
         }
         if analysis.outcomes.is_empty() {
-            out.row(self, &mut |row| {
+            out.row(self, |row| {
                 self.state((id, line, touchdown), (impact, analysis), carried, row);
                 row.boolean(self.named + 3, analysis.proven);
             });
         }
         for (at, outcome) in analysis.outcomes.iter().enumerate() {
-            out.row(self, &mut |row| {
+            out.row(self, |row| {
                 self.state((id, line, touchdown), (impact, analysis), carried, row);
                 self.outcome(at + 1, outcome, &places, row);
                 if !analysis.families.is_empty() {
@@ -327,13 +330,13 @@ impl Columns {
         Ok(())
     }
 
-    pub fn append_refused(&self, refused: &Refused, carried: Option<&Carried>, out: &mut dyn RowSink) {
+    pub fn append_refused(&self, refused: &Refused, carried: Option<&Carried>, out: &mut impl RowSink) {
         let error = format!("line {}: {}", refused.line, refused.error);
         self.append_error((refused.id.as_ref(), Some(refused.line), carried), &error, out);
     }
 
     /// Appends the row of a state without an id that has an error in place of outcomes.
-    pub fn append_unnamed(&self, error: &str, carried: &Carried, out: &mut dyn RowSink) {
+    pub fn append_unnamed(&self, error: &str, carried: &Carried, out: &mut impl RowSink) {
         self.append_error((None, None, Some(carried)), error, out);
     }
 
@@ -341,9 +344,9 @@ impl Columns {
         &self,
         (id, line, carried): (Option<&Value>, Option<usize>, Option<&Carried>),
         error: &str,
-        out: &mut dyn RowSink,
+        out: &mut impl RowSink,
     ) {
-        out.row(self, &mut |row| {
+        out.row(self, |row| {
             self.name_state((id, line, carried), row);
             row.text(self.named, "refused");
             row.text(self.family() + 2, error);
@@ -351,7 +354,7 @@ impl Columns {
     }
 
     /// Sets the id, the line and what is carried through.
-    fn name_state(&self, (id, line, carried): (Option<&Value>, Option<usize>, Option<&Carried>), row: &mut dyn Row) {
+    fn name_state(&self, (id, line, carried): (Option<&Value>, Option<usize>, Option<&Carried>), row: &mut impl Row) {
         match (id, self.kinds[0]) {
             (Some(Value::Number(id)), Kind::Integer) => id.as_i64().into_iter().for_each(|id| row.integer(0, id)),
             (id, _) => id.into_iter().for_each(|id| row.text(0, &words::id(id))),
@@ -371,7 +374,7 @@ impl Columns {
         (id, line, touchdown): (Option<&Value>, Option<usize>, Option<&Touchdown>),
         (impact, analysis): (&Impact, &Analysis),
         carried: Option<&Carried>,
-        row: &mut dyn Row,
+        row: &mut impl Row,
     ) {
         self.name_state((id, line, carried), row);
         row.text(self.named, analysis.verdict.name());
@@ -391,7 +394,7 @@ impl Columns {
         }
     }
 
-    fn outcome(&self, count: usize, outcome: &Outcome, places: &[usize], row: &mut dyn Row) {
+    fn outcome(&self, count: usize, outcome: &Outcome, places: &[usize], row: &mut impl Row) {
         row.integer(self.named + 1, count as i64);
         outcome.margin.into_iter().for_each(|margin| row.number(self.named + 2, margin));
         row.boolean(self.named + 3, outcome.proven);

@@ -8,18 +8,18 @@ use std::ops::Range;
 
 impl Arrays {
     /// Appends the rows of these states, of which nothing is carried through; their ids are their numbers from 0.
-    fn append_rows(&self, columns: &Columns, states: Range<usize>, out: &mut dyn RowSink) {
+    fn append_rows(&self, columns: &Columns, states: Range<usize>, out: &mut impl RowSink) {
         for state in states {
             let outcomes = self.offsets[state] as usize..self.offsets[state + 1] as usize;
             if outcomes.is_empty() {
-                out.row(columns, &mut |row| {
+                out.row(columns, |row| {
                     if self.state(columns, state, row).is_some() {
                         row.boolean(columns.named + 3, self.all_proven[state]);
                     }
                 });
             }
             for (count, at) in (1..).zip(outcomes) {
-                out.row(columns, &mut |row| {
+                out.row(columns, |row| {
                     self.state(columns, state, row);
                     self.outcome(columns, (count, at), row);
                 });
@@ -28,7 +28,7 @@ impl Arrays {
     }
 
     /// Sets what all outcomes of a state have in common; gives its verdict, if it is not refused.
-    fn state(&self, columns: &Columns, state: usize, row: &mut dyn Row) -> Option<Verdict> {
+    fn state(&self, columns: &Columns, state: usize, row: &mut impl Row) -> Option<Verdict> {
         let verdict = Verdict::ALL.get(usize::from(self.verdict[state])).copied();
         row.integer(0, state as i64);
         row.text(columns.named, verdict.map_or("refused", Verdict::name));
@@ -38,7 +38,7 @@ impl Arrays {
     }
 
     /// Sets the cells of an outcome, which is the state's number `count` and is `at` in the arrays.
-    fn outcome(&self, columns: &Columns, (count, at): (i64, usize), row: &mut dyn Row) {
+    fn outcome(&self, columns: &Columns, (count, at): (i64, usize), row: &mut impl Row) {
         let contacts = columns.contacts().len();
         // Of what is not decided no number is known.
         let mut number = |place: usize, own: f64| {
@@ -72,8 +72,9 @@ impl Arrays {
         let mut writer = ColumnWriter::new(columns, ColumnarFormat::ArrowStream)?;
         let (mut bytes, states) = (Vec::new(), self.verdict.len());
         for start in (0..states).step_by(TOGETHER) {
-            let mut block = ColumnBlock::new(columns);
-            self.append_rows(columns, start..states.min(start + TOGETHER), &mut block);
+            let states = start..states.min(start + TOGETHER);
+            let mut block = ColumnBlock::new(columns, states.len());
+            self.append_rows(columns, states, &mut block);
             bytes.append(&mut writer.write(block)?);
         }
         bytes.append(&mut writer.finish()?);

@@ -5,7 +5,7 @@ use crate::read::table::Carried;
 use std::ops::Range;
 
 /// A row as text.
-struct TextRow {
+pub struct TextRow {
     guarded: bool,
     /// The text of all cells, as they were set.
     text: Vec<u8>,
@@ -50,7 +50,9 @@ impl Row for TextRow {
 
 /// Rows as text.
 impl RowSink for Vec<u8> {
-    fn row(&mut self, columns: &Columns, fill: &mut dyn FnMut(&mut dyn Row)) {
+    type Row = TextRow;
+
+    fn row(&mut self, columns: &Columns, fill: impl FnOnce(&mut TextRow)) {
         let cells = vec![0..0; columns.names().len()];
         let mut row = TextRow { guarded: columns.guarded, text: Vec::new(), cells };
         fill(&mut row);

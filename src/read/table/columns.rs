@@ -55,7 +55,7 @@ impl Parts {
     pub fn parquet(file: File) -> Result<Self> {
         let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(unreadable)?;
         let schema = Arc::clone(builder.schema());
-        let batches = builder.with_batch_size(16 * TOGETHER).build().map_err(unreadable)?;
+        let batches = builder.with_batch_size(8 * TOGETHER).build().map_err(unreadable)?;
         Ok(Self::new(Box::new(batches), schema))
     }
 
@@ -164,6 +164,11 @@ fn guarded<R>(read: impl FnOnce() -> R) -> Result<R> {
 }
 
 impl Part {
+    /// How many rows it has.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
     /// Its rows.
     pub fn rows<'p>(&'p self, header: &'p Header) -> impl Iterator<Item = Row<'p>> {
         (0..self.count).map(|at| Row::of_columns(header, &self.columns, self.start + at, self.first + at))

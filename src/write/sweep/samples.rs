@@ -74,7 +74,7 @@ impl<'a> SampleRecord<'a> {
         solver: &mut Solver,
         columns: &Columns,
         letter: impl Fn(&Regime) -> String,
-        out: &mut dyn RowSink,
+        out: &mut impl RowSink,
     ) -> bool {
         let values = || self.point.iter().map(|&value| number_text(value));
         let carried = |impact: &Result<Box<Impact>>| Carried::new(values().chain([letter(&Regime::of(impact))]));
