@@ -82,6 +82,19 @@ pub(super) fn about_spelling(description: &Description) -> Option<String> {
     (!description.misspelt.is_empty()).then(|| format!("not read, and perhaps misspelt: {names}"))
 }
 
+/// The caution about elements that close loops, which a tree of joints has no place for.
+pub(super) fn about_loops(description: &Description) -> Option<String> {
+    let closing = description.ignored.iter().filter(|own| closes_loops(own.parent, &own.tag));
+    let closing = names(closing.map(|own| own.tag.as_str()));
+    (!closing.is_empty())
+        .then(|| format!("what closes loops in the file is left out ({closing}): close them by `loops` in each state"))
+}
+
+/// Whether an element of this tag closes a loop, as extensions of URDF have it.
+pub(super) fn closes_loops(parent: &str, tag: &str) -> bool {
+    parent == "robot" && matches!(tag, "loop" | "loop_joint")
+}
+
 /// The caution about joints that move, but whose `<axis>` the file leaves out.
 pub(super) fn about_axes(description: &Description) -> Option<String> {
     let without = description.joints.iter().filter(|joint| joint.kind.has_axis() && !joint.has_axis);

@@ -1,6 +1,7 @@
 //! What of a file does not enter the analysis, in words.
 
 use super::LeftOutPart;
+use super::caution::closes_loops;
 use super::reading::{FrozenJoint, Reading};
 use crate::description::{self, Collision, Description, Geometry, Ignored, JointKind, joint_place, link_place};
 
@@ -65,6 +66,7 @@ pub(super) fn passed_over(description: &Description) -> impl Iterator<Item = Lef
     description.ignored.iter().map(|Ignored { parent, tag, count }| {
         let why = match (*parent, tag.as_str()) {
             ("joint", "limit") => "joint limits do not enter an impact",
+            (parent, tag) if closes_loops(parent, tag) => "a tree of joints has no loops: states close them by `loops`",
             ("joint", "dynamics") => "damping and dry friction of a joint do not enter an impact",
             _ => "no part of the robot's mechanics",
         };

@@ -89,6 +89,7 @@ impl Robot {
         cautions.extend(caution::about_outside(description, &outside));
         cautions.extend(caution::about_meshes(description));
         cautions.extend(caution::about_spelling(description));
+        cautions.extend(caution::about_loops(description));
         cautions.extend(caution::about_axes(description));
         cautions.extend(caution::about_lengths(description));
         cautions.extend(caution::about_angles(description));

@@ -274,6 +274,15 @@ fn missing_axis_is_named_with_its_line() {
 }
 
 #[test]
+fn elements_that_close_loops_are_named() {
+    let robot = load(&massive(&[PITCH]).replace("</robot>", "<loop_joint name=\"l\"/></robot>"));
+    let expected = "what closes loops in the file is left out (loop_joint): close them by `loops` in each state";
+    assert_eq!(only_caution(&robot), expected);
+    let why = "a tree of joints has no loops: states close them by `loops`";
+    assert!(robot.left_out.contains(&left_out("<loop_joint> in <robot>", why)), "{:?}", robot.left_out);
+}
+
+#[test]
 fn a_joint_held_in_degrees_is_named() {
     let text = massive(&[PITCH, PITCH]);
     let caution = |value| {
