@@ -20,7 +20,7 @@ use crate::impact::{ContactProblem, Errors};
 use crate::planar::{Pair, Vector};
 use crate::robot::Robot;
 use crate::scalar::Residue;
-use crate::state::{NamedLoop, Scene, State, check_length};
+use crate::state::{NamedContact, NamedLoop, Scene, State, check_length};
 use std::mem::take;
 
 /// A foot that does not touch.
@@ -122,8 +122,10 @@ impl Pipeline<'_> {
         (*sustained, *holds, *matrices) = (None, None, None);
         left_out.clear();
         notes.clear();
-        notes.extend(state.odd_joints(self.robot));
-        notes.extend(scene.contacts.iter().flatten().filter_map(|contact| contact.out_of_scale(self.robot)));
+        // `for_each` runs within the chain; `extend` asks it for each next one, which takes longer.
+        state.odd_joints(self.robot).for_each(|note| notes.push(note));
+        let out_of_scale = |contact: &NamedContact| contact.out_of_scale(self.robot);
+        scene.contacts.iter().flatten().filter_map(out_of_scale).for_each(|note| notes.push(note));
         self.note_unused_laws(state, notes);
         state.velocity.clone_into(velocity);
         (*placement, *foot) = self.stand(state, &surface, velocity, take(placement))?;
@@ -137,7 +139,10 @@ impl Pipeline<'_> {
         match scene.contacts {
             _ if self.options.brief => {}
             Some(_) => notes.extend(nearest.and_then(|foot| self.sunk_besides(foot))),
-            None => self.note_near_miss(contacts, *nearest, notes),
+            None => {
+                notes.extend(self.wide_tolerance());
+                self.note_near_miss(contacts, *nearest, notes);
+            }
         }
         if !self.options.brief {
             notes.extend(self.upside_down(contacts, placement));
@@ -203,9 +208,19 @@ impl Pipeline<'_> {
         let given = given.chain(scene.restitution.links.keys().map(|link| ("restitution", *link)));
         let uncertain = uncertainty.iter().flat_map(|uncertainty| uncertainty.friction.links.keys());
         let given = given.chain(uncertain.map(|link| ("uncertainty of friction", *link)));
-        notes.extend(given.filter(|(_, link)| !has_foot(*link)).map(|(what, link)| {
-            format!("{what} is given to {}, which has no foot: it has no effect", self.robot.links[link].name)
-        }));
+        given.filter(|(_, link)| !has_foot(*link)).for_each(|(what, link)| {
+            let name = &self.robot.links[link].name;
+            notes.push(format!("{what} is given to {name}, which has no foot: it has no effect"));
+        });
+    }
+
+    /// That the contact tolerance exceeds the robot's size, as one in millimeters does.
+    fn wide_tolerance(&self) -> Option<String> {
+        let (tolerance, size) = (self.tolerance(), self.feet.size());
+        (tolerance > size).then(|| {
+            let [tolerance, size] = [tolerance, size].map(rounded);
+            format!("a contact tolerance of {tolerance} m is more than the robot's size, {size} m: is it in meters?")
+        })
     }
 
     /// That the robot's center of mass is below all contacts, as of a robot that is drawn head down.

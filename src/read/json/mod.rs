@@ -245,6 +245,9 @@ impl<'n> Node<'n> {
         if let Some((_, whose)) = DOCUMENTS.iter().find(whose).filter(|_| is_document) {
             return error.hint(format!("this is a field of {whose}; {fields}"));
         }
+        if is_document && SETTINGS.contains(&self.key()) {
+            return error.hint(format!("`{}` is set for all states, not in one; {fields}", self.key()));
+        }
         let error = error.hint(if object == "Base" { format!("{fields}; {SPATIAL}") } else { fields });
         // The symbol of the formulas.
         let key = if self.key() == "mu" { "friction" } else { self.key() };
@@ -311,6 +314,9 @@ const DOCUMENTS: [(&str, &str); 3] = [
     ("Problem", "a contact problem, which `heelstrike solve` reads"),
     ("Study", "a study, which `heelstrike sweep` reads"),
 ];
+
+/// What is set for all states.
+const SETTINGS: [&str; 5] = ["contact_tolerance", "resting_speed", "strict_limits", "feet", "budget"];
 
 const SPATIAL: &str = "a table may give a base in three dimensions (q_base_y, q_base_qw and so on)";
 

@@ -97,6 +97,7 @@ id,q_base_x,v_base_x
 {"delassus": [[1]]}
 {"parameters": {}}
 {"mu": 1}
+{"resting_speed": 0.01}
 "#;
 
 #[test]

@@ -145,3 +145,13 @@ fn deep_foot_is_refused_with_its_velocity() {
     assert_close(&velocity, &[-0.125, -0.5]);
     assert!(remedy.contains("stand on other") && !remedy.contains("raise"), "{remedy}");
 }
+
+#[test]
+fn tolerance_beyond_the_robot_is_noted() {
+    let notes = |tolerance: f64| {
+        let options = Options { contact_tolerance: Some(tolerance), ..Options::default() };
+        try_impact(&two_feet(0.0), options, striking(0.0, json!({"friction": 1}))).unwrap().notes
+    };
+    assert!(notes(0.9).is_empty());
+    assert_eq!(notes(5.0), ["a contact tolerance of 5 m is more than the robot's size, 1 m: is it in meters?"]);
+}
