@@ -55,13 +55,11 @@ impl Placement {
     }
 
     /// The world's point that is `local` in the frame of `body` \[m\].
-    #[inline]
     pub fn world(&self, body: usize, local: Vector<f64>) -> Vector<f64> {
         self.origins[body] + self.turned(body, local)
     }
 
     /// A vector of a body's frame in the world's axes.
-    #[inline]
     pub fn turned(&self, body: usize, vector: Vector<f64>) -> Vector<f64> {
         self.turns[body].apply(vector)
     }
@@ -73,7 +71,6 @@ impl Placement {
 
     /// The circle that touches ground with this normal where `point` does: of an ellipse, with radius 0, the material
     /// point that is lowest along the normal now.
-    #[inline]
     pub(super) fn circle(&self, point: Point, normal: Vector<f64>) -> Circle {
         let Point { body, center, offset, rim } = point;
         match rim {

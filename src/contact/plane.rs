@@ -38,19 +38,16 @@ impl HalfPlane {
         Self { ground, tangent, normal }
     }
 
-    #[inline]
     pub fn circle(&self, placement: &Placement, point: Point) -> Circle {
         placement.circle(point, self.normal)
     }
 
     /// The world's point of a rim about a corner that is lowest along the normal.
-    #[inline]
     pub fn lowest(&self, placement: &Placement, point: Point) -> Vector<f64> {
         let Circle { body, center, radius, .. } = self.circle(placement, point);
         placement.world(body, center) - self.normal * radius
     }
 
-    #[inline]
     pub(super) fn height(&self, placement: &Placement, point: Point) -> f64 {
         self.normal.dot(self.lowest(placement, point))
     }
@@ -62,14 +59,12 @@ impl HalfPlane {
 
     /// How far heights are off by rounding alone: they are sums of a few terms of this size. On level ground it does
     /// not matter how far away the base is.
-    #[inline]
     pub(super) fn rounding(&self, placement: &Placement, size: f64) -> f64 {
         let Vector { x, z } = placement.base();
         let Vector { x: along, z: up } = self.normal;
         16.0 * f64::EPSILON * (size + (along * x).abs() + (up * z).abs())
     }
 
-    #[inline]
     pub(super) fn touch(&self, placement: &Placement, point: Point) -> Touch {
         Touch { circle: self.circle(placement, point), ground: self.ground, gap: self.height(placement, point) }
     }
@@ -124,7 +119,6 @@ impl HalfPlane {
     }
 
     /// How far a foot is above the ground \[m\].
-    #[inline]
     pub(super) fn clearance(&self, foot: &Foot, placement: &Placement) -> f64 {
         points(foot).map(|point| self.height(placement, point)).fold(f64::INFINITY, f64::min)
     }

@@ -51,7 +51,6 @@ pub(crate) fn points(foot: &Foot) -> impl Iterator<Item = Point> {
 }
 
 /// A corner of a foot with its rim.
-#[inline]
 pub(super) fn point(foot: &Foot, corner: usize) -> Point {
     let center = foot.outline.corners()[corner];
     Point { body: foot.body, center, offset: foot.offset, rim: foot.outline.rim }

@@ -64,7 +64,6 @@ impl Surface {
     }
 
     /// How far heights are off by rounding alone \[m\].
-    #[inline]
     pub(super) fn rounding(&self, placement: &Placement, size: f64) -> f64 {
         match self {
             Self::HalfPlane(plane) => plane.rounding(placement, size),
@@ -138,7 +137,6 @@ impl Surface {
     }
 
     /// How far a foot is from the ground \[m\].
-    #[inline]
     pub fn clearance(&self, foot: &Foot, placement: &Placement) -> f64 {
         match self {
             Self::HalfPlane(plane) => plane.clearance(foot, placement),

@@ -125,7 +125,6 @@ impl RowSink for ColumnBlock {
 
 /// What a column cannot hold stays empty, and what is set twice is what it was first.
 impl Row for ColumnBlock {
-    #[inline]
     fn text(&mut self, at: usize, text: &str) {
         if let Column::Text(texts) = &mut self.columns[at]
             && !text.is_empty()
@@ -135,7 +134,6 @@ impl Row for ColumnBlock {
         }
     }
 
-    #[inline]
     fn number(&mut self, at: usize, number: f64) {
         if let Column::Number(numbers) = &mut self.columns[at]
             && has_room(numbers, self.rows, Float64Builder::append_nulls)
@@ -144,7 +142,6 @@ impl Row for ColumnBlock {
         }
     }
 
-    #[inline]
     fn integer(&mut self, at: usize, number: i64) {
         if let Column::Integer(numbers) = &mut self.columns[at]
             && has_room(numbers, self.rows, Int64Builder::append_nulls)
@@ -153,7 +150,6 @@ impl Row for ColumnBlock {
         }
     }
 
-    #[inline]
     fn boolean(&mut self, at: usize, holds: bool) {
         if let Column::Boolean(values) = &mut self.columns[at]
             && values.len() <= self.rows
