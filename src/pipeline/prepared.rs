@@ -20,7 +20,7 @@ use crate::impact::{ContactProblem, Errors};
 use crate::planar::{Pair, Vector};
 use crate::robot::Robot;
 use crate::scalar::Residue;
-use crate::state::{NamedContact, NamedLoop, Scene, State, check_length};
+use crate::state::{Ground, NamedContact, NamedLoop, Scene, State, check_length};
 use std::mem::take;
 
 /// A foot that does not touch.
@@ -146,6 +146,7 @@ impl Pipeline<'_> {
         }
         if !self.options.brief {
             notes.extend(self.upside_down(contacts, placement));
+            notes.extend(steep(&scene.ground));
         }
         check_matrix_size(contacts.len())?;
         *stance = foot.as_ref().and_then(|foot| place_of(foot, contacts));
@@ -577,9 +578,21 @@ impl Pipeline<'_> {
 /// A foot that comes down from no more than this part of the robot's size has nearly touched.
 const NEAR_MISS: f64 = 1e-2;
 
+/// A slope beyond this is noted \[rad\].
+const STEEP: f64 = 0.8;
+
 /// What G of a robot loses to rounding, relative to its rows' own scale: measured below 3e-15 against 640 bits on
 /// chains, straight legs and extreme mass ratios. It is no bound, and used only if none is asked for.
 const DYNAMICS_ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// That the ground is steeper than a legged robot stands on, as one of 1 degree taken for 1 rad.
+fn steep(ground: &Ground) -> Option<String> {
+    let &Ground::Slope(slope) = ground else { return None };
+    (slope.abs() > STEEP).then(|| {
+        let degrees = slope.to_degrees();
+        format!("the ground's slope of {slope} rad is one of {degrees:.1} degrees: was it meant in degrees?")
+    })
+}
 
 /// The contact of the foot that stands: the same circle with the same normal; a point rests whatever the normal is.
 fn place_of(foot: &Contact, contacts: &[Contact]) -> Option<usize> {

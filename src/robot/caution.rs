@@ -6,6 +6,7 @@ use super::plane::Plane;
 use super::reading::{FreezeReason, FrozenJoint};
 use super::reference_pose::ReferencePose;
 use crate::description::{Description, Geometry, Inertial, JointKind, Matrix, Mesh, UrdfJoint, UrdfLink, apply, turn};
+use crate::error::rounded;
 use std::f64::consts::TAU;
 
 /// An axis up to this far off the normal \[rad\] may have been meant to be parallel to it.
@@ -14,6 +15,8 @@ const NEARLY: f64 = 0.35;
 const SLIGHTLY: f64 = 0.02;
 /// No part of a legged robot is longer than this \[m\].
 pub(crate) const LONGEST: f64 = 10.0;
+/// A ball of steel of radius 1 m weighs no more \[kg\].
+const DENSEST: f64 = 33_000.0;
 /// No radius of gyration is greater than this many sizes of the robot.
 const WIDEST: f64 = 2.0;
 /// A moment of less than this part of the robot's mass times its size squared does not matter: that of a dummy link.
@@ -133,6 +136,16 @@ pub(super) fn about_lengths(description: &Description) -> Option<String> {
         format!(
             "{what} of {name} spans {length} m: lengths are in meters; scale=\"0.001 0.001 0.001\" is for meshes in \
              millimeters"
+        )
+    })
+}
+
+/// The caution about a mass \[kg\] that no robot of this size \[m\] has, as grams taken for kilograms.
+pub(super) fn about_mass(mass: f64, size: f64) -> Option<String> {
+    (mass > DENSEST * size * size * size).then(|| {
+        let [mass, size] = [mass, size].map(rounded);
+        format!(
+            "the robot weighs {mass} kg, more than a ball of steel around all of it (radius {size} m): masses are in kg"
         )
     })
 }

@@ -146,6 +146,7 @@ impl Robot {
         let moving = moving.filter(|(_, place)| place.as_ref().is_some_and(|place| robot.moves(place.body)));
         let cautions = caution::about_inertias(moving.map(|(link, _)| link), (robot.mass(), size));
         robot.reading.cautions.extend(cautions);
+        robot.reading.cautions.extend(caution::about_mass(robot.mass(), size));
 
         refuse_overflow(&robot)?;
         if robot.mass() == 0.0 {

@@ -155,3 +155,18 @@ fn tolerance_beyond_the_robot_is_noted() {
     assert!(notes(0.9).is_empty());
     assert_eq!(notes(5.0), ["a contact tolerance of 5 m is more than the robot's size, 1 m: is it in meters?"]);
 }
+
+#[test]
+fn ground_as_in_degrees_and_a_robot_head_down_are_noted() {
+    let notes = |more: Value| {
+        let contact = json!({"friction": 1, "contacts": [{"link": "body"}]});
+        let mut state = striking(0.0, contact);
+        state.as_object_mut().unwrap().extend(more.as_object().cloned().unwrap_or_default());
+        impact(&two_feet(0.5), state).notes
+    };
+    let steep = |slope: f64| notes(json!({"ground": {"slope": slope}}));
+    assert!(steep(-0.7).is_empty(), "{:?}", steep(-0.7));
+    assert_eq!(steep(-1.0), ["the ground's slope of -1 rad is one of -57.3 degrees: was it meant in degrees?"]);
+    let at_the_head = notes(json!({"contacts": [{"link": "body", "offset": [0, 0, 0.25]}]}));
+    assert_eq!(at_the_head, ["the center of mass is 0.250 m below all contacts: is the pose upside down?"]);
+}

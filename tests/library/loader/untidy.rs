@@ -154,3 +154,14 @@ fn lengths_that_look_like_millimeters_are_noted() {
     let far = load(&massive(&[PITCH]).replace("0 0 -1", "0 0 -350"));
     assert!(only_caution(&far).starts_with("the origin of j spans 350 m"), "{}", only_caution(&far));
 }
+
+#[test]
+fn a_mass_in_grams_is_noted() {
+    let of_mass = |mass: f64| {
+        let shape = urdf::collision([0.0; 2], "sphere radius=\"0.1\"");
+        load(&urdf::robot(&[link("a", mass, [0.0; 2], 1e-3 * mass, &shape)]))
+    };
+    assert!(of_mass(32.0).reading.cautions.is_empty());
+    let words = "the robot weighs 2000 kg, more than a ball of steel around all of it (radius 0.1 m): masses are in kg";
+    assert_eq!(only_caution(&of_mass(2000.0)), words);
+}
