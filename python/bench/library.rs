@@ -4,9 +4,9 @@
 //! input, `arrays` or `brief`, it answers all rows on one thread, the lowest foot on the ground, and prints how many
 //! outcomes they have.
 
-use heelstrike::pipeline::{Aspect, Options, Pipeline};
+use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::state::State;
-use heelstrike::write::{Arrays, Columns, RowKind};
+use heelstrike::write::{Arrays, Columns, Layout};
 use heelstrike::{Friction, Robot};
 use std::error::Error;
 use std::io::stdin;
@@ -16,7 +16,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let robot = Robot::from_urdf(&std::fs::read_to_string(urdf)?)?;
     let bytes = std::fs::read(states)?;
     let numbers: Vec<f64> = bytes.as_chunks().0.iter().map(|&number| f64::from_le_bytes(number)).collect();
-    let columns = Columns::without_lines(&robot, &[], &[], &[], RowKind::of(Aspect::Impact));
+    let columns = Columns::without_lines(&robot, &[], &[], &[], Layout::default());
     let mut state = State::zero(&robot);
     state.scene.place_lowest = true;
     state.scene.friction.default = Some(friction.parse::<Friction>()?);

@@ -5,7 +5,7 @@ use heelstrike::pipeline::Aspect;
 use heelstrike::state::NamedContact;
 use heelstrike::{
     Verdict,
-    write::{Arrays, Columns, RowKind, Texts},
+    write::{Arrays, Columns, Layout, Texts},
 };
 use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods};
 use pyo3::exceptions::{PyAttributeError, PyValueError};
@@ -77,7 +77,8 @@ const FEW: usize = 16;
 impl Table {
     /// That of a robot's feet and contacts that states name.
     pub fn new(aspect: Aspect, robot: &heelstrike::Robot, feet: &[NamedContact], named: &[&str]) -> Self {
-        let columns = Columns::without_lines(robot, feet, named, &[], RowKind::of(aspect)).numbered();
+        let layout = Layout { aspect, ..Layout::default() };
+        let columns = Columns::without_lines(robot, feet, named, &[], layout).numbered();
         let coordinates = robot.coordinates().map(str::to_owned).collect();
         Self { aspect, coordinates, empty: Arrays::new(&columns), columns, spare: Mutex::default() }
     }

@@ -23,7 +23,7 @@ use crate::read::table::Header;
 #[cfg(feature = "columnar")]
 use crate::read::table::Parts;
 use crate::state::NamedContact;
-use crate::write::{self, Columns, RowKind, notes};
+use crate::write::{self, Columns, Layout, notes};
 use crate::{Detail, Error, Reason, Robot};
 use indicatif::ProgressBar;
 use std::io::{self, Write};
@@ -108,7 +108,11 @@ pub(super) fn run(args: &Args) -> Completion {
     let feet = args.robot.feet(&robot)?;
     let name = input::name(&args.states);
     let in_input = |error: Error| error.in_file(&name);
-    let progress = progress::over(&args.states, args.output.is_some());
+    // The bytes of columns with types are not read one after the other.
+    let progress = match input_format.is_text() {
+        true => progress::over(&args.states, args.output.is_some()),
+        false => ProgressBar::hidden(),
+    };
     let origin = Origin::of(args.output.as_deref(), args.resume);
     let mut states = args.open(input_format, &origin, &progress).map_err(in_input)?;
     let header = args.header(&robot, &mut states, input_format)?;
@@ -121,13 +125,15 @@ pub(super) fn run(args: &Args) -> Completion {
     // Before any file is replaced: does this robot have feet to look for?
     let thresholds = args.recording.thresholds(&robot, &feet);
     let thresholds = thresholds.map_err(|error| error.in_file(input::name(&args.robot.robot)))?;
-    let kind = if args.forces { RowKind::Forces } else { args.recording.kind() };
-    let columns = || {
-        let columns = args.csv.columns(Columns::new(&robot, &feet, header.as_ref(), kind)).written_as(format.form());
-        let columns = if args.next.next { columns.with_next() } else { columns };
-        if args.detail.brief { columns.in_brief() } else { columns }
+    let layout = Layout {
+        aspect: args.aspect(),
+        touchdowns: args.recording.touchdowns,
+        next: args.next.next,
+        brief: args.detail.brief,
+        guarded: args.csv.csv_safe,
+        form: format.form(),
     };
-    let columns = (format != RecordFormat::Ndjson).then(columns);
+    let columns = (format != RecordFormat::Ndjson).then(|| Columns::new(&robot, &feet, header.as_ref(), layout));
     let question = args.question(&robot, feet, header.as_ref(), columns.as_ref())?;
     // Tried before the work, which would otherwise be lost.
     writable(args.summary.as_deref())?;
@@ -174,6 +180,10 @@ pub(super) fn run(args: &Args) -> Completion {
 }
 
 impl Args {
+    fn aspect(&self) -> Aspect {
+        if self.forces { Aspect::Forces } else { Aspect::Impact }
+    }
+
     /// The formats of input and output, which must have room for what is asked.
     fn formats(&self) -> Result<[RecordFormat; 2], Failure> {
         let input = RecordFormat::of((Some(&self.states), false), self.input_format, "--input-format")?;
@@ -239,7 +249,7 @@ impl Args {
         Ok(Question {
             robot,
             options: Options {
-                aspect: if self.forces { Aspect::Forces } else { Aspect::Impact },
+                aspect: self.aspect(),
                 next: self.next.next,
                 // For the summary, if it is shown, and the picture.
                 friction_needed: self.summary.is_some() || self.plot.path().is_some() || !is_quiet(),

@@ -10,7 +10,6 @@ use crate::read::loops_from_json;
 use crate::reductions::Reductions;
 use crate::robot::Base;
 use crate::state::{Defaults, NamedContact, NamedLoop};
-use crate::write::Columns;
 use crate::{Budget, Detail, Error, Reason, Robot};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use std::path::PathBuf;
@@ -107,7 +106,7 @@ pub(super) struct CsvOptions {
     /// These begin with =, +, -, @, a tab or a carriage return, as an id or a name of the input may. Numbers are
     /// written as ever.
     #[arg(long)]
-    csv_safe: bool,
+    pub csv_safe: bool,
 }
 
 impl CsvOptions {
@@ -120,11 +119,6 @@ impl CsvOptions {
         Err(Failure::Usage(
             Error::new(reason).at("--csv-safe").hint("write to a file that ends in .csv, or leave it out"),
         ))
-    }
-
-    /// The columns as they are to be written.
-    pub fn columns(self, columns: Columns) -> Columns {
-        if self.csv_safe { columns.guarded() } else { columns }
     }
 }
 

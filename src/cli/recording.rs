@@ -5,7 +5,6 @@ use crate::batch::RowOrigin;
 use crate::gait::{self, At, Difference, Dropped, Heights, Sampled, Seen, Thresholds, Touching};
 use crate::read::table::{Header, Rates};
 use crate::state::NamedContact;
-use crate::write::RowKind;
 use crate::{Result, Robot};
 use std::sync::Mutex;
 
@@ -73,11 +72,6 @@ impl RecordingOptions {
     /// Whether rows depend on each other.
     pub fn is_in_order(&self) -> bool {
         self.touchdowns || self.velocity.is_some()
-    }
-
-    /// What a row of results is about.
-    pub fn kind(&self) -> RowKind {
-        if self.touchdowns { RowKind::Touchdown } else { RowKind::State }
     }
 
     /// Where velocities come from.

@@ -17,8 +17,8 @@ use crate::draw::sweep as picture;
 use crate::sweep::{Findings, Regime, RobotStudy, Solver, Study, Workers, letter};
 #[cfg(feature = "columnar")]
 use crate::write::ColumnBlock;
-use crate::write::notes;
 use crate::write::sweep::{Regions, SampleRecord, columns};
+use crate::write::{Layout, notes};
 use crate::{Error, Reason};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -156,8 +156,9 @@ pub(super) fn run(args: &Args) -> Completion {
         }
         Some(table) => {
             let contacts = regimes.iter().flat_map(|(regime, ..)| regime.contacts()).map(String::as_str);
-            let columns = args.csv.columns(columns(&model, &feet, contacts)).written_as(table.form());
-            let columns = if args.detail.brief { columns.in_brief() } else { columns };
+            let Args { csv, detail, .. } = args;
+            let layout = Layout { brief: detail.brief, guarded: csv.csv_safe, form: table.form(), ..Layout::default() };
+            let columns = columns(&model, &feet, contacts, layout);
             let kind = |regime: &Regime| regimes.iter().find(|(known, ..)| ***known == *regime);
             let letter = |regime: &Regime| kind(regime).map_or_else(String::new, |(_, kind, _)| letter(*kind));
             let as_text = |writer: &mut dyn Write| {

@@ -233,7 +233,7 @@ fn short(text: &str) -> Cow<'_, str> {
     const LONGEST: usize = 400;
     const HEAD: usize = 80;
     const TAIL: usize = 40;
-    if text.len() <= LONGEST {
+    if text.chars().nth(LONGEST).is_none() {
         return visible(text);
     }
     let head: String = text.chars().take(HEAD).collect();

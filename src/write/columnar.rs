@@ -300,13 +300,13 @@ impl ColumnWriter {
 mod tests {
     use super::*;
     use crate::Robot;
-    use crate::write::RowKind;
+    use crate::write::Layout;
     use arrow_array::cast::AsArray;
 
     #[test]
     fn every_column_has_a_cell_of_each_row() -> Result<()> {
         let robot = Robot::from_urdf(include_str!("../../urdf/block.urdf"))?;
-        let columns = Columns::without_lines(&robot, &[], &[], &[], RowKind::State);
+        let columns = Columns::without_lines(&robot, &[], &[], &[], Layout::default());
         let mut block = ColumnBlock::new(&columns, 1);
         for verdicts in [&["unique", "none"][..], &[], &["ambiguous"]] {
             block.row(&columns, |row| verdicts.iter().for_each(|verdict| row.text(1, verdict)));

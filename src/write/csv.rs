@@ -45,14 +45,8 @@ pub struct Columns {
     /// The contacts that have columns, in their order.
     contacts: Vec<String>,
     pub(super) coordinates: usize,
-    kind: RowKind,
     carried: usize,
-    /// Whether it has columns for what follows an impact.
-    next: bool,
-    brief: bool,
-    /// Whether cells of text are kept from being formulas.
-    pub(super) guarded: bool,
-    form: Form,
+    pub(super) layout: Layout,
     /// The columns that are carried through, if they have types.
     #[cfg(feature = "columnar")]
     #[serde(skip)]
@@ -102,33 +96,31 @@ pub trait Row {
     fn carried(&mut self, at: usize, carried: &Carried, which: usize);
 }
 
-/// What a row of results is about.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum RowKind {
-    /// A state of the input.
-    State,
-    /// A touchdown that was found in the input.
-    Touchdown,
-    /// A state in sustained contact.
-    Forces,
-}
-
-impl RowKind {
-    /// Of states of which this is asked.
-    pub fn of(aspect: Aspect) -> Self {
-        match aspect {
-            Aspect::Impact => Self::State,
-            Aspect::Forces => Self::Forces,
-        }
-    }
+/// What the rows of a table of results hold, and how they are written.
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
+pub struct Layout {
+    /// What is asked about the states.
+    pub aspect: Aspect,
+    /// Whether they are touchdowns that were found in the input.
+    pub touchdowns: bool,
+    /// Whether `next_verdict` and `next_modes` follow `proven`: the forces just after each outcome, in whose modes a
+    /// contact that has left the ground is `open`.
+    pub next: bool,
+    /// Whether impulses, velocities after, `border` and `notes` are left out.
+    pub brief: bool,
+    /// Whether an apostrophe stands before every cell of text that a spreadsheet would take as a formula: one that begins
+    /// with =, +, -, @, a tab or a carriage return. Numbers stay numbers.
+    pub guarded: bool,
+    /// How they are written.
+    pub form: Form,
 }
 
 impl Columns {
     /// The columns for states of `robot` with these `feet`, read from the table `input` or found in it.
-    pub fn new(robot: &Robot, feet: &[NamedContact], input: Option<&Header>, kind: RowKind) -> Self {
+    pub fn new(robot: &Robot, feet: &[NamedContact], input: Option<&Header>, layout: Layout) -> Self {
         let through: Vec<_> = input.into_iter().flat_map(Header::carried).map(|name| (name, Kind::Text)).collect();
         let named = [("id", Kind::Text), ("line", Kind::Integer)];
-        let columns = Self::with(robot, &named, contacts(robot, feet, kind), &through, kind);
+        let columns = Self::with(robot, &named, contacts(robot, feet, layout), &through, layout);
         #[cfg(feature = "columnar")]
         let columns = columns.with_types(input);
         columns
@@ -163,15 +155,15 @@ impl Columns {
         feet: &[NamedContact],
         named: &[&str],
         through: &[(&str, Kind)],
-        kind: RowKind,
+        layout: Layout,
     ) -> Self {
-        let mut contacts = contacts(robot, feet, kind);
+        let mut contacts = contacts(robot, feet, layout);
         for name in named {
             if !contacts.iter().any(|known| known == name) {
                 contacts.push((*name).to_owned());
             }
         }
-        Self::with(robot, &[("id", Kind::Text)], contacts, through, kind)
+        Self::with(robot, &[("id", Kind::Text)], contacts, through, layout)
     }
 
     fn with(
@@ -179,48 +171,52 @@ impl Columns {
         named: &[(&str, Kind)],
         contacts: Vec<String>,
         through: &[(&str, Kind)],
-        kind: RowKind,
+        layout: Layout,
     ) -> Self {
         use Kind::{Boolean, Integer, Number, Text};
-        let columns = named.iter().copied().chain(FIRST.into_iter().zip([Text, Integer, Number, Boolean]));
-        let mut columns: Vec<(String, Kind)> = columns.map(|(name, kind)| (name.to_owned(), kind)).collect();
-        let [given, taken] = if kind == RowKind::Forces { ["f", "a"] } else { ["p", "v_after"] };
+        let Layout { aspect, touchdowns, next, brief, .. } = layout;
+        let [given, taken] = if aspect == Aspect::Forces { ["f", "a"] } else { ["p", "v_after"] };
+        let next = NEXT.into_iter().filter(|_| next).map(|name| (name, Text));
+        let first = FIRST.into_iter().zip([Text, Integer, Number, Boolean]).chain(next);
+        // Each with whether it is kept in brief.
+        let columns = named.iter().copied().chain(first).map(|(name, kind)| (name.to_owned(), kind, true));
+        let mut columns: Vec<(String, Kind, bool)> = columns.collect();
         for contact in &contacts {
-            columns.push((format!("mode_{contact}"), Text));
-            columns.extend(["t", "n"].map(|entry| (format!("{given}_{contact}_{entry}"), Number)));
+            columns.push((format!("mode_{contact}"), Text, true));
+            columns.extend(["t", "n"].map(|entry| (format!("{given}_{contact}_{entry}"), Number, false)));
         }
-        let coordinates = |part: &'static str| in_columns(robot).map(move |name| (format!("{part}_{name}"), Number));
-        columns.extend(coordinates(taken));
-        if kind == RowKind::Touchdown {
+        let coordinates = |part: &'static str, is_brief| {
+            in_columns(robot).map(move |name| (format!("{part}_{name}"), Number, is_brief))
+        };
+        columns.extend(coordinates(taken, false));
+        if touchdowns {
             let kinds = [Integer, Number, Text, Number, Text, Text];
-            columns.extend(TOUCHDOWN.into_iter().zip(kinds).map(|(name, kind)| (format!("touchdown_{name}"), kind)));
-            columns.extend(coordinates("q").chain(coordinates("v")));
+            let own = TOUCHDOWN.into_iter().zip(kinds);
+            columns.extend(own.map(|(name, kind)| (format!("touchdown_{name}"), kind, true)));
+            columns.extend(coordinates("q", true).chain(coordinates("v", true)));
         }
         let own: HashSet<String> =
-            columns.iter().map(|(name, _)| name.clone()).chain(LAST.map(str::to_owned)).collect();
+            columns.iter().map(|(name, ..)| name.clone()).chain(LAST.map(str::to_owned)).collect();
         let taken: HashSet<&str> = through.iter().map(|(name, _)| *name).collect();
         for &(column, kind) in through {
             let mut name = column.to_owned();
             while own.contains(&name) || (name != column && taken.contains(name.as_str())) {
                 name.insert_str(0, "in_");
             }
-            columns.push((name, kind));
+            columns.push((name, kind, true));
         }
-        let last = LAST.into_iter().zip([Text, Boolean, Text, Text, Text]);
-        columns.extend(last.map(|(name, kind)| (name.to_owned(), kind)));
-        let (names, kinds) = columns.into_iter().unzip();
+        let last = LAST.into_iter().zip([Text, Boolean, Text, Text, Text]).zip([false, true, true, true, false]);
+        columns.extend(last.map(|((name, kind), is_brief)| (name.to_owned(), kind, is_brief)));
+        let shown = columns.into_iter().filter(|&(.., is_brief)| is_brief || !brief);
+        let (names, kinds) = shown.map(|(name, kind, _)| (name, kind)).unzip();
         Self {
             names,
             kinds,
             named: named.len(),
             contacts,
-            coordinates: robot.dofs(),
-            kind,
+            coordinates: if brief { 0 } else { robot.dofs() },
             carried: through.len(),
-            next: false,
-            brief: false,
-            guarded: false,
-            form: Form::Csv,
+            layout,
             #[cfg(feature = "columnar")]
             types: None,
         }
@@ -232,48 +228,9 @@ impl Columns {
         self
     }
 
-    /// The same with columns `next_verdict` and `next_modes`, behind `proven`: the forces just after each outcome, in
-    /// whose modes a contact that has left the ground is `open`.
-    pub fn with_next(mut self) -> Self {
-        let at = self.contacts_start();
-        self.names.splice(at..at, NEXT.map(str::to_owned));
-        self.kinds.splice(at..at, NEXT.map(|_| Kind::Text));
-        Self { next: true, ..self }
-    }
-
-    /// The same in brief.
-    pub fn in_brief(self) -> Self {
-        let (contacts, velocities, last) = (self.contacts_start(), self.velocities(), self.last());
-        let is_kept = |at: usize| match at {
-            _ if (contacts..velocities).contains(&at) => (at - contacts).is_multiple_of(3),
-            _ if (velocities..velocities + self.coordinates).contains(&at) => false,
-            _ => at != last && at != last + LAST.len() - 1,
-        };
-        let (names, kinds) = self
-            .names
-            .into_iter()
-            .zip(self.kinds)
-            .zip(0..)
-            .filter(|&(_, at)| is_kept(at))
-            .map(|(column, _)| column)
-            .unzip();
-        Self { names, kinds, coordinates: 0, brief: true, ..self }
-    }
-
-    /// The same, written in this form.
-    pub fn written_as(self, form: Form) -> Self {
-        Self { form, ..self }
-    }
-
-    /// The same with an apostrophe before every cell of text that a spreadsheet would take as a formula: one that
-    /// begins with =, +, -, @, a tab or a carriage return. Numbers stay numbers.
-    pub fn guarded(self) -> Self {
-        Self { guarded: true, ..self }
-    }
-
     /// How they are written.
     pub fn form(&self) -> Form {
-        self.form
+        self.layout.form
     }
 
     /// The names of all columns.
@@ -378,7 +335,7 @@ impl Columns {
     ) {
         self.name_state((id, line, carried), row);
         row.text(self.named, analysis.verdict.name());
-        if let Some(touchdown) = touchdown.filter(|_| self.kind == RowKind::Touchdown) {
+        if let Some(touchdown) = touchdown.filter(|_| self.layout.touchdowns) {
             let start = self.velocities() + self.coordinates;
             row.integer(start, touchdown.row as i64);
             row.number(start + 1, touchdown.time);
@@ -389,7 +346,7 @@ impl Columns {
             let coordinates = (start + TOUCHDOWN.len()..).zip(&touchdown.coordinates);
             coordinates.for_each(|(at, &number)| row.number(at, number));
         }
-        if !self.brief {
+        if !self.layout.brief {
             row.text(self.family() + 3, &notes(&impact.notes));
         }
     }
@@ -401,11 +358,11 @@ impl Columns {
         for ((&place, mode), impulse) in places.iter().zip(&outcome.modes).zip(&outcome.impulse) {
             row.text(place, mode.name());
             // Of what is not decided no number is known.
-            if outcome.decided && !self.brief {
+            if outcome.decided && !self.layout.brief {
                 impulse.iter().zip(place + 1..).for_each(|(&entry, at)| row.number(at, entry));
             }
         }
-        if let Some(Next { verdict, modes, .. }) = outcome.next.as_ref().filter(|_| self.next) {
+        if let Some(Next { verdict, modes, .. }) = outcome.next.as_ref().filter(|_| self.layout.next) {
             let name = |mode: &Option<Mode>| mode.map_or("open", Mode::name);
             let modes = modes.iter().map(|own| own.iter().map(name).collect::<Vec<_>>().join("/"));
             row.text(self.named + FIRST.len(), verdict.name());
@@ -415,7 +372,7 @@ impl Columns {
             let velocities = outcome.velocity().take(self.coordinates);
             velocities.zip(self.velocities()..).for_each(|(velocity, at)| row.number(at, velocity));
         }
-        if !self.brief {
+        if !self.layout.brief {
             row.text(self.last(), &border(outcome));
         }
         row.boolean(self.family(), outcome.family);
@@ -423,12 +380,12 @@ impl Columns {
 
     /// The first of the last columns.
     pub(super) fn last(&self) -> usize {
-        self.names.len() - LAST.len() + if self.brief { 2 } else { 0 }
+        self.names.len() - LAST.len() + if self.layout.brief { 2 } else { 0 }
     }
 
     /// Among the last columns the one that says whether the outcome is of a family.
     pub(super) fn family(&self) -> usize {
-        self.last() + usize::from(!self.brief)
+        self.last() + usize::from(!self.layout.brief)
     }
 
     /// The first column of a velocity.
@@ -438,12 +395,12 @@ impl Columns {
 
     /// The first column of a contact.
     pub(super) fn contacts_start(&self) -> usize {
-        self.named + FIRST.len() + if self.next { NEXT.len() } else { 0 }
+        self.named + FIRST.len() + if self.layout.next { NEXT.len() } else { 0 }
     }
 
     /// How many columns a contact has.
     pub(super) fn of_contact(&self) -> usize {
-        if self.brief { 1 } else { 3 }
+        if self.layout.brief { 1 } else { 3 }
     }
 
     /// The first of a contact's columns.
@@ -455,11 +412,11 @@ impl Columns {
 
 /// The names of all contacts that the feet can give: of a polygon two corners at once, of touchdowns all of them. A
 /// link of several has its plain name as well, for when a single one of them touches.
-fn contacts(robot: &Robot, feet: &[NamedContact], kind: RowKind) -> Vec<String> {
+fn contacts(robot: &Robot, feet: &[NamedContact], layout: Layout) -> Vec<String> {
     let mut counts = vec![0; robot.links.len()];
     for foot in Feet::new(robot, feet).iter() {
         let corners = foot.outline.corners().len();
-        counts[foot.link] += if kind == RowKind::Touchdown { corners } else { corners.min(2) };
+        counts[foot.link] += if layout.touchdowns { corners } else { corners.min(2) };
     }
     let mut names = Vec::new();
     for (link, count) in robot.links.iter().zip(counts).filter(|&(_, count)| count > 0) {

@@ -54,7 +54,7 @@ impl RowSink for Vec<u8> {
 
     fn row(&mut self, columns: &Columns, fill: impl FnOnce(&mut TextRow)) {
         let cells = vec![0..0; columns.names().len()];
-        let mut row = TextRow { guarded: columns.guarded, text: Vec::new(), cells };
+        let mut row = TextRow { guarded: columns.layout.guarded, text: Vec::new(), cells };
         fill(&mut row);
         let mut writer = csv::WriterBuilder::new();
         let mut writer = writer.delimiter(columns.form().delimiter()).buffer_capacity(1 << 10).from_writer(self);

@@ -6,7 +6,7 @@ use heelstrike::pipeline::{Impact, Options, Pipeline};
 use heelstrike::read::table::{Form, Header, Rates};
 use heelstrike::robot::{Base, Reduction};
 use heelstrike::state::NamedContact;
-use heelstrike::write::{Columns, Refused, RowKind};
+use heelstrike::write::{Columns, Layout, Refused};
 use heelstrike::{Defaults, Error, Friction, Robot, State};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -218,7 +218,7 @@ fn rows_that_do_not_fit_are_refused_with_their_place() {
 #[test]
 fn columns_of_the_base_are_not_those_of_joints_of_its_names() {
     let text = leg_urdf().replace("\"knee\"", "\"x\"");
-    let columns = Columns::new(&robot(&text), &[], None, RowKind::Touchdown);
+    let columns = Columns::new(&robot(&text), &[], None, Layout { touchdowns: true, ..Layout::default() });
     for name in ["v_after_base_x", "v_after_x", "q_base_x", "q_x", "v_base_x", "v_x"] {
         assert_eq!(columns.names().iter().filter(|own| *own == name).count(), 1, "{name}");
     }
@@ -246,7 +246,7 @@ fn broken_row_stays_out_of_the_next() {
 /// The rows that are written for a state, by column.
 fn rows(robot: &Robot, state: &State, options: Options) -> (Vec<BTreeMap<String, String>>, Box<Impact>) {
     let impact = Pipeline::new(robot, options).impact(state).unwrap();
-    let (mut out, columns) = (Vec::new(), Columns::new(robot, &[], None, RowKind::State));
+    let (mut out, columns) = (Vec::new(), Columns::new(robot, &[], None, Layout::default()));
     columns.append_header(&mut out);
     columns.append_result((state.id.as_ref(), None, None), &impact, None, &mut out).unwrap();
     (by_column(&out), impact)
@@ -289,24 +289,25 @@ fn every_outcome_is_a_row_with_every_number() {
 
 #[test]
 fn the_header_has_every_contact_that_feet_can_give() {
-    let header = |feet: &[NamedContact], kind| {
+    let [state, touchdown] = [false, true].map(|touchdowns| Layout { touchdowns, ..Layout::default() });
+    let header = |feet: &[NamedContact], layout| {
         let mut out = Vec::new();
-        Columns::new(&leg(), feet, None, kind).append_header(&mut out);
+        Columns::new(&leg(), feet, None, layout).append_header(&mut out);
         String::from_utf8(out).unwrap()
     };
     let modes = |header: &str| -> Vec<String> {
         header.split(',').filter_map(|name| Some(name.strip_prefix("mode_")?.to_owned())).collect()
     };
     assert_eq!(
-        header(&[], RowKind::State),
+        header(&[], state),
         "id,line,verdict,outcome,margin,proven,mode_body,p_body_t,p_body_n,mode_body/0,p_body/0_t,p_body/0_n,mode_body/1,\
          p_body/1_t,p_body/1_n,mode_shin,p_shin_t,p_shin_n,v_after_base_x,v_after_base_z,v_after_base_pitch,v_after_knee,border,\
          family,families,error,notes\n"
     );
     let foot = NamedContact { link: 1, offset: [0.1, 0.0, -0.5], radius: 0.0 };
-    assert_eq!(modes(&header(&[foot], RowKind::State)), ["body", "body/0", "body/1", "shin", "shin/0", "shin/1"]);
-    assert_eq!(modes(&header(&[], RowKind::Touchdown)), ["body", "body/0", "body/1", "body/2", "body/3", "shin"]);
-    assert!(header(&[], RowKind::Touchdown).contains(
+    assert_eq!(modes(&header(&[foot], state)), ["body", "body/0", "body/1", "shin", "shin/0", "shin/1"]);
+    assert_eq!(modes(&header(&[], touchdown)), ["body", "body/0", "body/1", "body/2", "body/3", "shin"]);
+    assert!(header(&[], touchdown).contains(
         ",v_after_knee,touchdown_row,touchdown_time,touchdown_striking,touchdown_shift_z,touchdown_at,touchdown_touching,\
          q_base_x,q_base_z,q_base_pitch,q_knee,v_base_x,v_base_z,v_base_pitch,v_knee,border,family,families,error,notes"
     ));
@@ -338,7 +339,7 @@ fn a_contact_without_columns_is_refused() {
     let named = |x| NamedContact { link: 1, offset: [x, 0.0, -0.5], radius: 0.0 };
     state.scene.contacts = Some(vec![named(0.0), named(0.1)]);
     let impact = Pipeline::new(&robot, Options::default()).impact(&state).unwrap();
-    let (mut out, columns) = (Vec::new(), Columns::new(&robot, &[], None, RowKind::State));
+    let (mut out, columns) = (Vec::new(), Columns::new(&robot, &[], None, Layout::default()));
     let error = columns.append_result((None, None, None), &impact, None, &mut out).unwrap_err();
     assert_eq!(
         shown(&error),
@@ -350,12 +351,11 @@ fn a_contact_without_columns_is_refused() {
 #[test]
 fn foreign_columns_are_carried_beside_a_refusal() {
     let robot = leg();
-    let header =
-        Header::read(b"time,id,verdict,v_knee,error,note,in_error,family", Form::Csv, &robot, Rates::Columns, &[])
-            .unwrap();
-    let columns = Columns::new(&robot, &[], Some(&header), RowKind::State);
+    let names = b"time,id,verdict,v_knee,error,note,in_error,family,next_modes";
+    let header = Header::read(names, Form::Csv, &robot, Rates::Columns, &[]).unwrap();
+    let columns = Columns::new(&robot, &[], Some(&header), Layout { next: true, ..Layout::default() });
     let mut rows = header.rows();
-    let row = rows.row(b" 0.10 ,\"k,1\",mine,oops,none,\"a \"\"b\"\"\nc\",other,ours", 7).unwrap().unwrap();
+    let row = rows.row(b" 0.10 ,\"k,1\",mine,oops,none,\"a \"\"b\"\"\nc\",other,ours,held", 7).unwrap().unwrap();
     assert_eq!(row.time().unwrap(), 0.1);
     let error = row.state(&robot, &Defaults::default()).map(|_| ()).unwrap_err();
     let mut out = Vec::new();
@@ -366,6 +366,7 @@ fn foreign_columns_are_carried_beside_a_refusal() {
     assert_eq!([cell("id"), cell("verdict"), cell("outcome")], ["k,1", "refused", ""]);
     assert_eq!(["time", "in_verdict", "in_in_error", "note"].map(cell), [" 0.10 ", "mine", "none", "a \"b\"\nc"]);
     assert_eq!(["in_error", "in_family", "family"].map(cell), ["other", "ours", ""]);
+    assert_eq!(["next_modes", "in_next_modes"].map(cell), ["", "held"]);
     assert_eq!(cell("error"), "line 7: v_knee: expected a number, found \"oops\"");
 }
 

@@ -4,7 +4,7 @@ use crate::read::table::Carried;
 use crate::state::NamedContact;
 use crate::sweep::{Regime, RobotStudy, Solver};
 use crate::write::text_row::number_text;
-use crate::write::{Columns, Detail, ErrorObject, Kind, Report, RowKind, RowSink, append_line};
+use crate::write::{Columns, Detail, ErrorObject, Kind, Layout, Report, RowSink, append_line};
 use crate::{Impact, Result};
 use serde::Serialize;
 use serde_json::json;
@@ -91,10 +91,16 @@ impl<'a> SampleRecord<'a> {
     }
 }
 
-/// The columns of a batch with these `contacts`, then the parameters and the letter of the region.
-pub fn columns<'c>(model: &'c RobotStudy, feet: &[NamedContact], contacts: impl Iterator<Item = &'c str>) -> Columns {
+/// The columns of a batch with these `contacts`, then the parameters and the letter of the region. What is asked is known
+/// from the study.
+pub fn columns<'c>(
+    model: &'c RobotStudy,
+    feet: &[NamedContact],
+    contacts: impl Iterator<Item = &'c str>,
+    layout: Layout,
+) -> Columns {
     let parameters = model.study.parameters().iter().map(|parameter| (parameter.name.as_str(), Kind::Number));
     let through: Vec<_> = parameters.chain([("region", Kind::Text)]).collect();
-    let kind = RowKind::of(model.study.question());
-    Columns::without_lines(model.robot, feet, &contacts.collect::<Vec<_>>(), &through, kind)
+    let layout = Layout { aspect: model.study.question(), ..layout };
+    Columns::without_lines(model.robot, feet, &contacts.collect::<Vec<_>>(), &through, layout)
 }

@@ -278,11 +278,16 @@ fn every_form_of_forces_is_valid() {
                 {"a": {"link": "torso", "offset": [0, 0, 1]}, "b": {"world": [0, 1]}, "force": [3, 0], "moment": 2}]}"#,
         ),
         (&["forces", "urdf/block.urdf", "-"], "{\"friction\": 1, \"velocity\": {\"base\": {\"z\": -1}}}"),
+        // Fields of a flat line that mean nothing here keep their types.
+        (
+            &["batch", "urdf/block.urdf", "-", "--forces", "--friction", "1"],
+            "{\"q_base_z\": 2, \"v_base_z\": 0, \"phase\": 3, \"left\": true}\n",
+        ),
     ] {
         let found = assert_valid(&schema::forces(), arguments, input, "");
         verdicts.extend(found.iter().map(|own| own["verdict"].as_str().unwrap_or("refused").to_owned()));
     }
-    assert_eq!(verdicts, ["unique", "unique", "unique", "none", "ambiguous", "no_contact", "refused"]);
+    assert_eq!(verdicts, ["unique", "unique", "unique", "none", "ambiguous", "no_contact", "refused", "no_contact"]);
 }
 
 #[test]
