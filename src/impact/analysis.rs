@@ -16,7 +16,7 @@ use super::explanation::explanation;
 use super::families::FamiliesPass;
 use super::outcome::{Analysis, Explanation, OpenCombinations, Outcome, Verdict};
 use super::passes::{F64Pass, UndecidedPass};
-use super::problem::{ContactProblem, Errors, Precision, PrecisionTask, Remembered, Source, escalate};
+use super::problem::{ContactProblem, Errors, Ladder, Precision, PrecisionTask, Remembered, escalate};
 use super::rank::rank_and_condition;
 use super::relaxation::Relaxation;
 use super::slack::Scale;
@@ -62,10 +62,10 @@ impl Scratch {
     }
 
     /// As [`analyze`], with memory that is kept, of a `problem` that was rounded from a `source`.
-    pub fn analyze<S: Source>(
+    pub fn analyze(
         &mut self,
         problem: &ContactProblem,
-        source: &S,
+        source: &dyn Ladder,
         options: AnalysisOptions<'_>,
     ) -> Result<Analysis> {
         let contacts = problem.contacts();
@@ -74,14 +74,14 @@ impl Scratch {
         }
         let options = AnalysisOptions { prove: options.prove && source.is_exact(), ..options };
         self.tableau.without_slip = false;
-        let source = &Remembered::of(source);
-        let (findings, regular) = self.find(problem, source, options);
+        let remembered = &Remembered::of(source);
+        let (findings, regular) = self.find(problem, remembered, options);
         let Findings { outcomes, families, rejected, unlisted, effort, visited, undecided } = findings;
         let combinations = combinations(problem.laws());
         let undecided = undecided + (combinations - visited);
         let open = (undecided > 0).then(|| OpenCombinations { combinations, undecided, beyond_budget: is_spent() });
         let indices = || outcomes.iter().map(|outcome| outcome.index.map(i32::from)).sum();
-        let ranked = || rank_and_condition(problem, source, &self.scale, regular, options.reductions);
+        let ranked = || rank_and_condition(problem, remembered, &self.scale, regular, options.reductions);
         let (rank, condition) = (!options.brief).then(ranked).flatten().unzip();
         let is_explained = options.rejections == ListedRejections::Everything && rank == Some(2 * contacts);
         Ok(Analysis {
@@ -102,7 +102,7 @@ impl Scratch {
     }
 
     /// beta, gamma and regions, of the velocities of slow contacts in the digits that decide their outcomes.
-    fn explain<S: Source>(&self, problem: &ContactProblem, source: &S) -> Option<Explanation> {
+    fn explain(&self, problem: &ContactProblem, source: &dyn Ladder) -> Option<Explanation> {
         let velocity = if self.scale.is_slow() { source.velocity() } else { None };
         let moving = velocity.map(|velocity| problem.moving(&velocity).0);
         explanation(moving.as_ref().unwrap_or(problem), &self.scale)
@@ -113,10 +113,10 @@ impl Scratch {
     /// It is the greatest |L_t| / L_n of the sticking contacts, of the outcome without a sliding contact that needs
     /// least; `problem` and `source` have infinite friction everywhere. More contacts than [`CONTACT_LIMIT`] have none,
     /// and so have those that a budget leaves open.
-    pub fn friction_without_slip<S: Source>(
+    pub fn friction_without_slip(
         &mut self,
         problem: &ContactProblem,
-        source: &S,
+        source: &dyn Ladder,
         options: AnalysisOptions<'_>,
     ) -> Option<f64> {
         if problem.contacts() > CONTACT_LIMIT {
@@ -133,13 +133,13 @@ impl Scratch {
     }
 
     /// All outcomes of the modes that are visited, and whether G was shown to be regular.
-    fn find<S: Source>(
+    fn find(
         &mut self,
         problem: &ContactProblem,
-        source: &S,
+        remembered: &Remembered<'_>,
         options: AnalysisOptions<'_>,
     ) -> (Findings, bool) {
-        let contacts = problem.contacts();
+        let (contacts, source) = (problem.contacts(), remembered.source);
         let errors = source.errors();
         self.scale.measure(problem, errors);
         self.tableau.separately = !options.reductions.frictionless;
@@ -166,7 +166,7 @@ impl Scratch {
             self.tableau.visit(&mut pass);
         } else {
             let without_slip = self.tableau.without_slip;
-            let posed = (problem, source, &*shared);
+            let posed = (problem, remembered, &*shared);
             let search = Search::of(posed, &self.scale, &mut self.relaxation, without_slip, options.rejections);
             (pass.collected.effort, kernel) = (search.effort, search.kernel);
             pass.shares = false;
@@ -209,14 +209,14 @@ impl Scratch {
             let mut pass = UndecidedPass { undecided, blunt: BTreeMap::new(), kernel, collected: &mut collected };
             let is_enclosed = !shared.is_empty() && errors.delassus.is_finite() && scale.is_far_from_underflow();
             if !(is_enclosed && pass.attempt(&scale.enclosed(problem, errors, shared), Precision::Enclosed)) {
-                escalate(source, first, &mut pass);
+                escalate(remembered, first, &mut pass);
             }
             pass.finish();
         }
         if !collected.pending_families.is_empty() {
             let pending = std::mem::take(&mut collected.pending_families);
             let mut pass = FamiliesPass { pending, collected: &collected, found: FoundFamilies::default() };
-            escalate(source, Precision::Ball, &mut pass);
+            escalate(remembered, Precision::Ball, &mut pass);
             let found = pass.found;
             collected.add_families(found);
         }
@@ -263,6 +263,7 @@ fn no_slip_consistent(outcomes: &[Outcome], open: Option<&OpenCombinations>) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::impact::Source;
     use crate::law::Friction;
     use crate::scalar::{Ordered, Trigonometry};
     use proptest::prelude::*;

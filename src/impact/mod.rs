@@ -39,5 +39,5 @@ pub use outcome::{
     Analysis, AtZero, Border, Effort, Explanation, Family, ImpulseRegion, Motion, Next, OpenCombinations, Outcome,
     Rejection, RejectionReason, Verdict,
 };
-pub(crate) use problem::{Attempt, Precision, climb};
-pub use problem::{ContactProblem, Errors, MATRIX_LIMIT, Source};
+pub(crate) use problem::{Attempt, Precision, Rung, climb};
+pub use problem::{ContactProblem, Errors, Ladder, MATRIX_LIMIT, Source};

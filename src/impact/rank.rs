@@ -1,7 +1,7 @@
 //! Rank and condition of the Delassus matrix.
 
 use super::linear::solve;
-use super::problem::{ContactProblem, Precision, PrecisionTask, Source, escalate};
+use super::problem::{ContactProblem, Precision, PrecisionTask, Remembered, escalate};
 use super::slack::Scale;
 use crate::budget::is_spent;
 use crate::reductions::Reductions;
@@ -9,9 +9,9 @@ use crate::scalar::Ordered;
 use nalgebra::DMatrix;
 
 /// Rank of G and, if it is regular, the condition number of G scaled to a unit diagonal.
-pub fn rank_and_condition<S: Source>(
+pub fn rank_and_condition(
     problem: &ContactProblem,
-    source: &S,
+    remembered: &Remembered<'_>,
     scale: &Scale,
     regular: bool,
     reductions: Reductions,
@@ -20,7 +20,7 @@ pub fn rank_and_condition<S: Source>(
     if rows == 0 {
         return Some((0, None));
     }
-    let mobility = &scale.mobility;
+    let (mobility, source) = (&scale.mobility, remembered.source);
     let scaled = |i: usize, j: usize| problem.delassus(i, j) / (mobility[i] * mobility[j]);
     let is_own = |row: &usize| row % 2 == 1 || source.shared_tangent(row / 2).is_none();
     let own: Vec<usize> = (0..rows).filter(is_own).collect();
@@ -40,7 +40,7 @@ pub fn rank_and_condition<S: Source>(
         return Some((rows, Some(greatest / least)));
     }
     let mut inverse = Inverse { mobility: mobility.clone(), ..Inverse::default() };
-    escalate(source, Precision::Ball, &mut inverse);
+    escalate(remembered, Precision::Ball, &mut inverse);
     Some(match inverse.rank {
         Some(rank) if rank < rows => (rank, None),
         Some(rank) => {

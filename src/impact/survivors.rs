@@ -7,7 +7,7 @@
 use super::collected::ListedRejections;
 use super::kernel::Kernel;
 use super::outcome::Effort;
-use super::problem::{ContactProblem, Precision, PrecisionTask, Source, escalate};
+use super::problem::{ContactProblem, Precision, PrecisionTask, Remembered, escalate};
 use super::relaxation::{Claim, Lack, Relaxation};
 use super::slack::Scale;
 use crate::budget::{ROUNDS, is_spent_after};
@@ -40,14 +40,14 @@ pub struct Search<'a> {
 impl<'a> Search<'a> {
     /// All combinations of a problem, `without_slip` those in which nothing slides; those of the `rejections` that are
     /// listed by name survive.
-    pub fn of<S: Source>(
-        (problem, source, shared): (&'a ContactProblem, &S, &[Option<usize>]),
+    pub fn of(
+        (problem, remembered, shared): (&'a ContactProblem, &Remembered<'_>, &[Option<usize>]),
         scale: &Scale,
         relaxation: &'a mut Relaxation,
         without_slip: bool,
         rejections: ListedRejections<'a>,
     ) -> Self {
-        relaxation.load(problem, scale, source.errors());
+        relaxation.load(problem, scale, remembered.source.errors());
         relaxation.learn_from(&Kernel::of_shared(shared.iter().copied()));
         let (modes, survivors, open, kernel) = (Vec::new(), Vec::new(), Vec::new(), None);
         let (laws, effort) = (problem.laws(), Effort::default());
@@ -59,7 +59,7 @@ impl<'a> Search<'a> {
         });
         if !search.open.is_empty() {
             let first = Precision::first(search.relaxation.is_regular, problem);
-            escalate(source, first, &mut search);
+            escalate(remembered, first, &mut search);
         }
         search.unvisited += search.open.iter().map(|claim| combinations(&laws[claim.modes.len()..])).sum::<u64>();
         search.survivors.sort_unstable();

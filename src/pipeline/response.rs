@@ -12,9 +12,8 @@ use super::assembly::Elimination;
 use super::exact::{Asked, ExactState};
 use super::{Pipeline, Prepared};
 use crate::dynamics::{Closed, articulated_inertias};
-use crate::impact::{Attempt, DIGITS, Errors, Outcome, Precision, climb, is_known};
+use crate::impact::{Attempt, DIGITS, Errors, Outcome, Precision, Rung, climb, is_known};
 use crate::planar::{Pair, Vector};
-use crate::scalar::{Ordered, Trigonometry};
 use crate::state::{Named, State};
 
 /// How the robot moves if the contacts give no impulses.
@@ -119,7 +118,7 @@ struct Response<'a> {
 }
 
 impl Attempt for Response<'_> {
-    fn attempt<T: Ordered + Trigonometry>(&mut self, _: Precision) -> bool {
+    fn attempt<T: Rung>(&mut self, _: Precision) -> bool {
         let parts = self.source.response::<T>(self.impulse);
         let entries = parts.first().map_or(0, Vec::len);
         let sum = |entry: usize| parts.iter().fold(T::zero(), |sum, part| sum + part[entry]);

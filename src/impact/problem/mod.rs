@@ -13,8 +13,8 @@ mod repair;
 
 pub use checks::MATRIX_LIMIT;
 pub(crate) use checks::check_matrix_size;
-pub(crate) use source::{Attempt, Precision, climb};
-pub use source::{Errors, Source};
+pub(crate) use source::{Attempt, Precision, Rung, climb};
+pub use source::{Errors, Ladder, Source};
 pub(super) use source::{PrecisionTask, Remembered, escalate};
 
 use self::dense::Dynamics;

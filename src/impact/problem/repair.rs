@@ -1,7 +1,7 @@
 //! A Delassus matrix that rounding made indefinite is replaced by the nearest that is semidefinite, as all are.
 
 use super::ContactProblem;
-use super::source::{Precision, PrecisionTask, escalate};
+use super::source::{Precision, PrecisionTask, Remembered, escalate};
 use crate::impact::linear::{Unsettled, settled};
 use crate::scalar::{Ordered, Real, dot};
 
@@ -54,7 +54,7 @@ pub(super) fn is_semidefinite(problem: &ContactProblem) -> bool {
         return false;
     }
     let mut definiteness = Definiteness(false);
-    escalate(problem, Precision::Ball, &mut definiteness);
+    escalate(&Remembered::of(problem), Precision::Ball, &mut definiteness);
     definiteness.0
 }
 

@@ -7,21 +7,22 @@
 //! ```
 //!
 //! From the balls on, each number also has a residue that shows whether it is exactly zero (see
-//! [`Residue`](crate::scalar::Residue)); plain ones cost less than half, where no zeros are expected. So borders and dependent contacts are recognized, and a number that is not
-//! zero shows its sign once it has enough digits.
+//! [`Residue`](crate::scalar::Residue)); plain ones cost less than half, where no zeros are expected. So borders and
+//! dependent contacts are recognized, and a number that is not zero shows its sign once it has enough digits.
 
 use super::{ContactProblem, Origin};
 use crate::budget::{ROUNDS, is_spent, is_spent_after};
 use crate::impact::outcome::Effort;
 use crate::planar::Pair;
 use crate::scalar::{Ball, Certified, DoubleDouble, Interval, Ordered, Trigonometry};
-use std::any::Any;
 use std::cell::OnceCell;
 
 /// What stands behind the rounded numbers of a [`ContactProblem`]: exact data, and the way from them to G and c.
 pub trait Source {
     /// The contact problem itself, in numbers of any kind.
-    fn problem<T: Ordered + Trigonometry>(&self) -> ContactProblem<T>;
+    fn problem<T: Ordered + Trigonometry>(&self) -> ContactProblem<T>
+    where
+        Self: Sized;
 
     /// What the f64 problem may be off by.
     fn errors(&self) -> Errors<'_>;
@@ -48,47 +49,81 @@ pub trait Source {
     }
 }
 
-/// A source that computes its problem once in each kind of numbers, but for intervals, which live in their scope alone.
-pub struct Remembered<'a, S> {
-    source: &'a S,
+/// Any [`Source`] with its problem in the numbers that are tried one after the other: what asks it is compiled once for
+/// all sources.
+pub trait Ladder: Source {
+    /// In plain balls.
+    fn plain(&self) -> ContactProblem<Ball>;
+
+    /// In balls.
+    fn ball(&self) -> ContactProblem<Certified<Ball>>;
+
+    /// In balls around pairs of f64.
+    fn double_double(&self) -> ContactProblem<Certified<Ball<DoubleDouble>>>;
+
+    /// In intervals of as many digits as their scope has.
+    fn interval(&self) -> ContactProblem<Certified<Interval>>;
+}
+
+impl<S: Source> Ladder for S {
+    fn plain(&self) -> ContactProblem<Ball> {
+        self.problem()
+    }
+
+    fn ball(&self) -> ContactProblem<Certified<Ball>> {
+        self.problem()
+    }
+
+    fn double_double(&self) -> ContactProblem<Certified<Ball<DoubleDouble>>> {
+        self.problem()
+    }
+
+    fn interval(&self) -> ContactProblem<Certified<Interval>> {
+        self.problem()
+    }
+}
+
+/// A source whose problem is computed once in each kind of numbers, but for intervals, which live in their scope alone.
+pub struct Remembered<'a> {
+    pub source: &'a dyn Ladder,
     plain: OnceCell<ContactProblem<Ball>>,
     ball: OnceCell<ContactProblem<Certified<Ball>>>,
     double_double: OnceCell<ContactProblem<Certified<Ball<DoubleDouble>>>>,
 }
 
-impl<'a, S> Remembered<'a, S> {
-    pub fn of(source: &'a S) -> Self {
+impl<'a> Remembered<'a> {
+    pub fn of(source: &'a dyn Ladder) -> Self {
         Self { source, plain: OnceCell::new(), ball: OnceCell::new(), double_double: OnceCell::new() }
     }
 }
 
-impl<S: Source> Source for Remembered<'_, S> {
-    fn problem<T: Ordered + Trigonometry>(&self) -> ContactProblem<T> {
-        let kinds: [&dyn Any; 3] = [&self.plain, &self.ball, &self.double_double];
-        match kinds.into_iter().find_map(|kind| kind.downcast_ref::<OnceCell<ContactProblem<T>>>()) {
-            Some(known) => known.get_or_init(|| self.source.problem()).clone(),
-            None => self.source.problem(),
-        }
-    }
+/// A kind of numbers of the ladder.
+pub trait Rung: Ordered + Trigonometry {
+    /// The problem of a source in them.
+    fn problem(of: &Remembered<'_>) -> ContactProblem<Self>;
+}
 
-    fn errors(&self) -> Errors<'_> {
-        self.source.errors()
+impl Rung for Ball {
+    fn problem(of: &Remembered<'_>) -> ContactProblem<Self> {
+        of.plain.get_or_init(|| of.source.plain()).clone()
     }
+}
 
-    fn velocity(&self) -> Option<Vec<Pair<Ball<DoubleDouble>>>> {
-        self.source.velocity()
+impl Rung for Certified<Ball> {
+    fn problem(of: &Remembered<'_>) -> ContactProblem<Self> {
+        of.ball.get_or_init(|| of.source.ball()).clone()
     }
+}
 
-    fn is_exact(&self) -> bool {
-        self.source.is_exact()
+impl Rung for Certified<Ball<DoubleDouble>> {
+    fn problem(of: &Remembered<'_>) -> ContactProblem<Self> {
+        of.double_double.get_or_init(|| of.source.double_double()).clone()
     }
+}
 
-    fn contact_name(&self, contact: usize) -> String {
-        self.source.contact_name(contact)
-    }
-
-    fn shared_tangent(&self, contact: usize) -> Option<usize> {
-        self.source.shared_tangent(contact)
+impl Rung for Certified<Interval> {
+    fn problem(of: &Remembered<'_>) -> ContactProblem<Self> {
+        of.source.interval()
     }
 }
 
@@ -175,24 +210,24 @@ impl Precision {
 /// A question that numbers with more digits may answer, whatever they are computed from.
 pub trait Attempt {
     /// Tries to answer it in these numbers; true if nothing is left open.
-    fn attempt<T: Ordered + Trigonometry>(&mut self, precision: Precision) -> bool;
+    fn attempt<T: Rung>(&mut self, precision: Precision) -> bool;
 }
 
 /// A question about the problem of a source.
-struct Posed<'a, S, Q> {
-    source: &'a S,
+struct Posed<'a, Q> {
+    source: &'a Remembered<'a>,
     task: &'a mut Q,
 }
 
-impl<S: Source, Q: PrecisionTask> Attempt for Posed<'_, S, Q> {
-    fn attempt<T: Ordered + Trigonometry>(&mut self, precision: Precision) -> bool {
-        self.task.attempt(&self.source.problem::<T>(), precision)
+impl<Q: PrecisionTask> Attempt for Posed<'_, Q> {
+    fn attempt<T: Rung>(&mut self, precision: Precision) -> bool {
+        self.task.attempt(&T::problem(self.source), precision)
     }
 }
 
 /// Attempts a task in one kind of numbers after the other, beginning with `first`, until nothing is left open or the
 /// budget is spent.
-pub fn escalate<S: Source>(source: &S, first: Precision, task: &mut impl PrecisionTask) {
+pub fn escalate(source: &Remembered<'_>, first: Precision, task: &mut impl PrecisionTask) {
     climb(first, &mut Posed { source, task });
 }
 
