@@ -6,7 +6,7 @@ use super::moving::Moving;
 use crate::accuracy::computation::Computation;
 use crate::accuracy::quantile;
 use crate::budget::{is_spent, within};
-use crate::dynamics::{PointImpulse, add_impulse, kinetic_energy};
+use crate::dynamics::kinetic_energy;
 use crate::impact::{ContactProblem, Outcome};
 use crate::law::Mode;
 use crate::pipeline::assembly::{Assembly, Elimination};
@@ -249,24 +249,21 @@ fn by_stiffness_of_moving(
     for (before, change) in before.iter_mut().zip(state.change(&mut assembly)) {
         *before += change;
     }
-    let Assembly { plan, workspace, points, .. } = &assembly;
     let friction = problem.friction().collect::<Vec<_>>();
-    let after = |impulse: &[Pair<f64>]| {
+    let mut after = |impulse: &[Pair<f64>]| {
         let mut velocity = before.clone();
-        for (point, &[tangential, normal]) in points.iter().zip(impulse) {
-            let [t, n] = point.axes();
-            let (arm, vector) = (point.arm(workspace), t * tangential + n * normal);
-            let impulse = PointImpulse { body: point.body, arm, vector };
-            add_impulse(plan, workspace, impulse, &mut Vec::new(), &mut velocity);
+        for (contact, &own) in impulse.iter().enumerate() {
+            assembly.strike(Elimination::Ltl, contact, own, &mut velocity);
         }
         velocity
     };
+    let frozen = after(&run(problem, PLAIN, TOLERANCE)?.impulse);
+    let outcomes: Vec<Vec<f64>> = outcomes.iter().map(|outcome| after(&outcome.impulse)).collect();
+    let Assembly { plan, workspace, points, .. } = &assembly;
     let apart = |a: &[f64], b: &[f64]| {
         let gap: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
         (kinetic_energy(plan, &gap, workspace, &mut Vec::new()).max(0.0) / energy).sqrt()
     };
-    let frozen = after(&run(problem, PLAIN, TOLERANCE)?.impulse);
-    let outcomes: Vec<Vec<f64>> = outcomes.iter().map(|outcome| after(&outcome.impulse)).collect();
     let moving = Moving { plan, position: state.position, velocity: &before, contacts: points, friction: &friction };
     let mut rows = Vec::new();
     for stiffness in STIFFNESSES {

@@ -10,9 +10,11 @@
 use super::ground::{SoftGround, Suspension, mean_mobility};
 use super::integrate::{Limits, StiffEquations, integrate};
 use crate::Result;
-use crate::dynamics::plan::{Configuration, JointMotion, Plan};
+use crate::contact::Placement;
+use crate::dynamics::plan::{Configuration, Plan};
 use crate::dynamics::{
-    ContactPoint, PointImpulse, Workspace, add_impulse, contact_jacobian, delassus, factorize, kinematics, mass_matrix,
+    ContactPoint, PointImpulse, Workspace, add_impulse, bias, contact_jacobian, delassus, factorize, kinematics,
+    mass_matrix,
 };
 use crate::law::Friction;
 use crate::planar::{Pair, Vector};
@@ -100,7 +102,8 @@ impl<'a> Equation<'a> {
         let contacts = robot.contacts.len();
         let mean_mobility = mean_mobility(|row, column| workspace.delassus[row * 2 * contacts + column], contacts);
         let damping = 2.0 * ground.damping_ratio * (stiffness / mean_mobility).sqrt();
-        let points = robot.contacts.iter().map(|contact| place(robot.plan, contact, &Vector::zero(), workspace));
+        let placement = Placement::new(robot.plan, workspace, Vector::zero());
+        let points = robot.contacts.iter().map(|contact| place(contact, &placement, workspace));
         Self {
             suspension: Suspension::new(ground, stiffness, damping, robot.friction.iter().copied()),
             start: points.collect(),
@@ -123,18 +126,19 @@ impl<'a> Equation<'a> {
         memory.move_to(self.robot, &position, &velocity);
         let Memory { workspace, column, .. } = memory;
 
+        bias(plan, &velocity, GRAVITY, workspace);
+        let mut free = workspace.bias.clone();
+        workspace.factor.solve(plan, &mut free);
         let mut accelerations = vec![0.0; dofs];
-        for (body, force) in inertial_forces(plan, &velocity, workspace).into_iter().enumerate() {
-            let arm = workspace.rotation[body].apply(com(plan, body));
-            add_impulse(plan, workspace, PointImpulse { body, arm, vector: force }, column, &mut accelerations);
-        }
+        plan.coordinates.iter().zip(&free).for_each(|(&coordinate, own)| accelerations[coordinate] = -own);
         let base = if plan.floating { Vector::new(moved[0], moved[1]) } else { Vector::zero() };
+        let placement = Placement::new(plan, workspace, base);
         let mut touching = Vec::with_capacity(contacts.len());
         let mut stretches = Vec::with_capacity(contacts.len());
         for (index, contact) in contacts.iter().enumerate() {
             let axes = contact.axes();
             let c = workspace.contact_velocity[index];
-            let depth = axes[1].dot(self.start[index] - place(plan, contact, &base, workspace));
+            let depth = axes[1].dot(self.start[index] - place(contact, &placement, workspace));
             let ([tangential, normal], stretch) =
                 self.suspension.force(index, depth, state[2 * dofs + index] * length, c);
             let force = axes[0] * tangential + axes[1] * normal;
@@ -160,49 +164,7 @@ impl StiffEquations for Equation<'_> {
     }
 }
 
-/// A contact point from where the root's origin was at first, which moved by `base`.
-fn place(plan: &Plan, contact: &ContactPoint, base: &Vector<f64>, workspace: &Workspace) -> Vector<f64> {
-    let mut point = *base + contact.arm(workspace);
-    let mut at = Some(contact.body);
-    while let Some(body) = at {
-        point += workspace.arm[body];
-        at = plan.bodies[body].parent;
-    }
-    point
-}
-
-/// CoG in the body's frame; of a massless body its origin.
-fn com(plan: &Plan, body: usize) -> Vector<f64> {
-    let inertia = plan.bodies[body].inertia;
-    if inertia.mass > 0.0 { inertia.first * (1.0 / inertia.mass) } else { Vector::zero() }
-}
-
-/// Weight, and minus mass times what the CoG accelerates while no joint does, of each body \[N\].
-fn inertial_forces(plan: &Plan, velocity: &[f64], workspace: &Workspace) -> Vec<Vector<f64>> {
-    let mut spins: Vec<f64> = Vec::with_capacity(plan.bodies.len());
-    let mut origins: Vec<Vector<f64>> = Vec::with_capacity(plan.bodies.len());
-    let mut forces = Vec::with_capacity(plan.bodies.len());
-    for (index, body) in plan.bodies.iter().enumerate() {
-        let (spin, origin) = match (body.parent, body.motion) {
-            (None, _) => (if plan.floating { velocity[2] } else { 0.0 }, Vector::zero()),
-            (Some(parent), motion) => {
-                let (spin, rate) = (spins[parent], velocity[body.coordinate]);
-                let carried = origins[parent] - workspace.arm[index] * (spin * spin);
-                match motion {
-                    JointMotion::Revolute { rate: unit, .. } => (spin + unit * rate, carried),
-                    // Coriolis: twice the turn of the direction of sliding.
-                    JointMotion::Prismatic { .. } => {
-                        (spin, carried + workspace.direction[index].perpendicular() * (2.0 * spin * rate))
-                    }
-                    JointMotion::Root | JointMotion::Fixed => (spin, carried),
-                }
-            }
-        };
-        let com = workspace.rotation[index].apply(com(plan, index));
-        let acceleration = origin - com * (spin * spin);
-        forces.push((acceleration + Vector::new(0.0, GRAVITY)) * -body.inertia.mass);
-        spins.push(spin);
-        origins.push(origin);
-    }
-    forces
+/// A contact point.
+fn place(contact: &ContactPoint, placement: &Placement, workspace: &Workspace) -> Vector<f64> {
+    placement.world(contact.body, Vector::zero()) + contact.arm(workspace)
 }
