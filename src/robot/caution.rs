@@ -45,22 +45,20 @@ pub(super) fn about_frozen(seen: &Seen, frozen: &[(usize, FrozenJoint)], kept: u
     };
     let nearly: Vec<_> = frozen.iter().filter(tilted).collect();
     let hidden: Vec<_> = with(|reason| matches!(reason, Kind(_))).collect();
-    let names = |joints: &[&(usize, FrozenJoint)]| names(joints.iter().map(|(_, joint)| joint.name.as_str()));
+    let names = |joints: &[&(usize, FrozenJoint)]| names(joints.iter().map(|(_, joint)| &joint.name));
     let mut cautions = Vec::new();
     if !nearly.is_empty() {
         cautions.push(about_tilted(seen, &nearly, movable.len() + kept));
-    } else if kept == 0 && movable.len() > hidden.len() {
+    } else if let Some(movable) = names(&movable).filter(|_| kept == 0 && movable.len() > hidden.len()) {
         cautions.push(format!(
-            "no joint moves in this plane, so the robot is one rigid body ({} frozen): choose another plane (`plane`), or hold \
-             joints where the axes of others are in line (`hold: NAME=VALUE`)",
-            names(&movable)
+            "no joint moves in this plane, so the robot is one rigid body ({movable} frozen): choose another plane (`plane`), or \
+             hold joints where the axes of others are in line (`hold: NAME=VALUE`)"
         ));
     }
-    if !hidden.is_empty() {
+    if let Some(hidden) = names(&hidden) {
         cautions.push(format!(
-            "{} could move in the plane and is frozen all the same, having no single axis: replace it by revolute and prismatic \
-             joints",
-            names(&hidden)
+            "{hidden} could move in the plane and is frozen all the same, having no single axis: replace it by revolute and \
+             prismatic joints"
         ));
     }
     cautions
@@ -70,27 +68,23 @@ pub(super) fn about_frozen(seen: &Seen, frozen: &[(usize, FrozenJoint)], kept: u
 pub(super) fn about_outside(description: &Description, outside: &[&UrdfLink]) -> Option<String> {
     let root = &description.links[description.root].name;
     let touching = outside.iter().filter(|link| link.name != *root && !link.collisions.is_empty());
-    let touching = names(touching.map(|link| link.name.as_str()));
-    (!touching.is_empty()).then(|| {
-        format!(
-            "{touching} has collision shapes but belongs to the base, so they are left out: if it is a foot, name one on \
-             another link (`feet: LINK:X,Y,Z`)"
-        )
-    })
+    let touching = names(touching.map(|link| &link.name))?;
+    Some(format!(
+        "{touching} has collision shapes but belongs to the base, so they are left out: if it is a foot, name one on \
+         another link (`feet: LINK:X,Y,Z`)"
+    ))
 }
 
 /// The caution about names in the file that are perhaps misspelt.
 pub(super) fn about_spelling(description: &Description) -> Option<String> {
-    let names = names(description.misspelt.iter().map(String::as_str));
-    (!description.misspelt.is_empty()).then(|| format!("not read, and perhaps misspelt: {names}"))
+    Some(format!("not read, and perhaps misspelt: {}", names(&description.misspelt)?))
 }
 
 /// The caution about elements that close loops, which a tree of joints has no place for.
 pub(super) fn about_loops(description: &Description) -> Option<String> {
     let closing = description.ignored.iter().filter(|own| closes_loops(own.parent, &own.tag));
-    let closing = names(closing.map(|own| own.tag.as_str()));
-    (!closing.is_empty())
-        .then(|| format!("what closes loops in the file is left out ({closing}): close them by `loops` in each state"))
+    let closing = names(closing.map(|own| &own.tag))?;
+    Some(format!("what closes loops in the file is left out ({closing}): close them by `loops` in each state"))
 }
 
 /// Whether an element of this tag closes a loop, as extensions of URDF have it.
@@ -101,11 +95,8 @@ pub(super) fn closes_loops(parent: &str, tag: &str) -> bool {
 /// The caution about joints that move, but whose `<axis>` the file leaves out.
 pub(super) fn about_axes(description: &Description) -> Option<String> {
     let without = description.joints.iter().filter(|joint| joint.kind.has_axis() && !joint.has_axis);
-    let without: Vec<String> = without.map(|joint| format!("{} on line {}", joint.name, joint.location.line)).collect();
-    (!without.is_empty()).then(|| {
-        let names = names(without.iter().map(String::as_str));
-        format!("without an <axis>, and so about or along x: {names}; name the axis, as in <axis xyz=\"0 1 0\"/>")
-    })
+    let names = names(without.map(|joint| format!("{} on line {}", joint.name, joint.location.line)))?;
+    Some(format!("without an <axis>, and so about or along x: {names}; name the axis, as in <axis xyz=\"0 1 0\"/>"))
 }
 
 /// The caution about lengths that no legged robot has, as millimeters taken for meters.
@@ -165,8 +156,7 @@ pub(super) fn about_held(description: &Description, frozen: &[(usize, FrozenJoin
             _ => None,
         }
     });
-    let odd: Vec<String> = odd.collect();
-    (!odd.is_empty()).then(|| format!("held beyond limits, or in degrees: {}", names(odd.iter().map(String::as_str))))
+    Some(format!("held beyond limits, or in degrees: {}", names(odd)?))
 }
 
 /// The caution about rotations of more than a turn, as degrees taken for radians.
@@ -193,9 +183,8 @@ pub(super) fn about_limits(description: &Description) -> Option<String> {
         let limits = joint.limits.filter(|_| joint.kind == JointKind::Revolute);
         limits.is_some_and(|limits| limits.iter().all(in_degrees) && limits.iter().any(|limit| limit.abs() >= 30.0))
     };
-    let odd: Vec<&str> = description.joints.iter().filter(is_odd).map(|joint| joint.name.as_str()).collect();
-    (!odd.is_empty())
-        .then(|| format!("with limits as in degrees: {}; angles are in radians", names(odd.iter().copied())))
+    let odd = names(description.joints.iter().filter(is_odd).map(|joint| &joint.name))?;
+    Some(format!("with limits as in degrees: {odd}; angles are in radians"))
 }
 
 /// The cautions about inertias that are half given or wrong, of these links of a robot of this `whole` mass \[kg\] and
@@ -223,8 +212,8 @@ pub(super) fn about_inertias<'l>(links: impl Iterator<Item = &'l UrdfLink>, (who
         };
         found[kind].push(link.name.as_str());
     }
-    let found = found.into_iter().zip(kinds).filter(|(links, _)| !links.is_empty());
-    found.map(|(links, (what, remedy))| format!("{what}: {}; {remedy}", names(links.into_iter()))).collect()
+    let found = found.into_iter().zip(kinds);
+    found.filter_map(|(links, (what, remedy))| Some(format!("{what}: {}; {remedy}", names(links)?))).collect()
 }
 
 /// The caution about collision meshes that could not be read.
@@ -262,54 +251,27 @@ fn about_tilted(seen: &Seen, nearly: &[&(usize, FrozenJoint)], all: usize) -> St
     let mut remedies: Vec<Remedy> = Vec::new();
     for &&(joint, _) in nearly {
         let is_slight = seen.plane.off_normal(seen.pose.axes[joint]) <= SLIGHTLY;
-        let remedy = if is_slight { Remedy::Tolerance(1.1 * slightly) } else { remedy(seen, joint) };
+        let remedy = match is_slight {
+            true => ("axis_tolerance", 0, format!("`axis_tolerance: {:.1e}`", 1.1 * slightly)),
+            false => remedy(seen, joint),
+        };
         // One for each joint: a hinge has one value.
-        if !remedies.iter().any(|other| other.is_about_the_same(&remedy)) {
+        if !remedies.iter().any(|(kind, of, _)| (*kind, *of) == (remedy.0, remedy.1)) {
             remedies.push(remedy);
         }
     }
-    let remedies: Vec<String> = remedies.iter().map(|remedy| remedy.in_words(seen.description)).collect();
+    let remedies: Vec<String> = remedies.into_iter().map(|(.., words)| words).collect();
     format!(
         "{} of {all} joints that could move are frozen only because their axes are {range} degrees off the plane ({}); to keep \
          them: {}",
         nearly.len(),
-        names(nearly.iter().map(|(_, joint)| joint.name.as_str())),
+        names(nearly.iter().map(|(_, joint)| &joint.name)).unwrap_or_default(),
         remedies.join(", "),
     )
 }
 
-/// What keeps a joint whose axis is off the normal.
-enum Remedy {
-    /// Freezing this hinge at this angle \\[rad\\] brings it into line.
-    Freeze { hinge: usize, angle: f64 },
-    /// The origin of this joint tilts it.
-    Origin(usize),
-    /// Its own axis is tilted.
-    Axis(usize),
-    /// It is off by no more than this \\[rad\\].
-    Tolerance(f64),
-}
-
-impl Remedy {
-    fn is_about_the_same(&self, other: &Self) -> bool {
-        match (self, other) {
-            (Self::Freeze { hinge, .. }, Self::Freeze { hinge: other, .. }) => hinge == other,
-            (Self::Origin(joint), Self::Origin(other)) | (Self::Axis(joint), Self::Axis(other)) => joint == other,
-            (Self::Tolerance(_), Self::Tolerance(_)) => true,
-            _ => false,
-        }
-    }
-
-    fn in_words(&self, description: &Description) -> String {
-        let name = |joint: usize| &description.joints[joint].name;
-        match *self {
-            Self::Freeze { hinge, angle } => format!("`hold: {}={angle:.6}`", name(hinge)),
-            Self::Origin(joint) => format!("straighten the rpy of {}", name(joint)),
-            Self::Axis(joint) => format!("straighten the axis of {}", name(joint)),
-            Self::Tolerance(angle) => format!("`axis_tolerance: {angle:.1e}`"),
-        }
-    }
-}
+/// What keeps a joint whose axis is off the normal: what is to be set, of which joint, and in words how.
+type Remedy = (&'static str, usize, String);
 
 /// What brings the axis of a joint into line: a frozen hinge before it that can turn it there, or else the joint whose
 /// origin tilts it.
@@ -328,9 +290,9 @@ fn remedy(seen: &Seen, joint: usize) -> Remedy {
             && plane.off_normal(pose.axes[before]) > OBLIQUE
     });
     let into_line = |hinge: usize| angle_into_line(axis, pose.axes[hinge], *plane, pose.tolerance);
-    let mut turned = turned.filter_map(|hinge| Some(Remedy::Freeze { hinge, angle: into_line(hinge)? }));
-    if let Some(freeze) = turned.next() {
-        return freeze;
+    let mut turned = turned.filter_map(|hinge| Some((hinge, into_line(hinge)?)));
+    if let Some((hinge, angle)) = turned.next() {
+        return ("hold", hinge, format!("`hold: {}={angle:.6}`", description.joints[hinge].name));
     }
     let in_line = |axes: &Matrix| {
         let columns = [0, 1, 2].map(|column| axes.map(|row| row[column]));
@@ -340,7 +302,8 @@ fn remedy(seen: &Seen, joint: usize) -> Remedy {
         let joint = &description.joints[*at];
         in_line(&pose.rotations[joint.parent]) && !in_line(&pose.rotations[joint.child])
     };
-    std::iter::once(joint).chain(before()).find(tilts).map_or(Remedy::Axis(joint), Remedy::Origin)
+    let (part, of) = std::iter::once(joint).chain(before()).find(tilts).map_or(("axis", joint), |own| ("rpy", own));
+    (part, of, format!("straighten the {part} of {}", description.joints[of].name))
 }
 
 /// The angle \[rad\] by which a turn about `hinge` brings `axis` to the plane's normal, if one does; both of length
@@ -358,11 +321,14 @@ fn angle_into_line(axis: [f64; 3], hinge: [f64; 3], plane: Plane, tolerance: f64
     (plane.off_normal(apply(&turn(hinge, angle), axis)) <= tolerance).then_some(angle)
 }
 
-/// The first names.
-fn names<'a>(names: impl Iterator<Item = &'a str>) -> String {
-    let names: Vec<&str> = names.collect();
-    match names.len().checked_sub(NAMED) {
-        Some(more) if more > 0 => format!("{}, {more} more", names[..NAMED].join(", ")),
-        _ => names.join(", "),
-    }
+/// The first names; `None` if there are none.
+fn names<S: AsRef<str>>(names: impl IntoIterator<Item = S>) -> Option<String> {
+    let mut names = names.into_iter();
+    let first: Vec<S> = names.by_ref().take(NAMED).collect();
+    let first: Vec<&str> = first.iter().map(AsRef::as_ref).collect();
+    let more = match names.count() {
+        0 => String::new(),
+        more => format!(", {more} more"),
+    };
+    (!first.is_empty()).then(|| first.join(", ") + &more)
 }
