@@ -135,9 +135,10 @@ impl Span {
     }
 
     pub fn ends(&self) -> (f64, f64) {
-        let value = |shown: f64| match self.logarithmic {
-            true => libm::pow(10.0, shown),
-            false => shown * libm::pow(10.0, f64::from(self.power)),
+        let value = |shown: f64| match self.power {
+            _ if self.logarithmic => libm::pow(10.0, shown),
+            _ if self.in_pi => shown * PI,
+            power => shown * libm::pow(10.0, f64::from(power)),
         };
         (value(self.low), value(self.high))
     }
