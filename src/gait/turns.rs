@@ -8,8 +8,8 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 /// Numbers of few digits may lie so far beyond a turn \[rad\].
 const ROUNDED: f64 = 1e-3;
 
-/// The samples with the pitch of the base and the angles of joints without limits continued where they jump by about a turn from one
-/// row to the next within \[-pi, pi\] or \[0, 2 pi\]: whole turns are added to all later ones of the clip.
+/// The samples with the pitch of the base and the angles of joints without limits continued where they jump by about a
+/// turn from one row to the next within \[-pi, pi\] or \[0, 2 pi\]: whole turns are added to all later ones of the clip.
 pub fn unwrapped<'r, S>(
     samples: impl Iterator<Item = Sampled<S>> + 'r,
     robot: &'r Robot,
