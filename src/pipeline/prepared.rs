@@ -12,15 +12,15 @@ use super::resting::Standing;
 use super::still::Still;
 use super::{CONTACT_TOLERANCE, Impact, Pipeline};
 use crate::contact::{Contact, Footing, Level, Merged, Placement, Surface, level};
-use crate::dynamics::plan::{Plan, PlanBody};
+use crate::dynamics::plan::Plan;
 use crate::dynamics::{Arm, Constraints, RoundingBounds, Workspace, has_balance, kinetic_energy, mass_diagonal};
-use crate::error::{Error, Reason, Result, along_normal, finite, rounded};
+use crate::error::{Error, Reason, Result, finite};
 use crate::impact::problem::check_matrix_size;
 use crate::impact::{ContactProblem, Errors};
 use crate::planar::{Pair, Vector};
 use crate::robot::Robot;
 use crate::scalar::Residue;
-use crate::state::{Ground, NamedContact, NamedLoop, Scene, State, check_length};
+use crate::state::{NamedContact, NamedLoop, Scene, State, check_length};
 use std::mem::take;
 
 /// A foot that does not touch.
@@ -136,17 +136,8 @@ impl Pipeline<'_> {
             .contacts(&footing, foot.as_ref(), take(contacts), notes)
             .map_err(|error| self.sunk(error, state, self.open_foot(&footing, &[], velocity)))?;
         *nearest = if self.options.brief { None } else { self.open_foot(&footing, contacts, velocity) };
-        match scene.contacts {
-            _ if self.options.brief => {}
-            Some(_) => notes.extend(nearest.and_then(|foot| self.sunk_besides(foot))),
-            None => {
-                notes.extend(self.wide_tolerance());
-                self.note_near_miss(contacts, *nearest, notes);
-            }
-        }
         if !self.options.brief {
-            notes.extend(self.upside_down(contacts, placement));
-            notes.extend(steep(&scene.ground));
+            self.note_contacts(scene, (contacts, *nearest), placement, notes);
         }
         check_matrix_size(contacts.len())?;
         *stance = foot.as_ref().and_then(|foot| place_of(foot, contacts));
@@ -199,43 +190,6 @@ impl Pipeline<'_> {
                 .at(format!("position.joints.{}", outside.joint.name))
                 .hint("correct the state or the limits of the robot's file, or do without `strict_limits`")),
         }
-    }
-
-    /// Notes friction and restitution of links on which nothing can touch.
-    fn note_unused_laws(&self, State { scene, uncertainty, .. }: &State, notes: &mut Vec<String>) {
-        let named = |link| scene.contacts.iter().flatten().any(|contact| contact.link == link);
-        let has_foot = |link| self.feet.iter().any(|foot| foot.link == link) || named(link);
-        let given = scene.friction.links.keys().map(|link| ("friction", *link));
-        let given = given.chain(scene.restitution.links.keys().map(|link| ("restitution", *link)));
-        let uncertain = uncertainty.iter().flat_map(|uncertainty| uncertainty.friction.links.keys());
-        let given = given.chain(uncertain.map(|link| ("uncertainty of friction", *link)));
-        given.filter(|(_, link)| !has_foot(*link)).for_each(|(what, link)| {
-            let name = &self.robot.links[link].name;
-            notes.push(format!("{what} is given to {name}, which has no foot: it has no effect"));
-        });
-    }
-
-    /// That the contact tolerance exceeds the robot's size, as one in millimeters does.
-    fn wide_tolerance(&self) -> Option<String> {
-        let (tolerance, size) = (self.tolerance(), self.feet.size());
-        (tolerance > size).then(|| {
-            let [tolerance, size] = [tolerance, size].map(rounded);
-            format!("a contact tolerance of {tolerance} m is more than the robot's size, {size} m: is it in meters?")
-        })
-    }
-
-    /// That the robot's center of mass is below all contacts, as of a robot that is drawn head down.
-    fn upside_down(&self, contacts: &[Contact], placement: &Placement) -> Option<String> {
-        let bodies = self.assembly.plan.bodies.iter().enumerate();
-        let sum = bodies.fold((0.0, Vector::zero()), |(mass, moment), (body, PlanBody { inertia, .. })| {
-            let own = placement.world(body, Vector::zero()) * inertia.mass + placement.turned(body, inertia.first);
-            (mass + inertia.mass, moment + own)
-        });
-        let (mass, moment) = sum;
-        let center = moment * (1.0 / mass);
-        let above = |contact: &Contact| contact.normal().dot(contact.point - center);
-        let depth = contacts.iter().map(above).reduce(f64::min).filter(|&depth| depth > 0.0 && mass > 0.0)?;
-        Some(format!("the center of mass is {depth:.3} m below all contacts: is the pose upside down?"))
     }
 
     /// Compiles the plan, unless the last one was for the same braked joints and rotors.
@@ -422,56 +376,6 @@ impl Pipeline<'_> {
             .hint(hint)
     }
 
-    /// The note of a foot that is deep in the ground where other contacts are named.
-    fn sunk_besides(&self, NearestFoot { link, height, .. }: NearestFoot) -> Option<String> {
-        let name = &self.robot.links[link].name;
-        (height < -NEAR_MISS * self.feet.size()).then(|| {
-            format!(
-                "{name} is {} m deep in the ground, and is not among the contacts: it takes no part",
-                rounded(-height)
-            )
-        })
-    }
-
-    /// Notes that nothing touches, and a foot that comes down just above the ground.
-    fn note_near_miss(&self, contacts: &[Contact], nearest: Option<NearestFoot>, notes: &mut Vec<String>) {
-        let Some(NearestFoot { link, height, velocity }) = nearest else {
-            let why =
-                if self.feet.iter().next().is_none() { "the robot has no feet" } else { "no foot is above the ground" };
-            if contacts.is_empty() {
-                notes.push(format!("{why}: name contact points by `contacts` in the state or by `feet`"));
-            }
-            return;
-        };
-        let is_near = height > 0.0 && height <= NEAR_MISS * self.feet.size() && velocity[1] < 0.0;
-        if !is_near && !contacts.is_empty() {
-            return;
-        }
-        let name = &self.robot.links[link].name;
-        let moving = along_normal(velocity);
-        // A little more than the height, in two digits, next to four of the height.
-        let enough = 1.1 * height;
-        let height = rounded(height);
-        notes.push(match (contacts.is_empty(), is_near) {
-            (true, true) => format!(
-                "nothing touches the ground: the lowest foot, {name}, is {height} m above it and {moving}; to let \
-                 it touch, put it there by `place: lowest`, or give `contact_tolerance: {enough:.1e}`"
-            ),
-            (true, false) => format!(
-                "nothing touches the ground: the lowest foot, {name}, is {height} m above it and {moving}; \
-                 `place: lowest` puts it there"
-            ),
-            (false, _) => {
-                let touches = contacts.iter().any(|contact| contact.link == link);
-                let which = if touches { "another point of " } else { "" };
-                format!(
-                    "{which}{name} nearly touches, {height} m above the ground: to let it touch, give \
-                     `contact_tolerance: {enough:.1e}`, or correct the pose"
-                )
-            }
-        });
-    }
-
     /// Which contacts are level with which: up to rounding, or if they are named exactly.
     pub(super) fn levels(
         &self,
@@ -575,24 +479,9 @@ impl Pipeline<'_> {
     }
 }
 
-/// A foot that comes down from no more than this part of the robot's size has nearly touched.
-const NEAR_MISS: f64 = 1e-2;
-
-/// A slope beyond this is noted \[rad\].
-const STEEP: f64 = 0.8;
-
 /// What G of a robot loses to rounding, relative to its rows' own scale: measured below 3e-15 against 640 bits on
 /// chains, straight legs and extreme mass ratios. It is no bound, and used only if none is asked for.
 const DYNAMICS_ROUNDING: f64 = 64.0 * f64::EPSILON;
-
-/// That the ground is steeper than a legged robot stands on, as one of 1 degree taken for 1 rad.
-fn steep(ground: &Ground) -> Option<String> {
-    let &Ground::Slope(slope) = ground else { return None };
-    (slope.abs() > STEEP).then(|| {
-        let degrees = slope.to_degrees();
-        format!("the ground's slope of {slope} rad is one of {degrees:.1} degrees: was it meant in degrees?")
-    })
-}
 
 /// The contact of the foot that stands: the same circle with the same normal; a point rests whatever the normal is.
 fn place_of(foot: &Contact, contacts: &[Contact]) -> Option<usize> {
