@@ -52,6 +52,9 @@ enum Origin {
     Given,
     /// G and c- were computed from M, J and v.
     Dynamics(Box<Dynamics>),
+    /// A given G was asymmetric by its rounding, and was replaced by its mean with its transpose, which is positive definite
+    /// beyond doubt.
+    Symmetrized,
     /// A given G was indefinite by its rounding, and was replaced by Z Z^T.
     Repaired(FactorRows),
 }
@@ -184,9 +187,14 @@ impl ContactProblem {
             finite(entry, || format!("entry [{}][{}] of delassus", index / rows, index % rows))?;
         }
         let free = velocity_before.clone();
-        let problem = Self::checked(delassus, velocity_before, free, friction, restitution)?;
-        if problem.check_definite()? || is_semidefinite(&problem) {
-            return Ok(problem);
+        let mut problem = Self::checked(delassus, velocity_before, free, friction, restitution)?;
+        let is_definite = problem.check_definite()?;
+        if !problem.symmetrize() {
+            if is_definite || is_semidefinite(&problem) {
+                return Ok(problem);
+            }
+        } else if problem.check_definite()? {
+            return Ok(Self { origin: Origin::Symmetrized, ..problem });
         }
         let rows = FactorRows::of(&problem);
         Ok(Self { delassus: rows.delassus(), origin: Origin::Repaired(rows), ..problem })
@@ -195,6 +203,27 @@ impl ContactProblem {
     /// Whether G and c- themselves were given, and every digit of them is meant.
     pub fn is_given(&self) -> bool {
         matches!(self.origin, Origin::Given)
+    }
+
+    /// Takes the mean of G and its transpose; false if G is symmetric.
+    fn symmetrize(&mut self) -> bool {
+        let rows = 2 * self.contacts();
+        let mut found = false;
+        for (i, j) in (0..rows).flat_map(|i| (0..i).map(move |j| (i, j))) {
+            let (own, other) = (self.delassus(i, j), self.delassus(j, i));
+            if own != other {
+                // Half of each, since their sum may overflow.
+                let mean = 0.5 * own + 0.5 * other;
+                (self.delassus[i * rows + j], self.delassus[j * rows + i]) = (mean, mean);
+                found = true;
+            }
+        }
+        found
+    }
+
+    /// Whether the G that was given is asymmetric, by rounding alone, and was replaced by one that is not.
+    pub fn is_symmetrized(&self) -> bool {
+        matches!(self.origin, Origin::Symmetrized)
     }
 
     /// Whether the G that was given is indefinite, by rounding alone, and was replaced by one that is not.
@@ -304,6 +333,21 @@ mod tests {
         // No pair is at fault, but three together are: what the elimination leaves of the last one is negative.
         g = [[1.0, -0.9, -0.9, 0.0], [-0.9, 1.0, -0.9, 0.0], [-0.9, -0.9, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
         assert_eq!(place(g.as_flattened()).as_deref(), Some("delassus[0][0]"));
+    }
+
+    #[test]
+    fn a_matrix_that_rounding_made_asymmetric_is_its_mean() {
+        let solve = |other: f64| {
+            let delassus = vec![2.0, 1.0, other, 2.0];
+            let problem = ContactProblem::new(delassus, vec![[0.5, -1.0]], vec![Friction::Finite(0.9)], vec![0.0]);
+            problem.unwrap_or_else(|error: Error| panic!("{error}"))
+        };
+        let [exact, rounded] = [1.0, 1.0 + f64::EPSILON].map(solve);
+        assert_eq!([exact.is_symmetrized(), rounded.is_symmetrized()], [false, true]);
+        assert!(!rounded.is_repaired() && rounded.delassus(0, 1) == rounded.delassus(1, 0));
+        let [exact, rounded] = [exact, rounded].map(|own| crate::impact::analyze(&own, false.into()).unwrap());
+        assert!(exact.proven && rounded.proven);
+        assert_eq!(exact.outcomes[0].modes, rounded.outcomes[0].modes);
     }
 
     #[test]

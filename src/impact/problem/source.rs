@@ -147,7 +147,7 @@ impl Errors<'_> {
 impl Source for ContactProblem {
     fn problem<T: Ordered + Trigonometry>(&self) -> ContactProblem<T> {
         match &self.origin {
-            Origin::Given => self.map(T::from_f64),
+            Origin::Given | Origin::Symmetrized => self.map(T::from_f64),
             Origin::Dynamics(dynamics) => {
                 let (delassus, before) = dynamics.numbers();
                 let (laws, restitution) = (self.laws.clone(), self.restitution.clone());
@@ -158,7 +158,7 @@ impl Source for ContactProblem {
     }
 
     fn errors(&self) -> Errors<'_> {
-        if matches!(self.origin, Origin::Given) { Errors::NONE } else { Errors::UNKNOWN }
+        if matches!(self.origin, Origin::Given | Origin::Symmetrized) { Errors::NONE } else { Errors::UNKNOWN }
     }
 
     fn is_exact(&self) -> bool {

@@ -276,8 +276,14 @@ fn notes(problem: &Problem, analysis: &Analysis) -> Cow<'static, [String]> {
     let ill = |condition: f64| {
         format!("the Delassus matrix has condition {condition:.1e} and may be singular except for rounding: {keep}")
     };
-    let condition = analysis.condition.filter(|&condition| condition > ILL_CONDITIONED && problem.contact.is_given());
-    let notes = problem.contact.is_repaired().then(repaired).into_iter();
+    let is_matrix = problem.contact.is_given() || problem.contact.is_symmetrized();
+    let condition = analysis.condition.filter(|&condition| condition > ILL_CONDITIONED && is_matrix);
+    let symmetrized = || {
+        "the Delassus matrix is not symmetric by its rounding: the mean of it and its transpose was taken, every digit meant"
+            .to_owned()
+    };
+    let of_matrix = problem.contact.is_symmetrized().then(symmetrized);
+    let notes = problem.contact.is_repaired().then(repaired).or(of_matrix).into_iter();
     notes.chain(condition.map(ill)).chain(analysis.energy_note()).chain(analysis.unlisted_note()).collect()
 }
 
