@@ -79,13 +79,15 @@ impl IgnoredCount {
 }
 
 /// What is read of elements: their attributes and their children.
-const READ: [(&str, &[&str], &[&str]); 16] = [
+const READ: [(&str, &[&str], &[&str]); 18] = [
     ("link", &["name"], &["inertial", "collision", "visual"]),
     ("joint", &["name", "type"], &["origin", "parent", "child", "axis", "mimic", "limit"]),
     ("inertial", &[], &["origin", "mass", "inertia"]),
     ("collision", &[], &["origin", "geometry"]),
     ("geometry", &[], &["box", "cylinder", "capsule", "sphere", "mesh"]),
     ("origin", &["xyz", "rpy"], &[]),
+    ("parent", &["link"], &[]),
+    ("child", &["link"], &[]),
     ("axis", &["xyz"], &[]),
     ("mimic", &["joint", "multiplier", "offset"], &[]),
     ("limit", &["lower", "upper"], &[]),
@@ -133,6 +135,16 @@ pub(super) fn misspelt(element: Node<'_, '_>, found: &mut Vec<String>) {
         for (name, meant) in misread(tags, children).take(MOST_MISSPELT.saturating_sub(found.len())) {
             found.push(format!("<{name}> in <{tag}> on line {} (<{meant}>?)", line(element)));
         }
+        let reported: Vec<&str> = misread(tags, children).map(|(name, _)| name).collect();
+        let around = element.parent().map_or("", |parent| parent.tag_name().name());
+        let takes = |name: &str, of: &str| READ.iter().any(|(tag, _, children)| *tag == of && children.contains(&name));
+        let of_others = tags().filter(|name| !children.contains(name) && !reported.contains(name)).filter_map(|name| {
+            let near = children.iter().copied().chain([around]).find(|other| takes(name, other));
+            Some((name, near.or_else(|| Some(READ.iter().find(|(.., children)| children.contains(&name))?.0))?))
+        });
+        for (name, owner) in of_others.take(MOST_MISSPELT.saturating_sub(found.len())) {
+            found.push(format!("<{name}> in <{tag}> on line {} (in <{owner}>?)", line(element)));
+        }
         if tag == "limit" && limits(element).is_none_or(|[lower, upper]| lower > upper) && found.len() < MOST_MISSPELT {
             let [lower, upper] = ["lower", "upper"].map(|end| element.attribute(end).unwrap_or("0"));
             found.push(format!("<limit> on line {} (from {lower} to {upper}?)", line(element)));
@@ -158,8 +170,14 @@ fn misread<'a, I: Iterator<Item = &'a str>>(
     known: &'static [&'static str],
 ) -> impl Iterator<Item = (&'a str, &'static str)> {
     let is_near = |name: &str, known: &str| {
-        // As MJCF and SDF call them.
-        matches!((name, known), ("pos" | "position", "xyz") | ("euler" | "rotation", "rpy"))
+        // As MJCF, SDF and others call them.
+        let is_named = match known {
+            "xyz" => matches!(name, "pos" | "position" | "translation"),
+            "rpy" => matches!(name, "euler" | "rotation" | "quat" | "quaternion" | "rpydeg" | "rpy_deg"),
+            "origin" => matches!(name, "pose" | "com" | "frame"),
+            _ => false,
+        };
+        is_named
             || name.eq_ignore_ascii_case(known)
             || name.len().abs_diff(known.len()) <= 1 && strsim::osa_distance(name, known) == 1
     };

@@ -5,6 +5,7 @@ use super::legs::OBLIQUE;
 use super::plane::Plane;
 use super::reading::{FreezeReason, FrozenJoint};
 use super::reference_pose::ReferencePose;
+use super::{Body, ParentJoint, Robot};
 use crate::description::{Description, Geometry, Inertial, JointKind, Matrix, Mesh, UrdfJoint, UrdfLink, apply, turn};
 use crate::error::rounded;
 use std::f64::consts::TAU;
@@ -187,17 +188,21 @@ pub(super) fn about_limits(description: &Description) -> Option<String> {
     Some(format!("with limits as in degrees: {odd}; angles are in radians"))
 }
 
-/// The cautions about inertias that are half given or wrong, of these links of a robot of this `whole` mass \[kg\] and
-/// size \[m\].
-pub(super) fn about_inertias<'l>(links: impl Iterator<Item = &'l UrdfLink>, (whole, size): (f64, f64)) -> Vec<String> {
+/// The cautions about inertias that are half given or wrong, of these links, each with its moment about the plane's normal
+/// \[kg m^2\], of a robot of this `whole` mass \[kg\] and size \[m\].
+pub(super) fn about_inertias<'l>(
+    links: impl Iterator<Item = (&'l UrdfLink, f64)>,
+    (whole, size): (f64, f64),
+) -> Vec<String> {
     let kinds = [
         ("with a mass but no <inertia>, and so a point mass", "give its moments, as in <inertia ixx=\"0.1\" .../>"),
         ("with an inertia but no mass", "give the mass in kg, or leave out the <inertia>"),
         ("with an inertia that needs a part far beyond the robot's size", "inertia is in kg m^2, mass in kg"),
         ("with an inertia that no body has, one moment being more than the other two together", "correct it"),
+        ("with a single moment of inertia, which is not about the plane's normal", "only that about the normal counts"),
     ];
     let mut found = kinds.map(|_| Vec::new());
-    for link in links {
+    for (link, moment) in links {
         let Some(Inertial { mass, inertia, .. }) = &link.inertial else { continue };
         let moments = inertia.map(|inertia| [inertia[0][0], inertia[1][1], inertia[2][2]]).unwrap_or_default();
         let largest = moments.into_iter().fold(0.0, f64::max);
@@ -208,12 +213,32 @@ pub(super) fn about_inertias<'l>(links: impl Iterator<Item = &'l UrdfLink>, (who
             Some(_) if *mass == 0.0 && largest > 0.0 => 1,
             Some(_) if largest > size * size * (WIDEST * WIDEST * mass).max(SLIGHT * whole) => 2,
             Some(inertia) if !is_planar && !is_physical(inertia) => 3,
+            Some(_) if is_planar && moment < SLIGHT * largest => 4,
             _ => continue,
         };
         found[kind].push(link.name.as_str());
     }
     let found = found.into_iter().zip(kinds);
     found.filter_map(|(links, (what, remedy))| Some(format!("{what}: {}; {remedy}", names(links)?))).collect()
+}
+
+/// The caution about bodies that move without mass, although they reach from joint to joint or touch the ground.
+pub(super) fn about_massless(robot: &Robot) -> Option<String> {
+    let is_of = |index: usize| move |body: usize| robot.rigid_body(body) == index;
+    let has_length = |index: usize| {
+        let movers = robot.bodies.iter().filter_map(|body| body.joint);
+        let mut joints = movers.map(|mover| robot.hinge(mover));
+        joints.any(|(parent, origin, motion)| motion.is_some() && is_of(index)(parent) && origin.length() > 0.0)
+            || robot.links.iter().any(|link| is_of(index)(link.body) && !link.shapes.is_empty())
+    };
+    let is_massless = |(index, body): &(usize, &Body)| {
+        let moves = matches!(body.joint, Some(ParentJoint::Joint(_) | ParentJoint::Mimic(_)));
+        let weighs_nothing = |body: &Body| body.mass == 0.0 && body.moment == 0.0;
+        let rigid = || robot.bodies.iter().enumerate().filter(|(part, _)| is_of(*index)(*part));
+        moves && weighs_nothing(body) && rigid().all(|(_, part)| weighs_nothing(part)) && has_length(*index)
+    };
+    let massless = names(robot.bodies.iter().enumerate().filter(is_massless).map(|(_, body)| &body.name))?;
+    Some(format!("without mass, although a joint of its own moves it: {massless}; give it an <inertial>"))
 }
 
 /// The caution about collision meshes that could not be read.

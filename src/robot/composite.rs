@@ -39,7 +39,7 @@ pub(super) struct LinkInertia {
     mass: f64,
     com: Vector<f64>,
     /// About the normal through the CoG \[kg m^2\].
-    moment: f64,
+    pub(super) moment: f64,
 }
 
 impl LinkInertia {

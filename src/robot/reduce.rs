@@ -115,7 +115,8 @@ impl Robot {
         };
 
         let mut parts = vec![Vec::new(); robot.bodies.len()];
-        for (link, place) in description.links.iter().zip(&tree.places) {
+        let mut moments = vec![0.0; description.links.len()];
+        for ((link, place), moment) in description.links.iter().zip(&tree.places).zip(&mut moments) {
             let Some(place) = place else { continue };
             if let Some(inertial) = &link.inertial {
                 let Inertial { origin, mass, inertia } = inertial;
@@ -123,6 +124,7 @@ impl Robot {
                 let part = LinkInertia::projected(*mass, frame.in_plane(), inertia.as_ref(), &frame.rotation);
                 let mut part = part.map_err(|reason| link.refuse(reason))?;
                 robot.left_out.extend(part.without_negative_moment().map(|moment| left_out::rounded(link, moment)));
+                *moment = part.moment;
                 parts[place.body].push(part);
             }
             robot.left_out.extend(left_out::doubtful_inertia(link));
@@ -142,11 +144,14 @@ impl Robot {
         // Without shapes only the centers of gravity are known.
         let least = if shapes.peek().is_some() { 0.0 } else { USUAL };
         let size = robot.size(shapes).max(least);
-        let moving = description.links.iter().zip(&tree.places);
+        let moving = description.links.iter().zip(moments).zip(&tree.places);
         let moving = moving.filter(|(_, place)| place.as_ref().is_some_and(|place| robot.moves(place.body)));
         let cautions = caution::about_inertias(moving.map(|(link, _)| link), (robot.mass(), size));
         robot.reading.cautions.extend(cautions);
-        robot.reading.cautions.extend(caution::about_mass(robot.mass(), size));
+        // What slides may reach farther than at zero.
+        let slides = robot.joints.iter().any(|joint| !joint.axis.is_revolute());
+        robot.reading.cautions.extend(caution::about_mass(robot.mass(), size).filter(|_| !slides));
+        robot.reading.cautions.extend(caution::about_massless(&robot));
 
         refuse_overflow(&robot)?;
         if robot.mass() == 0.0 {

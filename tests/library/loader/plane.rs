@@ -308,6 +308,9 @@ fn misspelt_names_are_named_with_their_lines() {
         ("<inertia ", "<inertia size=\"1\" ", "size of <inertia> on line 2 (<box>?)"),
         ("<inertial>", "<inertial mass=\"2\">", "mass of <inertial> on line 2 (<mass>?)"),
         ("<origin xyz=", "<origin pos=", "pos of <origin> on line"),
+        ("<origin xyz=", "<origin quaternion=\"1 0 0 0\" xyz=", "quaternion of <origin> on line 2 (rpy?)"),
+        ("<origin ", "<com ", "<com> in <inertial> on line 2"),
+        ("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 1 0\"><origin/></axis>", "<origin> in <axis> on line"),
     ] {
         assert!(caution(from, to).unwrap_or_default().contains(named), "{to}: {:?}", caution(from, to));
     }

@@ -165,3 +165,31 @@ fn a_mass_in_grams_is_noted() {
     let words = "the robot weighs 2000 kg, more than a ball of steel around all of it (radius 0.1 m): masses are in kg";
     assert_eq!(only_caution(&of_mass(2000.0)), words);
 }
+
+#[test]
+fn moments_about_another_axis_and_moving_links_without_mass_are_noted() {
+    let inertia = "<inertia ixx=\"0.01\" iyy=\"0.01\" izz=\"0.01\"/>";
+    let limb = |name: &str, inertial: &str| format!("<link name=\"{name}\">{inertial}</link>");
+    let massive = |inertia: &str| format!("<inertial><mass value=\"1\"/>{inertia}</inertial>");
+    let turned = |name: &str, ends: [&str; 2], z: f64| {
+        let [parent, child] = ends;
+        format!(
+            "<joint name=\"{name}\" type=\"continuous\"><parent link=\"{parent}\"/><child link=\"{child}\"/>\
+             <origin xyz=\"0 0 {z}\"/><axis xyz=\"0 1 0\"/></joint>"
+        )
+    };
+    let cautions = |thigh: &str, knee: f64| {
+        let parts = [limb("body", &massive(inertia)), limb("thigh", thigh), limb("shank", &massive(inertia))];
+        let joints = [turned("hip", ["body", "thigh"], -0.5), turned("knee", ["thigh", "shank"], knee)];
+        load(&robot(&(parts.concat() + &joints.concat()))).reading.cautions
+    };
+    assert_eq!(cautions(&massive(inertia), -0.5), [""; 0]);
+    let aside = massive("<inertia ixx=\"0\" iyy=\"0\" izz=\"0.01\"/>");
+    let words = "with a single moment of inertia, which is not about the plane's normal: thigh; only that about the normal counts";
+    assert_eq!(cautions(&aside, -0.5), [words]);
+    assert_eq!(cautions(&massive("<inertia ixx=\"0\" iyy=\"0.01\" izz=\"0\"/>"), -0.5), [""; 0]);
+    let words = "without mass, although a joint of its own moves it: thigh; give it an <inertial>";
+    assert_eq!(cautions("", -0.5), [words]);
+    // A joint of two axes has a link without length between them.
+    assert_eq!(cautions("", 0.0), [""; 0]);
+}
