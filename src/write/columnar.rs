@@ -4,11 +4,11 @@
 //!     rows of cells --[RowSink]--> Block, one per task --> RecordBatch --[Writer]--> bytes, some row groups at a time
 //! ```
 
-use super::csv::{Columns, Kind, Row, RowSink};
+use super::csv::{Cell, Columns, Kind, Row, RowSink};
 use crate::read::table::Carried;
 use crate::{Error, Reason, Result};
-use arrow_array::builder::{ArrayBuilder, Float64Builder, Int64Builder, StringBuilder};
-use arrow_array::{Array, ArrayRef, BooleanArray, RecordBatch, new_null_array};
+use arrow_array::builder::{ArrayBuilder, BooleanBuilder, Float64Builder, Int64Builder, StringBuilder};
+use arrow_array::{Array, ArrayRef, RecordBatch, new_null_array};
 use arrow_ipc::writer::{FileWriter, StreamWriter};
 use arrow_schema::{DataType, Field, Schema, SchemaRef};
 use arrow_select::concat::concat_batches;
@@ -48,7 +48,7 @@ enum Column {
     Text(StringBuilder),
     Number(Float64Builder),
     Integer(Int64Builder),
-    Boolean(Vec<Option<bool>>),
+    Boolean(BooleanBuilder),
     /// Cells of these columns: which column, and of each row which of its arrays and where; the first array is null.
     Carried {
         which: usize,
@@ -57,14 +57,28 @@ enum Column {
     },
 }
 
-/// Whether the cell of a row, before which there are so many `rows`, is not set yet; then the column has the cells before.
+/// Appends the cell of a row before which there are so many `rows`, unless it is set already.
 #[inline]
-fn has_room<B: ArrayBuilder>(builder: &mut B, rows: usize, append_nulls: impl FnOnce(&mut B, usize)) -> bool {
+fn put<B: ArrayBuilder>(builder: &mut B, rows: usize, nulls: fn(&mut B, usize), append: impl FnOnce(&mut B)) {
+    if has_room(builder, rows, nulls) {
+        append(builder);
+    }
+}
+
+/// Whether the cell of a row is not set yet; then the column has the cells before it.
+#[inline]
+fn has_room<B: ArrayBuilder>(builder: &mut B, rows: usize, nulls: fn(&mut B, usize)) -> bool {
     let own = builder.len();
     if own < rows {
-        append_nulls(builder, rows - own);
+        nulls(builder, rows - own);
     }
     own <= rows
+}
+
+/// A column of so many rows.
+fn whole<B: ArrayBuilder>(mut builder: B, rows: usize, nulls: fn(&mut B, usize)) -> ArrayRef {
+    has_room(&mut builder, rows, nulls);
+    builder.finish()
 }
 
 impl ColumnBlock {
@@ -74,7 +88,7 @@ impl ColumnBlock {
             Kind::Text => Column::Text(StringBuilder::with_capacity(rows, 8 * rows)),
             Kind::Number => Column::Number(Float64Builder::with_capacity(rows)),
             Kind::Integer => Column::Integer(Int64Builder::with_capacity(rows)),
-            Kind::Boolean => Column::Boolean(Vec::with_capacity(rows)),
+            Kind::Boolean => Column::Boolean(BooleanBuilder::with_capacity(rows)),
             Kind::Carried(which) => Column::Carried { which, sources: Vec::new(), at: Vec::new() },
         };
         Self { columns: columns.kinds().iter().map(column).collect(), rows: 0 }
@@ -84,22 +98,10 @@ impl ColumnBlock {
         let rows = self.rows;
         let array = |(column, field): (Column, &Arc<Field>)| -> Result<ArrayRef> {
             Ok(match column {
-                Column::Text(mut texts) => {
-                    has_room(&mut texts, rows, StringBuilder::append_nulls);
-                    Arc::new(texts.finish())
-                }
-                Column::Number(mut numbers) => {
-                    has_room(&mut numbers, rows, Float64Builder::append_nulls);
-                    Arc::new(numbers.finish())
-                }
-                Column::Integer(mut numbers) => {
-                    has_room(&mut numbers, rows, Int64Builder::append_nulls);
-                    Arc::new(numbers.finish())
-                }
-                Column::Boolean(mut values) => {
-                    values.resize(rows, None);
-                    Arc::new(BooleanArray::from(values))
-                }
+                Column::Text(texts) => whole(texts, rows, StringBuilder::append_nulls),
+                Column::Number(numbers) => whole(numbers, rows, Float64Builder::append_nulls),
+                Column::Integer(numbers) => whole(numbers, rows, Int64Builder::append_nulls),
+                Column::Boolean(values) => whole(values, rows, BooleanBuilder::append_nulls),
                 Column::Carried { which, sources, mut at } => {
                     at.resize(rows, (0, 0));
                     let null = new_null_array(field.data_type(), 1);
@@ -125,55 +127,45 @@ impl RowSink for ColumnBlock {
 
 /// What a column cannot hold stays empty, and what is set twice is what it was first.
 impl Row for ColumnBlock {
-    fn text(&mut self, at: usize, text: &str) {
-        if let Column::Text(texts) = &mut self.columns[at]
-            && !text.is_empty()
-            && has_room(texts, self.rows, StringBuilder::append_nulls)
-        {
-            texts.append_value(text);
-        }
-    }
-
-    fn number(&mut self, at: usize, number: f64) {
-        if let Column::Number(numbers) = &mut self.columns[at]
-            && has_room(numbers, self.rows, Float64Builder::append_nulls)
-        {
-            numbers.append_value(number);
-        }
-    }
-
-    fn integer(&mut self, at: usize, number: i64) {
-        if let Column::Integer(numbers) = &mut self.columns[at]
-            && has_room(numbers, self.rows, Int64Builder::append_nulls)
-        {
-            numbers.append_value(number);
-        }
-    }
-
-    fn boolean(&mut self, at: usize, holds: bool) {
-        if let Column::Boolean(values) = &mut self.columns[at]
-            && values.len() <= self.rows
-        {
-            values.resize(self.rows, None);
-            values.push(Some(holds));
-        }
-    }
-
-    fn carried(&mut self, at: usize, carried: &Carried, which: usize) {
-        match (&mut self.columns[at], carried) {
-            (Column::Carried { sources, at, .. }, Carried::Columns(source, row)) if at.len() <= self.rows => {
+    // Which cell it is, is known where it is set: one case is left of all.
+    #[inline(always)]
+    fn set(&mut self, at: usize, cell: Cell<'_>) {
+        let rows = self.rows;
+        let put_text = |texts: &mut StringBuilder, text: &str| {
+            if !text.is_empty() {
+                put(texts, rows, StringBuilder::append_nulls, |texts| texts.append_value(text));
+            }
+        };
+        let put_number = |numbers: &mut Float64Builder, number| {
+            put(numbers, rows, Float64Builder::append_nulls, |numbers| numbers.append_value(number));
+        };
+        match (&mut self.columns[at], cell) {
+            (Column::Text(texts), Cell::Text(text)) => put_text(texts, text),
+            (Column::Number(numbers), Cell::Number(number)) => put_number(numbers, number),
+            (Column::Integer(numbers), Cell::Integer(number)) => {
+                put(numbers, rows, Int64Builder::append_nulls, |numbers| numbers.append_value(number));
+            }
+            (Column::Boolean(values), Cell::Boolean(holds)) => {
+                put(values, rows, BooleanBuilder::append_nulls, |values| values.append_value(holds));
+            }
+            (Column::Carried { sources, at, .. }, Cell::Carried(Carried::Columns(source, row), _))
+                if at.len() <= rows =>
+            {
                 if sources.last().is_none_or(|last| !Arc::ptr_eq(last, source)) {
                     sources.push(Arc::clone(source));
                 }
-                at.resize(self.rows, (0, 0));
+                at.resize(rows, (0, 0));
                 at.push((sources.len(), *row));
             }
-            (Column::Number(_), _) => {
+            (Column::Text(texts), Cell::Carried(carried, which)) => {
+                put_text(texts, &String::from_utf8_lossy(&carried.text(which)));
+            }
+            (Column::Number(numbers), Cell::Carried(carried, which)) => {
                 let text = carried.text(which);
                 let number = std::str::from_utf8(&text).ok().and_then(|text| text.parse().ok());
-                number.into_iter().for_each(|number| self.number(at, number));
+                number.into_iter().for_each(|number| put_number(numbers, number));
             }
-            _ => self.text(at, &String::from_utf8_lossy(&carried.text(which))),
+            _ => {}
         }
     }
 }
@@ -309,7 +301,7 @@ mod tests {
         let columns = Columns::without_lines(&robot, &[], &[], &[], Layout::default());
         let mut block = ColumnBlock::new(&columns, 1);
         for verdicts in [&["unique", "none"][..], &[], &["ambiguous"]] {
-            block.row(&columns, |row| verdicts.iter().for_each(|verdict| row.text(1, verdict)));
+            block.row(&columns, |row| verdicts.iter().for_each(|verdict| row.set(1, Cell::Text(verdict))));
         }
         let schema = ColumnWriter::new(&columns, ColumnarFormat::Arrow)?.schema;
         let batch = block.finish(&schema)?;

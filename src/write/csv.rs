@@ -80,20 +80,20 @@ pub trait RowSink {
 
 /// A row in the making, whose cells are empty until they are set.
 pub trait Row {
-    /// Sets the cell of a column to text, if there is some.
-    fn text(&mut self, at: usize, text: &str);
+    /// Sets the cell of a column.
+    fn set(&mut self, at: usize, cell: Cell<'_>);
+}
 
-    /// Sets it to a number.
-    fn number(&mut self, at: usize, number: f64);
-
-    /// Sets it to a whole number.
-    fn integer(&mut self, at: usize, number: i64);
-
-    /// Sets it to true or false.
-    fn boolean(&mut self, at: usize, holds: bool);
-
-    /// Sets it to a cell of the input that is carried through: which of them.
-    fn carried(&mut self, at: usize, carried: &Carried, which: usize);
+/// What a cell is set to.
+#[derive(Debug, Clone, Copy)]
+pub enum Cell<'c> {
+    /// Text, if it is not empty.
+    Text(&'c str),
+    Number(f64),
+    Integer(i64),
+    Boolean(bool),
+    /// Of the cells of the input that are carried through the one of this number.
+    Carried(&'c Carried, usize),
 }
 
 /// What the rows of a table of results hold, and how they are written.
@@ -249,7 +249,7 @@ impl Columns {
     }
 
     pub fn append_header(&self, out: &mut Vec<u8>) {
-        out.row(self, |row| (0..).zip(&self.names).for_each(|(at, name)| row.text(at, name)));
+        out.row(self, |row| (0..).zip(&self.names).for_each(|(at, name)| row.set(at, Cell::Text(name))));
     }
 
     /// Appends the rows of a result, one per outcome, with the state's id, line and touchdown.
@@ -272,7 +272,7 @@ impl Columns {
         if analysis.outcomes.is_empty() {
             out.row(self, |row| {
                 self.state((id, line, touchdown), (impact, analysis), carried, row);
-                row.boolean(self.named + 3, analysis.proven);
+                row.set(self.named + 3, Cell::Boolean(analysis.proven));
             });
         }
         for (at, outcome) in analysis.outcomes.iter().enumerate() {
@@ -280,7 +280,7 @@ impl Columns {
                 self.state((id, line, touchdown), (impact, analysis), carried, row);
                 self.outcome(at + 1, outcome, &places, row);
                 if !analysis.families.is_empty() {
-                    row.text(self.family() + 1, &families(&analysis.families, at));
+                    row.set(self.family() + 1, Cell::Text(&families(&analysis.families, at)));
                 }
             });
         }
@@ -305,23 +305,25 @@ impl Columns {
     ) {
         out.row(self, |row| {
             self.name_state((id, line, carried), row);
-            row.text(self.named, "refused");
-            row.text(self.family() + 2, error);
+            row.set(self.named, Cell::Text("refused"));
+            row.set(self.family() + 2, Cell::Text(error));
         });
     }
 
     /// Sets the id, the line and what is carried through.
     fn name_state(&self, (id, line, carried): (Option<&Value>, Option<usize>, Option<&Carried>), row: &mut impl Row) {
         match (id, self.kinds[0]) {
-            (Some(Value::Number(id)), Kind::Integer) => id.as_i64().into_iter().for_each(|id| row.integer(0, id)),
-            (id, _) => id.into_iter().for_each(|id| row.text(0, &words::id(id))),
+            (Some(Value::Number(id)), Kind::Integer) => {
+                id.as_i64().into_iter().for_each(|id| row.set(0, Cell::Integer(id)))
+            }
+            (id, _) => id.into_iter().for_each(|id| row.set(0, Cell::Text(&words::id(id)))),
         }
         if let Some(line) = line {
-            row.integer(1, line as i64);
+            row.set(1, Cell::Integer(line as i64));
         }
         if let Some(carried) = carried {
             let places = self.last() - self.carried..self.last();
-            places.zip(0..carried.len()).for_each(|(at, which)| row.carried(at, carried, which));
+            places.zip(0..carried.len()).for_each(|(at, which)| row.set(at, Cell::Carried(carried, which)));
         }
     }
 
@@ -334,48 +336,48 @@ impl Columns {
         row: &mut impl Row,
     ) {
         self.name_state((id, line, carried), row);
-        row.text(self.named, analysis.verdict.name());
+        row.set(self.named, Cell::Text(analysis.verdict.name()));
         if let Some(touchdown) = touchdown.filter(|_| self.layout.touchdowns) {
             let start = self.velocities() + self.coordinates;
-            row.integer(start, touchdown.row as i64);
-            row.number(start + 1, touchdown.time);
-            row.text(start + 2, &touchdown.striking);
-            row.number(start + 3, touchdown.shift_z);
-            row.text(start + 4, &touchdown.at);
-            row.text(start + 5, &touchdown.touching);
+            row.set(start, Cell::Integer(touchdown.row as i64));
+            row.set(start + 1, Cell::Number(touchdown.time));
+            row.set(start + 2, Cell::Text(&touchdown.striking));
+            row.set(start + 3, Cell::Number(touchdown.shift_z));
+            row.set(start + 4, Cell::Text(&touchdown.at));
+            row.set(start + 5, Cell::Text(&touchdown.touching));
             let coordinates = (start + TOUCHDOWN.len()..).zip(&touchdown.coordinates);
-            coordinates.for_each(|(at, &number)| row.number(at, number));
+            coordinates.for_each(|(at, &number)| row.set(at, Cell::Number(number)));
         }
         if !self.layout.brief {
-            row.text(self.family() + 3, &notes(&impact.notes));
+            row.set(self.family() + 3, Cell::Text(&notes(&impact.notes)));
         }
     }
 
     fn outcome(&self, count: usize, outcome: &Outcome, places: &[usize], row: &mut impl Row) {
-        row.integer(self.named + 1, count as i64);
-        outcome.margin.into_iter().for_each(|margin| row.number(self.named + 2, margin));
-        row.boolean(self.named + 3, outcome.proven);
+        row.set(self.named + 1, Cell::Integer(count as i64));
+        outcome.margin.into_iter().for_each(|margin| row.set(self.named + 2, Cell::Number(margin)));
+        row.set(self.named + 3, Cell::Boolean(outcome.proven));
         for ((&place, mode), impulse) in places.iter().zip(&outcome.modes).zip(&outcome.impulse) {
-            row.text(place, mode.name());
+            row.set(place, Cell::Text(mode.name()));
             // Of what is not decided no number is known.
             if outcome.decided && !self.layout.brief {
-                impulse.iter().zip(place + 1..).for_each(|(&entry, at)| row.number(at, entry));
+                impulse.iter().zip(place + 1..).for_each(|(&entry, at)| row.set(at, Cell::Number(entry)));
             }
         }
         if let Some(Next { verdict, modes, .. }) = outcome.next.as_ref().filter(|_| self.layout.next) {
             let name = |mode: &Option<Mode>| mode.map_or("open", Mode::name);
             let modes = modes.iter().map(|own| own.iter().map(name).collect::<Vec<_>>().join("/"));
-            row.text(self.named + FIRST.len(), verdict.name());
-            row.text(self.named + FIRST.len() + 1, &modes.collect::<Vec<_>>().join("; "));
+            row.set(self.named + FIRST.len(), Cell::Text(verdict.name()));
+            row.set(self.named + FIRST.len() + 1, Cell::Text(&modes.collect::<Vec<_>>().join("; ")));
         }
         if outcome.decided {
             let velocities = outcome.velocity().take(self.coordinates);
-            velocities.zip(self.velocities()..).for_each(|(velocity, at)| row.number(at, velocity));
+            velocities.zip(self.velocities()..).for_each(|(velocity, at)| row.set(at, Cell::Number(velocity)));
         }
         if !self.layout.brief {
-            row.text(self.last(), &border(outcome));
+            row.set(self.last(), Cell::Text(&border(outcome)));
         }
-        row.boolean(self.family(), outcome.family);
+        row.set(self.family(), Cell::Boolean(outcome.family));
     }
 
     /// The first of the last columns.

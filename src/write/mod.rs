@@ -38,7 +38,7 @@ pub use accuracy::{Accuracy, Compliant};
 pub use arrays::{Arrays, Texts};
 #[cfg(feature = "columnar")]
 pub use columnar::{ColumnBlock, ColumnWriter, ColumnarFormat};
-pub use csv::{Columns, Kind, Layout, Row, RowSink};
+pub use csv::{Cell, Columns, Kind, Layout, Row, RowSink};
 pub use forces::{ForceOutcome, ForcesRecord, RejectedForces, SustainedContact};
 pub use inspection::Inspection;
 pub(crate) use result::short_id;

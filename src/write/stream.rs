@@ -1,7 +1,7 @@
 //! Arrays of answers as a table.
 
 use super::columnar::{ColumnBlock, ColumnWriter, ColumnarFormat, TOGETHER};
-use super::csv::{Row, RowSink};
+use super::csv::{Cell, Row, RowSink};
 use super::{Arrays, Columns};
 use crate::{Mode, Result, Verdict};
 use std::ops::Range;
@@ -14,7 +14,7 @@ impl Arrays {
             if outcomes.is_empty() {
                 out.row(columns, |row| {
                     if self.state(columns, state, row).is_some() {
-                        row.boolean(columns.named + 3, self.all_proven[state]);
+                        row.set(columns.named + 3, Cell::Boolean(self.all_proven[state]));
                     }
                 });
             }
@@ -30,10 +30,10 @@ impl Arrays {
     /// Sets what all outcomes of a state have in common; gives its verdict, if it is not refused.
     fn state(&self, columns: &Columns, state: usize, row: &mut impl Row) -> Option<Verdict> {
         let verdict = Verdict::ALL.get(usize::from(self.verdict[state])).copied();
-        row.integer(0, state as i64);
-        row.text(columns.named, verdict.map_or("refused", Verdict::name));
-        row.text(columns.family() + 2, self.error.get(state));
-        row.text(columns.family() + 3, self.notes.get(state));
+        row.set(0, Cell::Integer(state as i64));
+        row.set(columns.named, Cell::Text(verdict.map_or("refused", Verdict::name)));
+        row.set(columns.family() + 2, Cell::Text(self.error.get(state)));
+        row.set(columns.family() + 3, Cell::Text(self.notes.get(state)));
         verdict
     }
 
@@ -43,7 +43,7 @@ impl Arrays {
         // Of what is not decided no number is known.
         let mut number = |place: usize, own: f64| {
             if !own.is_nan() {
-                row.number(place, own);
+                row.set(place, Cell::Number(own));
             }
         };
         number(columns.named + 2, self.margin[at]);
@@ -53,15 +53,15 @@ impl Arrays {
         }
         let velocity = &self.velocity_after[at * columns.coordinates..][..columns.coordinates];
         velocity.iter().zip(columns.velocities()..).for_each(|(&entry, place)| number(place, entry));
-        row.integer(columns.named + 1, count);
-        row.boolean(columns.named + 3, self.proven[at]);
+        row.set(columns.named + 1, Cell::Integer(count));
+        row.set(columns.named + 3, Cell::Boolean(self.proven[at]));
         for (place, mode) in places().zip(&self.modes[at * contacts..][..contacts]) {
             let mode = usize::try_from(*mode).ok().and_then(|mode| Mode::ALL.get(mode));
-            row.text(place, mode.map_or("", |mode| mode.name()));
+            row.set(place, Cell::Text(mode.map_or("", |mode| mode.name())));
         }
-        row.text(columns.last(), self.border.get(at));
-        row.boolean(columns.family(), self.family[at]);
-        row.text(columns.family() + 1, self.families.get(at));
+        row.set(columns.last(), Cell::Text(self.border.get(at)));
+        row.set(columns.family(), Cell::Boolean(self.family[at]));
+        row.set(columns.family() + 1, Cell::Text(self.families.get(at)));
     }
 
     /// All rows of these columns, as Arrow's stream: one per outcome, with the numbers of states from 0 for ids.

@@ -1,7 +1,6 @@
 //! Rows of results as the text of a table.
 
-use super::csv::{Columns, Row, RowSink};
-use crate::read::table::Carried;
+use super::csv::{Cell, Columns, Row, RowSink};
 use std::ops::Range;
 
 /// A row as text.
@@ -13,38 +12,21 @@ pub struct TextRow {
     cells: Vec<Range<usize>>,
 }
 
-impl TextRow {
-    fn set(&mut self, at: usize, append: impl FnOnce(&mut Vec<u8>)) {
-        let start = self.text.len();
-        append(&mut self.text);
-        self.cells[at] = start..self.text.len();
-    }
-
-    fn bytes(&mut self, at: usize, bytes: &[u8]) {
-        let quote = self.guarded && is_formula(bytes);
-        self.set(at, |text| text.extend(b"'".iter().filter(|_| quote).chain(bytes)));
-    }
-}
-
 impl Row for TextRow {
-    fn text(&mut self, at: usize, text: &str) {
-        self.bytes(at, text.as_bytes());
-    }
-
-    fn number(&mut self, at: usize, number: f64) {
-        self.set(at, |text| append_number(number, text));
-    }
-
-    fn integer(&mut self, at: usize, number: i64) {
-        self.bytes(at, number.to_string().as_bytes());
-    }
-
-    fn boolean(&mut self, at: usize, holds: bool) {
-        self.bytes(at, holds.to_string().as_bytes());
-    }
-
-    fn carried(&mut self, at: usize, carried: &Carried, which: usize) {
-        self.bytes(at, &carried.text(which));
+    fn set(&mut self, at: usize, cell: Cell<'_>) {
+        let start = self.text.len();
+        let mut guarded = |bytes: &[u8]| {
+            let quote = self.guarded && is_formula(bytes);
+            self.text.extend(b"'".iter().filter(|_| quote).chain(bytes));
+        };
+        match cell {
+            Cell::Text(text) => guarded(text.as_bytes()),
+            Cell::Number(number) => append_number(number, &mut self.text),
+            Cell::Integer(number) => guarded(number.to_string().as_bytes()),
+            Cell::Boolean(holds) => guarded(holds.to_string().as_bytes()),
+            Cell::Carried(carried, which) => guarded(&carried.text(which)),
+        }
+        self.cells[at] = start..self.text.len();
     }
 }
 
