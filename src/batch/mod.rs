@@ -281,7 +281,11 @@ impl Answerer<'_> {
             block.summary.odd_joints.add(OddJoints { states: 1, first });
         }
         match impact.analyzed() {
-            Ok(analysis) => block.summary.count(place, impact, analysis),
+            Ok(analysis) => {
+                block.summary.no_strike +=
+                    u64::from(around.landing.is_some() && analysis.verdict == crate::impact::Verdict::NoImpact);
+                block.summary.count(place, impact, analysis);
+            }
             // The result contains it next to the matrices.
             Err(error) => block.refuse(error, around),
         }

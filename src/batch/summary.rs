@@ -3,6 +3,7 @@
 use crate::error::visible;
 use crate::impact::{Analysis, Outcome, Verdict};
 use crate::law::Mode;
+use crate::pipeline::robust::Robustness;
 use crate::pipeline::{Aspect, Impact};
 use crate::write::{notes, words};
 use serde::{Serialize, Serializer};
@@ -38,6 +39,9 @@ pub struct Summary {
     /// States in which some foot slides in every outcome whatever the friction is.
     #[serde(skip_serializing_if = "is_zero")]
     pub slides_regardless: u64,
+    /// States of which another one within their uncertainty has other outcomes.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub not_holding: u64,
     /// States with contacts that were taken as exactly at rest, because they are slow (`resting_speed`).
     pub resting: u64,
     /// The modes of the contacts, in the order of their first appearance, at most 1,000 different lists.
@@ -56,6 +60,9 @@ pub struct Summary {
     /// Touchdowns of feet that are far under the ground in the recording.
     #[serde(skip_serializing_if = "is_zero")]
     pub deep: u64,
+    /// Touchdowns whose foot does not come down at the moment that was taken, so that nothing strikes.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub no_strike: u64,
     /// Columns of coordinates that the table of states does not have, which are 0 in all of them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub missing_columns: Vec<String>,
@@ -171,6 +178,7 @@ impl Summary {
         self.question = impact.aspect();
         self.verdicts.0[analysis.verdict as usize] += 1;
         self.beyond_budget += u64::from(analysis.open.is_some_and(|open| open.beyond_budget));
+        self.not_holding += u64::from(matches!(impact.holds, Some(Robustness::Not(_))));
         self.resting += u64::from(impact.resting.contains(&true));
         self.near(&state, &analysis.outcomes);
         if let Some(friction) = impact.friction_needed {
@@ -213,6 +221,7 @@ impl Summary {
         }
         self.more_friction.add(following.more_friction);
         self.slides_regardless += following.slides_regardless;
+        self.not_holding += following.not_holding;
         self.resting += following.resting;
         for list in following.modes {
             let known = |known: &&mut ModeCount| known.modes == list.modes && known.contacts == list.contacts;
@@ -229,6 +238,12 @@ impl Summary {
         self.odd_joints.add(following.odd_joints);
         self.early += following.early;
         self.deep += following.deep;
+        self.no_strike += following.no_strike;
+    }
+
+    /// What a reader should know of the touchdowns.
+    pub fn of_touchdowns(&self) -> impl Iterator<Item = String> {
+        [notes::early(self.early), notes::deep(self.deep), notes::no_strike(self.no_strike)].into_iter().flatten()
     }
 
     fn near(&mut self, state: impl Fn() -> StateRef, outcomes: &[Outcome]) {
@@ -323,6 +338,9 @@ impl fmt::Display for Summary {
         if self.slides_regardless > 0 {
             writeln!(f, "some foot slides whatever the friction: {}", self.slides_regardless)?;
         }
+        if self.not_holding > 0 {
+            writeln!(f, "outcomes that do not hold within the state's uncertainty: {}", self.not_holding)?;
+        }
         if self.resting > 0 {
             let states = self.resting;
             writeln!(f, "slow contacts are taken as exactly at rest: {states}; `resting_speed: 0` turns this off")?;
@@ -334,7 +352,7 @@ impl fmt::Display for Summary {
                 visible(what)
             )?;
         }
-        notes::early(self.early).iter().chain(&notes::deep(self.deep)).try_for_each(|note| writeln!(f, "{note}"))?;
+        self.of_touchdowns().try_for_each(|note| writeln!(f, "{note}"))?;
         let mut lists: Vec<&ModeCount> = self.modes.iter().filter(|list| !list.modes.is_empty()).collect();
         lists.sort_by_key(|list| std::cmp::Reverse(list.outcomes));
         for list in lists.iter().take(SHOWN) {

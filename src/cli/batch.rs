@@ -16,9 +16,10 @@ use super::sink::{OutputSink, note_part};
 use super::{Answered, Completion, Failure, input, progress};
 use crate::batch::{self, Batch, Question, Recording, RefusedRecord, States, Summary};
 use crate::budget::TotalBudget;
+use crate::contact::Feet;
 use crate::draw::page::Gait;
 use crate::gait::{Dropped, Seen, Thresholds};
-use crate::pipeline::{Aspect, Options};
+use crate::pipeline::{Aspect, Options, wide_tolerance};
 use crate::read::table::Header;
 #[cfg(feature = "columnar")]
 use crate::read::table::Parts;
@@ -134,7 +135,11 @@ pub(super) fn run(args: &Args) -> Completion {
         form: format.form(),
     };
     let columns = (format != RecordFormat::Ndjson).then(|| Columns::new(&robot, &feet, header.as_ref(), layout));
+    let size = Feet::new(&robot, &feet).size();
     let question = args.question(&robot, feet, header.as_ref(), columns.as_ref())?;
+    // Full results note it themselves.
+    let tolerance = question.options.contact_tolerance.filter(|_| args.detail.brief);
+    note_all(tolerance.and_then(|tolerance| wide_tolerance(tolerance, size)));
     // Tried before the work, which would otherwise be lost.
     writable(args.summary.as_deref())?;
     let mut head = Vec::new();
@@ -170,6 +175,7 @@ pub(super) fn run(args: &Args) -> Completion {
         note_all(notes::left_out(header, &dropped));
     }
     let seen = seen.into_inner().unwrap_or_default();
+    note_all(seen.disorder());
     note_all(seen.misfit(&robot));
     args.report(&question, &counts, answered, (thresholds, &seen))?;
     if args.plot.path().is_some() {
@@ -368,7 +374,7 @@ impl Args {
             0 | 1 if self.summary.is_none() => {
                 let odd = counts.odd_joints.first.as_ref().map(|odd| &odd.what);
                 note_all(odd.or(seen.odd_joint.as_ref()).cloned());
-                note_all(notes::early(counts.early).into_iter().chain(notes::deep(counts.deep)));
+                note_all(counts.of_touchdowns());
                 Ok(())
             }
             _ => write!(io::stderr(), "{}", with_flags(&counts.to_string())),

@@ -26,6 +26,7 @@ const FLAGS: &[(&str, &str)] = &[
     ("ground_height", "--ground-height"),
     ("foreign", "--foreign"),
     ("touchdowns", "--touchdowns"),
+    ("at", "--at"),
     ("input_format", "--input-format"),
     ("format", "--format"),
     ("budget", "--budget"),

@@ -122,7 +122,11 @@ impl RecordingOptions {
     }
 
     /// What to say if there are no touchdowns.
-    pub fn nothing_found(&self, thresholds: Thresholds, Seen { lowest, odd_joint, .. }: &Seen) -> String {
+    pub fn nothing_found(&self, thresholds: Thresholds, seen: &Seen) -> String {
+        let Seen { lowest, odd_joint, .. } = seen;
+        if seen.stands_still() {
+            return "no touchdown found: the time never rises from row to row".to_owned();
+        }
         let settings = if self.simulated { "`drop`" } else { "`drop`, `ground_height`" };
         let odd = odd_joint.as_ref().map_or(String::new(), |odd| format!("; {odd}"));
         format!("{} (see {settings}){odd}", thresholds.nothing_found(self.heights(), *lowest))

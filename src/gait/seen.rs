@@ -8,6 +8,10 @@ use crate::Robot;
 const FIT: [f64; 2] = [0.5, 2.0];
 /// They are proportional to dq/dt from this correlation on; of noise it is up to 0.5.
 const CORRELATED: f64 = 0.8;
+/// A coordinate that moves at less on average may be noise about one that stands \[m/s, rad/s\].
+const MOVING: f64 = 0.1;
+/// Time that goes back by no more steps is that of rows out of order.
+const FEW_STEPS: f64 = 10.0;
 /// So many rows are compared at least.
 const ENOUGH: usize = 30;
 
@@ -18,6 +22,16 @@ pub struct Seen {
     pub lowest: f64,
     /// What is odd about the joints of the first state with such joints, in words.
     pub odd_joint: Option<String>,
+    rows: usize,
+    /// Whether time ever rises from one row to the next.
+    rises: bool,
+    /// How often time goes back by a few steps, within the clip.
+    returns: usize,
+    /// The times before and after the first time that it does \[s\].
+    first_return: Option<[f64; 2]>,
+    /// The times of the clip's first row and of the row before, and the last step forward \[s\].
+    clip: [f64; 2],
+    step: f64,
     /// Of each coordinate the sums of v^2, of (dq/dt)^2 and of their product over steps from row to row.
     sums: Vec<[f64; 3]>,
     steps: usize,
@@ -28,7 +42,19 @@ pub struct Seen {
 impl Default for Seen {
     /// Nothing yet.
     fn default() -> Self {
-        Self { lowest: f64::INFINITY, odd_joint: None, sums: Vec::new(), steps: 0, last: Default::default() }
+        Self {
+            lowest: f64::INFINITY,
+            odd_joint: None,
+            rows: 0,
+            rises: false,
+            returns: 0,
+            first_return: None,
+            clip: [f64::INFINITY; 2],
+            step: 0.0,
+            sums: Vec::new(),
+            steps: 0,
+            last: Default::default(),
+        }
     }
 }
 
@@ -40,6 +66,17 @@ impl Seen {
         if self.odd_joint.is_none() {
             self.odd_joint = state.odd_joints(robot).next();
         }
+        self.rows += 1;
+        if let ClockStep::Later(passed) = step {
+            (self.rises, self.step) = (true, passed);
+        }
+        let [first, before] = self.clip;
+        // A clip of its own begins anywhere.
+        if first < sample.time && sample.time < before && before - sample.time <= FEW_STEPS * self.step {
+            self.returns += 1;
+            self.first_return.get_or_insert([before, sample.time]);
+        }
+        self.clip = [if step == ClockStep::NewClip { sample.time } else { first }, sample.time];
         // Velocities that were taken from positions fit them.
         let is_recorded = sample.rate_over == [sample.time; 2];
         if let (ClockStep::Later(passed), true) = (step, is_recorded) {
@@ -59,11 +96,28 @@ impl Seen {
         }
     }
 
+    /// Whether time rises from no row to the next.
+    pub fn stands_still(&self) -> bool {
+        self.rows > 1 && !self.rises
+    }
+
+    /// That rows are not in the order of their times.
+    pub fn disorder(&self) -> Option<String> {
+        let [before, after] = self.first_return?;
+        let times = if self.returns == 1 { "once".to_owned() } else { format!("{} times", self.returns) };
+        Some(format!(
+            "rows are not in the order of time, which goes back {times}, first from {before} s to {after} s: a new clip begins \
+             there"
+        ))
+    }
+
     /// That velocities of the recording are not the rates of its positions, as in other units or of other sign.
     pub fn misfit(&self, robot: &Robot) -> Option<String> {
         let misfit = |(name, &[squared, rates, product]): (&str, &[f64; 3])| {
             let (correlation, factor) = (product / (squared * rates).sqrt(), product / rates);
-            if correlation < -CORRELATED {
+            if squared == 0.0 && rates > MOVING * MOVING * self.steps as f64 {
+                Some(format!("{name} is 0 although it moves"))
+            } else if correlation < -CORRELATED {
                 Some(format!("{name} has the opposite sign of dq/dt"))
             } else if correlation > CORRELATED && !(FIT[0]..=FIT[1]).contains(&factor) {
                 Some(format!("{name} is {factor:.3} times dq/dt"))

@@ -52,6 +52,12 @@ pub fn deep(count: u64) -> Option<String> {
     (count > 0).then(|| format!("{what}: {count}; are the base's height and axes right, or does the ground descend?"))
 }
 
+/// How many touchdowns have no impact.
+pub fn no_strike(count: u64) -> Option<String> {
+    let what = "touchdowns without an impact, as their foot does not come down";
+    (count > 0).then(|| format!("{what}: {count}; is theirs the state after it? (see `at`, `simulated`)"))
+}
+
 /// Which parameters change nothing.
 pub fn unused(study: &Study) -> impl Iterator<Item = String> {
     study.unused().into_iter().map(|name| format!("nothing in the state or the robot depends on {name}"))

@@ -134,6 +134,10 @@ fn a_counterexample_can_be_fed_back() {
     let impact = |state: &str| heelstrike_reads(&["impact", RAMONE, "-", "--format", "json"], state).line();
     let first = impact(&badly_measured());
     assert_eq!(first["holds"], false);
+    // A table has no column for it.
+    let lines = format!("{}\n", parsed(&badly_measured())).repeat(2);
+    let summary = heelstrike_reads(&["batch", RAMONE, "-", "--output-format", "csv"], lines).well().stderr;
+    assert!(summary.contains("outcomes that do not hold within the state's uncertainty: 2\n"), "{summary}");
     let found = &first["counterexample"];
     let second = impact(&found["state"].to_string());
     assert_eq!((&second["verdict"], &second["proven"]), (&found["verdict"], &json!(true)));

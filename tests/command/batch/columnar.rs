@@ -120,7 +120,11 @@ fn columns_are_answered_as_flat_lines_are() {
     let stream = std::fs::read(place("walk.arrows")).expect("the stream");
     let always = ["batch", RAMONE, "-", "--friction", "0.6", "--input-format", "arrow"];
     let expected = heelstrike(&["batch", RAMONE, &lines, "--friction", "0.6"]).well();
-    assert!(heelstrike_reads(&always, stream).well().stdout == expected.stdout);
+    assert!(heelstrike_reads(&always, stream.clone()).well().stdout == expected.stdout);
+    // Of two streams that were joined the second one would be lost.
+    let joined = heelstrike(&["batch", RAMONE, &file("joined.arrows", stream.repeat(2)), "--friction", "0.6"]);
+    assert_eq!((joined.status, &joined.stdout), (1, &expected.stdout));
+    assert!(joined.stderr.contains("more follows the end of the stream"), "{}", joined.stderr);
 }
 
 #[test]

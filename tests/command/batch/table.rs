@@ -164,6 +164,7 @@ fn recordings_in_other_units_or_axes_are_noted() {
         ((|name, cell| if name.starts_with("v_") { -cell } else { cell }) as fn(&str, f64) -> f64, "the opposite sign"),
         (|name, cell| if name.starts_with("v_left") { cell.to_degrees() } else { cell }, " is 57."),
         (|name, cell| if name == "time" { 1e3 * cell } else { cell }, " is 1000."),
+        (|name, cell| if name.starts_with("v_") { 0.0 } else { cell }, "x is 0 although it moves, and "),
     ] {
         let stderr = stderr(change);
         let note = stderr.lines().find(|line| line.contains(misfit)).unwrap_or_else(|| panic!("{words}: {stderr}"));
@@ -174,6 +175,36 @@ fn recordings_in_other_units_or_axes_are_noted() {
     let degrees =
         stderr(|name, cell| if name.contains("knee") || name.contains("hip") { cell.to_degrees() } else { cell });
     assert!(degrees.contains("degrees?"), "{degrees}");
+}
+
+/// A row that is missing or out of place takes the touchdown next to it along, or gives the state after it.
+#[test]
+fn rows_that_are_missing_or_out_of_order_are_noted() {
+    let walk = read("examples/gait/ramone_walk.csv");
+    let rows: Vec<&str> = walk.lines().collect();
+    let stderr = |rows: &[&str]| {
+        let options = ["batch", RAMONE, "-", "--input-format", "csv", "--touchdowns", "--friction", "0.6", "--brief"];
+        heelstrike_reads(&options, rows.join("\n")).well().stderr
+    };
+    let whole = stderr(&rows);
+    assert!(!whole.contains("order of time") && !whole.contains("without an impact, as"), "{whole}");
+    let without = |left_out: std::ops::Range<usize>| [&rows[..left_out.start], &rows[left_out.end..]].concat();
+    let after = stderr(&without(51..52));
+    assert!(after.contains("touchdowns without an impact, as their foot does not come down: 1; "), "{after}");
+    let mut exchanged = rows.clone();
+    exchanged.swap(49, 50);
+    let exchanged = stderr(&exchanged);
+    assert!(exchanged.contains("rows are not in the order of time, which goes back once, first from "), "{exchanged}");
+    let still: Vec<String> = rows
+        .iter()
+        .enumerate()
+        .map(|(at, row)| {
+            let cells: Vec<&str> = row.split(',').collect();
+            if at == 0 { (*row).to_owned() } else { [&[cells[0], "0.5"][..], &cells[2..]].concat().join(",") }
+        })
+        .collect();
+    let still = stderr(&still.iter().map(String::as_str).collect::<Vec<_>>());
+    assert!(still.contains("no touchdown found: the time never rises"), "{still}");
 }
 
 #[test]
