@@ -67,14 +67,14 @@ impl Parts {
         let mut magic = Vec::new();
         (&mut file).take(6).read_to_end(&mut magic).and_then(|_| file.rewind()).map_err(unreadable)?;
         if magic != b"ARROW1" {
-            return Self::arrow_stream(BufReader::new(file));
+            return Self::arrow_stream_of(file);
         }
         let reader = guarded(|| FileReader::try_new_buffered(file, None))?.map_err(unreadable)?;
         let schema = reader.schema();
         Ok(Self::new(Box::new(reader), schema))
     }
 
-    /// Arrow's stream.
+    /// Arrow's stream; what follows its end is not read.
     ///
     /// # Errors
     /// As above.
@@ -82,6 +82,25 @@ impl Parts {
         let reader = guarded(|| StreamReader::try_new(input, None))?.map_err(unreadable)?;
         let schema = reader.schema();
         Ok(Self::new(Box::new(reader), schema))
+    }
+
+    /// A file that is a stream, and nothing else.
+    fn arrow_stream_of(file: File) -> Result<Self> {
+        let mut reader = guarded(|| StreamReader::try_new(BufReader::new(file), None))?.map_err(unreadable)?;
+        let schema = reader.schema();
+        let mut is_open = true;
+        let batches = std::iter::from_fn(move || match reader.next() {
+            None if std::mem::take(&mut is_open) => match reader.get_mut().read(&mut [0]) {
+                Ok(0) => None,
+                Ok(_) => {
+                    let joined = "more follows the end of the stream: are several joined?";
+                    Some(Err(ArrowError::IpcError(joined.into())))
+                }
+                Err(error) => Some(Err(error.into())),
+            },
+            next => next,
+        });
+        Ok(Self::new(Box::new(batches), schema))
     }
 
     fn new(batches: Batches, schema: SchemaRef) -> Self {
