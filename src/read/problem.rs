@@ -23,10 +23,18 @@ pub struct Problem {
 const LONG: [&str; 7] =
     ["friction", "restitution", "delassus", "velocity_before", "mass_matrix", "contact_jacobian", "velocity"];
 
+/// What other programs and the formulas call some of them.
+const SYNONYMS: [(&str, &str); 4] = [
+    ("mu", "friction"),
+    ("friction_coefficient", "friction"),
+    ("coefficient_of_restitution", "restitution"),
+    ("restitution_coefficient", "restitution"),
+];
+
 impl Problem {
     /// Reads a problem from one JSON object: `delassus` and `velocity_before`, or `mass_matrix`, `contact_jacobian` and
     /// `velocity`; `friction`, `restitution`, `id` and `names`. Other fields are ignored,
-    /// unless they resemble a long one of these that is missing.
+    /// unless they resemble or mean a long one of these that is missing.
     ///
     /// # Errors
     /// Broken JSON, a misspelt field, values of the wrong kind, shape or range, a matrix that is no Delassus matrix.
@@ -38,10 +46,13 @@ impl Problem {
         let required = |name: &str| field(name).ok_or_else(|| root.missing(name));
         let id = field("id").map(Node::id).transpose()?;
         for other in fields.iter().filter(|field| !LONG.contains(&field.key())) {
-            let is_meant = |known: &&&str| field(known).is_none() && strsim::osa_distance(other.key(), known) <= 2;
+            let is_meant = |known: &&&str| {
+                let is_near = strsim::osa_distance(other.key(), known) <= 2;
+                field(known).is_none() && (is_near || SYNONYMS.contains(&(other.key(), **known)))
+            };
             if let Some(meant) = LONG.iter().find(is_meant) {
                 let unknown = other.refuse(Reason::UnknownField(other.key().to_owned()));
-                return Err(unknown.did_you_mean(other.key(), [*meant]));
+                return Err(unknown.did_you_mean(meant, [*meant]));
             }
         }
 
@@ -165,5 +176,23 @@ fn counted<'n>(field: &'n Node<'n>, contacts: usize) -> Result<impl Iterator<Ite
             let of = if contacts == 1 { "1 contact".to_owned() } else { format!("{contacts} contacts") };
             Err(field.refuse(Reason::Inconsistent(format!("{found} entries for {of}"))))
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Friction;
+
+    #[test]
+    fn fields_that_mean_missing_ones_are_refused() {
+        let hint = |more: &str| {
+            let text = format!(r#"{{"delassus": [[2, 1], [1, 2]], "velocity_before": [[0.5, -1]], {more}}}"#);
+            let defaults = Defaults { friction: Some(Friction::Finite(0.9)), ..Defaults::default() };
+            Problem::from_json(&text, &defaults).err().and_then(|error| error.remedy().map(str::to_owned))
+        };
+        assert_eq!(hint("\"mu\": 0.1").as_deref(), Some("did you mean friction?"));
+        assert_eq!(hint("\"restitution_coefficient\": 0.5").as_deref(), Some("did you mean restitution?"));
+        assert_eq!(hint("\"friction\": 0.1, \"mu\": 0.1, \"note\": 1"), None);
     }
 }

@@ -139,11 +139,17 @@ impl<'t> Study<'t> {
         refused().unwrap_or_else(|| reason.clone().into())
     }
 
-    /// Parameters that no expression of the state or the robot uses.
+    /// Parameters that no expression of the state or the robot uses, and constants that none at all uses.
     pub fn unused(&self) -> Vec<&str> {
-        let parts = ["state", "robot"].iter().filter_map(|name| self.tree.get(name));
-        let names = self.parameters.iter().map(|parameter| parameter.name.as_str());
-        names.filter(|name| !parts.clone().any(|part| uses(part, name))).collect()
+        let unused = |name: &&str, parts: &[&str]| {
+            !parts.iter().filter_map(|part| self.tree.get(part)).any(|part| uses(part, name))
+        };
+        let parameters = self.parameters.iter().map(|parameter| parameter.name.as_str());
+        let constants = self.constants.iter();
+        let parameters = parameters.filter(|name| unused(name, &["state", "robot"]));
+        parameters
+            .chain(constants.filter(|name| unused(name, &["constants", "parameters", "state", "robot"])))
+            .collect()
     }
 
     /// Whether the robot itself is varied.
