@@ -113,8 +113,8 @@ impl Pipeline<'_> {
     }
 }
 
-/// That a contact tolerance exceeds the robot's size, as one in millimeters does \[m\].
-pub(crate) fn wide_tolerance(tolerance: f64, size: f64) -> Option<String> {
+/// That a contact tolerance exceeds the size of the robot, as one in millimeters does; both in \[m\].
+pub fn wide_tolerance(tolerance: f64, size: f64) -> Option<String> {
     (tolerance > size).then(|| {
         let [tolerance, size] = [tolerance, size].map(rounded);
         format!("a contact tolerance of {tolerance} m is more than the robot's size, {size} m: is it in meters?")
