@@ -3,6 +3,7 @@
 use super::Sample;
 use super::clip::ClockStep;
 use crate::Robot;
+use crate::error::shortest_within;
 
 /// Velocities fit positions if they are between this part and this many times dq/dt: recordings are noisy.
 const FIT: [f64; 2] = [0.5, 2.0];
@@ -104,6 +105,7 @@ impl Seen {
     /// That rows are not in the order of their times.
     pub fn disorder(&self) -> Option<String> {
         let [before, after] = self.first_return?;
+        let [before, after] = [before, after].map(|time| shortest_within(time, 0.01 * (before - after)));
         let times = if self.returns == 1 { "once".to_owned() } else { format!("{} times", self.returns) };
         Some(format!(
             "rows are not in the order of time, which goes back {times}, first from {before} s to {after} s: a new clip begins \

@@ -22,6 +22,8 @@ const DENSEST: f64 = 33_000.0;
 const WIDEST: f64 = 2.0;
 /// A moment of less than this part of the robot's mass times its size squared does not matter: that of a dummy link.
 const SLIGHT: f64 = 1e-3;
+/// A moment of less than this part of the link's largest is what rotations rounded off.
+const ROUNDED: f64 = 1e-9;
 /// The most joints or links that are named.
 const NAMED: usize = 3;
 
@@ -213,7 +215,7 @@ pub(super) fn about_inertias<'l>(
             Some(_) if *mass == 0.0 && largest > 0.0 => 1,
             Some(_) if largest > size * size * (WIDEST * WIDEST * mass).max(SLIGHT * whole) => 2,
             Some(inertia) if !is_planar && !is_physical(inertia) => 3,
-            Some(_) if is_planar && moment < SLIGHT * largest => 4,
+            Some(_) if is_planar && moment < ROUNDED * largest => 4,
             _ => continue,
         };
         found[kind].push(link.name.as_str());

@@ -89,8 +89,11 @@ pub trait Row {
 pub enum Cell<'c> {
     /// Text, if it is not empty.
     Text(&'c str),
+    /// A number with a fraction.
     Number(f64),
+    /// A whole number.
     Integer(i64),
+    /// True or false.
     Boolean(bool),
     /// Of the cells of the input that are carried through the one of this number.
     Carried(&'c Carried, usize),

@@ -348,6 +348,14 @@ mod tests {
         let [exact, rounded] = [exact, rounded].map(|own| crate::impact::analyze(&own, false.into()).unwrap());
         assert!(exact.proven && rounded.proven);
         assert_eq!(exact.outcomes[0].modes, rounded.outcomes[0].modes);
+        // Rows that are equal but for the digit that makes it asymmetric: the mean is definite by that digit alone.
+        let rows = [[2.0, -1.0, 2.0, 1.0], [-1.0, 2.0, -1.0, 0.0], [2.0, -1.0, 2.0, 1.0], [1.0, 0.0, 1.0, 2.0]];
+        let mut delassus = rows.concat();
+        delassus[8] -= 2.0 * f64::EPSILON;
+        let velocity = vec![[0.5, -1.0], [0.500_000_000_1, -1.0]];
+        let nearly = ContactProblem::new(delassus, velocity, vec![Friction::Infinite; 2], vec![0.0; 2]).unwrap();
+        assert_eq!([nearly.is_symmetrized(), nearly.is_repaired()], [false, true]);
+        assert!(!crate::impact::analyze(&nearly, false.into()).unwrap().proven);
     }
 
     #[test]

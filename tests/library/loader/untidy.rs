@@ -164,6 +164,14 @@ fn a_mass_in_grams_is_noted() {
     assert!(of_mass(32.0).reading.cautions.is_empty());
     let words = "the robot weighs 2000 kg, more than a ball of steel around all of it (radius 0.1 m): masses are in kg";
     assert_eq!(only_caution(&of_mass(2000.0)), words);
+    // What slides may be as long as its joint reaches, which the size at zero does not show.
+    let [body, foot] = ["body", "foot"].map(|name| {
+        let shape = urdf::collision([0.0; 2], "sphere radius=\"0.03\"");
+        link(name, 5.0, [0.0; 2], 1e-3, if name == "foot" { &shape } else { "" })
+    });
+    let slide = "<joint name=\"leg\" type=\"prismatic\"><parent link=\"body\"/><child link=\"foot\"/><axis xyz=\"0 0 1\"/>\
+                 <limit lower=\"-1\" upper=\"0\"/></joint>";
+    assert_eq!(load(&urdf::robot(&[body, foot, slide.to_owned()])).reading.cautions, [""; 0]);
 }
 
 #[test]
@@ -192,4 +200,16 @@ fn moments_about_another_axis_and_moving_links_without_mass_are_noted() {
     assert_eq!(cautions("", -0.5), [words]);
     // A joint of two axes has a link without length between them.
     assert_eq!(cautions("", 0.0), [""; 0]);
+    // What is fixed to a frame has its mass, whether it is welded to it or kept apart.
+    let parts = [limb("body", &massive(inertia)), limb("thigh", ""), limb("shank", &massive(inertia))];
+    let fixed = turned("knee", ["thigh", "shank"], -0.5).replace("continuous", "fixed");
+    let text = robot(&(parts.concat() + &turned("hip", ["body", "thigh"], -0.5) + &fixed));
+    for weld in [true, false] {
+        let reductions = heelstrike::reductions::Reductions { weld, ..Default::default() };
+        assert_eq!(
+            reduce(&text, &Reduction { reductions, ..Reduction::default() }).reading.cautions,
+            [""; 0],
+            "{weld}"
+        );
+    }
 }
