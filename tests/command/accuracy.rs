@@ -34,9 +34,27 @@ fn masked(text: &str) -> String {
         {
             *steps = "<steps>".to_owned();
         }
+        // On so soft ground the robot moves so far that rounding decides where to: 1e-15 in the input changes a tenth.
+        if let ["1e4", "N/m", ..] = *words.iter().map(String::as_str).collect::<Vec<_>>() {
+            words[2..].fill("<far>".to_owned());
+        }
         words.join(" ")
     };
     text.lines().map(line).collect::<Vec<_>>().join("\n")
+}
+
+/// A run of compliant contact that is given up, as from this state, takes nothing else along.
+#[test]
+fn a_report_is_there_without_its_compliant_contact() {
+    let state = read("examples/ramone.json").replace("0.3729729102424726", "0.3729729102424722");
+    let run = heelstrike_reads(
+        &["accuracy", "urdf/ramone.urdf", "-", "--time", "0"],
+        state.replace("-1.0", "-1.000000000000001"),
+    );
+    let run = run.well();
+    let is_compared = run.stdout.contains("k_n of the moving robot");
+    assert!(is_compared || run.stderr.contains("compliant contact is left out: "), "{}", run.stderr);
+    assert!(run.stdout.contains("articulated bodies"), "{}", run.stdout);
 }
 
 #[test]
