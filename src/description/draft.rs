@@ -3,8 +3,9 @@
 use super::elements::{ByName, EXPAND, IgnoredCount, WORLD, limits, misspelt, undefined_world};
 use super::repair::Repaired;
 use super::xml::{self, Cursor, MOST_LINKS, Unparsed};
-use super::{Collision, Description, JointKind, UrdfJoint, UrdfLink, joint_place, link_place, values};
+use super::{Description, JointKind, UrdfJoint, UrdfLink, joint_place, link_place, values};
 use crate::error::{Location, Reason, Result};
+use memchr::memmem;
 use roxmltree::{Document, Node};
 
 /// The most joints that move: where M is needed, a chain of n of them takes n^3 / 3 steps to factorize.
@@ -63,11 +64,8 @@ fn read_document(document: &Document<'_>) -> Result<Description> {
         joints: Vec::with_capacity(joints.elements.len()),
         root: 0,
         ignored: Vec::new(),
-        misspelt: Vec::new(),
+        misspelt: misspelt(links.elements.iter().chain(&joints.elements).map(|&(_, element, _)| element)),
     };
-    for &(_, element, _) in links.elements.iter().chain(&joints.elements) {
-        misspelt(element, &mut description.misspelt);
-    }
     let mut shapes = 0;
     for &(name, element, location) in &links.elements {
         let link = read_link(name, element, location, &mut ignored).and_then(|link| {
@@ -132,12 +130,15 @@ fn refuse_xacro(robot: Node<'_, '_>) -> Result<()> {
     let refused = |element: Node, what: String| {
         xml::refuse(element, Reason::Unsupported(format!("{what} is not URDF"))).hint(EXPAND)
     };
-    if let Some(element) = robot.descendants().find(|node| node.is_element() && is_macro(node)) {
+    let holds = |part: &str| memmem::find(robot.document().input_text().as_bytes(), part.as_bytes()).is_some();
+    // Where none is declared, no element has a namespace but XML's own.
+    if holds("xmlns")
+        && let Some(element) = robot.descendants().find(|node| node.is_element() && is_macro(node))
+    {
         return Err(refused(element, format!("<xacro:{}>", element.tag_name().name())));
     }
     // A dollar sign may also be written by its number.
-    let text = robot.document().input_text();
-    let has_dollar = text.contains('$') || text.contains("&#");
+    let has_dollar = holds("$") || holds("&#");
     for element in robot.children().filter(Node::is_element) {
         let place: fn(&str) -> String = match tag(robot, element) {
             Some(old @ ("include" | "property" | "macro")) => {
@@ -170,15 +171,13 @@ fn tag<'a>(robot: Node<'_, '_>, element: Node<'a, '_>) -> Option<&'a str> {
 
 fn read_link(name: &str, element: Node<'_, '_>, location: Location, ignored: &mut IgnoredCount) -> Result<UrdfLink> {
     // An empty one says no more than none.
-    let inertial =
-        xml::child(element, "inertial")?.filter(|inertial| inertial.children().any(|child| child.is_element()));
+    let [inertial] = xml::named(element, ["inertial"]);
+    let inertial = inertial?.filter(|inertial| inertial.children().any(|child| child.is_element()));
     let inertial = inertial.map(values::inertial).transpose()?;
     let mut collisions = Vec::new();
     for child in element.children().filter(Node::is_element) {
         match tag(element, child) {
-            Some("collision") => {
-                collisions.push(Collision { origin: values::origin(child)?, geometry: values::geometry(child)? });
-            }
+            Some("collision") => collisions.push(values::collision(child)?),
             Some("inertial" | "visual") => {}
             _ => ignored.count("link", child)?,
         }
@@ -194,21 +193,25 @@ fn read_joint(
     joints: &ByName,
     ignored: &mut IgnoredCount,
 ) -> Result<UrdfJoint> {
+    let [parent, child, origin, axis, mimic] = xml::named(element, ["parent", "child", "origin", "axis", "mimic"]);
     let kind = joint_kind(element)?;
-    let parent = links.find(xml::required_child(element, "parent")?, "link")?;
-    let child = links.find(xml::required_child(element, "child")?, "link")?;
-    let origin = values::origin(element)?;
-    let axis = values::axis(element, kind)?;
-    let mimic = xml::child(element, "mimic")?.map(|mimic| values::mimic(mimic, joints.find(mimic, "joint")?));
+    let parent = links.find(xml::required_child(element, parent, "parent")?, "link")?;
+    let child = links.find(xml::required_child(element, child, "child")?, "link")?;
+    let origin = values::origin(origin?)?;
+    let axis = values::axis(axis?, kind)?;
+    let mimic = mimic?.map(|mimic| values::mimic(mimic, joints.find(mimic, "joint")?));
     let mimic = mimic.transpose()?;
+    let mut limit = None;
     for child in element.children().filter(Node::is_element) {
         match tag(element, child) {
-            Some("origin" | "parent" | "child" | "axis" | "mimic") => {}
-            _ => ignored.count("joint", child)?,
+            Some("origin" | "parent" | "child" | "axis" | "mimic") => continue,
+            Some("limit") => limit = limit.or(Some(child)),
+            _ => {}
         }
+        ignored.count("joint", child)?;
     }
     let (has_axis, axis) = (axis.is_some(), axis.unwrap_or_default().xyz.0);
-    let limits = element.children().find(|&child| tag(element, child) == Some("limit")).and_then(limits);
+    let limits = limit.and_then(limits);
     let limits =
         limits.filter(|[lower, upper]| lower < upper && matches!(kind, JointKind::Revolute | JointKind::Prismatic));
     Ok(UrdfJoint { name: name.into(), kind, parent, child, origin, axis, has_axis, mimic, limits, location })

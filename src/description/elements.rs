@@ -111,16 +111,27 @@ pub(super) fn limits(limit: Node<'_, '_>) -> Option<[f64; 2]> {
 /// The most misspelt names that are kept.
 const MOST_MISSPELT: usize = 100;
 
-/// Adds the names of attributes and elements in a link or a joint that are not read, but a letter away from one that is
+/// The names of attributes and elements in these links and joints that are not read, but a letter away from one that is
 /// and that is not there, and limits that cannot be.
-pub(super) fn misspelt(element: Node<'_, '_>, found: &mut Vec<String>) {
-    let mut waiting = vec![element];
+pub(super) fn misspelt<'a, 'input: 'a>(elements: impl DoubleEndedIterator<Item = Node<'a, 'input>>) -> Vec<String> {
+    let (mut waiting, mut found): (Vec<_>, Vec<_>) = (elements.rev().collect(), Vec::new());
     while let Some(element) = waiting.pop() {
         let tag = element.tag_name().name();
         let Some((_, attributes, children)) = READ.iter().find(|(known, ..)| *known == tag) else { continue };
+        let first = waiting.len();
+        waiting.extend(element.children().filter(Node::is_element));
+        waiting[first..].reverse();
+        let tags = || waiting[first..].iter().rev().map(|child| child.tag_name().name());
         let line = |node: Node| node.document().text_pos_at(node.range().start).row;
         let given = || element.attributes().filter(|own| own.namespace().is_none()).map(|own| own.name());
-        for (name, meant) in misread(given, attributes).take(MOST_MISSPELT.saturating_sub(found.len())) {
+        // In most elements everything is read: no name to compare with others.
+        let is_read = given().all(|name| attributes.contains(&name)) && tags().all(|tag| children.contains(&tag));
+        if is_read && tag != "limit" {
+            continue;
+        }
+        let meant = meant(given(), attributes);
+        let misread = given().filter_map(|name| Some((name, meant(name)?)));
+        for (name, meant) in misread.take(MOST_MISSPELT.saturating_sub(found.len())) {
             found.push(format!("{name} of <{tag}> on line {} ({meant}?)", line(element)));
         }
         // Exporters write an <axis> like an <origin>.
@@ -130,15 +141,14 @@ pub(super) fn misspelt(element: Node<'_, '_>, found: &mut Vec<String>) {
         for (name, owner) in misplaced.take(MOST_MISSPELT.saturating_sub(found.len())) {
             found.push(format!("{name} of <{tag}> on line {} (<{owner}>?)", line(element)));
         }
-        let inside = || element.children().filter(Node::is_element);
-        let tags = || inside().map(|child| child.tag_name().name());
-        for (name, meant) in misread(tags, children).take(MOST_MISSPELT.saturating_sub(found.len())) {
+        let meant = self::meant(tags(), children);
+        let misread = tags().filter_map(|name| Some((name, meant(name)?)));
+        for (name, meant) in misread.take(MOST_MISSPELT.saturating_sub(found.len())) {
             found.push(format!("<{name}> in <{tag}> on line {} (<{meant}>?)", line(element)));
         }
-        let reported: Vec<&str> = misread(tags, children).map(|(name, _)| name).collect();
         let around = element.parent().map_or("", |parent| parent.tag_name().name());
         let takes = |name: &str, of: &str| READ.iter().any(|(tag, _, children)| *tag == of && children.contains(&name));
-        let of_others = tags().filter(|name| !children.contains(name) && !reported.contains(name)).filter_map(|name| {
+        let of_others = tags().filter(|name| !children.contains(name) && meant(name).is_none()).filter_map(|name| {
             let near = children.iter().copied().chain([around]).find(|other| takes(name, other));
             Some((name, near.or_else(|| Some(READ.iter().find(|(.., children)| children.contains(&name))?.0))?))
         });
@@ -149,10 +159,8 @@ pub(super) fn misspelt(element: Node<'_, '_>, found: &mut Vec<String>) {
             let [lower, upper] = ["lower", "upper"].map(|end| element.attribute(end).unwrap_or("0"));
             found.push(format!("<limit> on line {} (from {lower} to {upper}?)", line(element)));
         }
-        let first = waiting.len();
-        waiting.extend(inside());
-        waiting[first..].reverse();
     }
+    found
 }
 
 /// The element that has an attribute of this name, or one of these children that has itself the name. All may have names.
@@ -164,12 +172,13 @@ fn owner(name: &str, children: &[&'static str]) -> Option<&'static str> {
     child.or_else(|| Some(READ.iter().find(|(_, attributes, _)| attributes.contains(&name))?.0))
 }
 
-/// Of the `given` names those that are not `known`, but may be meant as one that is and that is not given.
-fn misread<'a, I: Iterator<Item = &'a str>>(
-    given: impl Fn() -> I,
+/// Which of the `known` names another name may be meant as, if that one is not `given`.
+fn meant<'a>(
+    given: impl Iterator<Item = &'a str>,
     known: &'static [&'static str],
-) -> impl Iterator<Item = (&'a str, &'static str)> {
+) -> impl Fn(&str) -> Option<&'static str> {
     let is_near = |name: &str, known: &str| {
+        let [own, other] = [name, known].map(str::as_bytes);
         // As MJCF, SDF and others call them.
         let is_named = match known {
             "xyz" => matches!(name, "pos" | "position" | "translation"),
@@ -179,10 +188,14 @@ fn misread<'a, I: Iterator<Item = &'a str>>(
         };
         is_named
             || name.eq_ignore_ascii_case(known)
-            || name.len().abs_diff(known.len()) <= 1 && strsim::osa_distance(name, known) == 1
+            // Known names have three letters and more, so that one slip leaves the first or the last of them.
+            || name.len().abs_diff(known.len()) <= 1
+                && (own.first() == other.first() || own.last() == other.last())
+                && strsim::osa_distance(name, known) == 1
     };
-    given().filter(|name| !known.contains(name)).filter_map(move |name| {
-        let is_meant = |meant: &&&str| is_near(name, meant) && given().all(|other| other != **meant);
-        Some((name, *known.iter().find(is_meant)?))
-    })
+    let mut absent = known.to_vec();
+    for name in given {
+        absent.retain(|other| *other != name);
+    }
+    move |name| absent.iter().copied().find(|meant| !known.contains(&name) && is_near(name, meant))
 }

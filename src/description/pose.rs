@@ -19,7 +19,12 @@ impl Pose {
     ///
     /// Angles of zero and quarter turns give exact ones and zeros, and the digits are the same on every platform.
     pub fn rotation(&self) -> Matrix {
-        let [(sr, cr), (sp, cp), (sy, cy)] = self.rpy.map(|angle| quarter_turn(angle).unwrap_or(libm::sincos(angle)));
+        // Most poses turn nothing.
+        if self.rpy == [0.0; 3] {
+            return [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        }
+        let sincos = |angle| quarter_turn(angle).unwrap_or_else(|| libm::sincos(angle));
+        let [(sr, cr), (sp, cp), (sy, cy)] = self.rpy.map(sincos);
         let rotation = [
             [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
             [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],

@@ -12,7 +12,9 @@ pub(super) fn connect(links: &mut [UrdfLink], joints: &[UrdfJoint]) -> Result<us
                 "link \"{}\" would have two parents: it is the child of joint \"{}\" too",
                 links[joint.child].name, joints[first].name
             );
-            return Err(joint.refuse(Reason::NotATree(reason)).hint("cut the loop open: a link has one parent joint"));
+            return Err(joint
+                .refuse(Reason::NotATree(reason))
+                .hint("cut the loop open, since a link has one parent joint; \"loops\" of a state close it again"));
         }
         links[joint.child].joint = Some(index);
     }
@@ -36,15 +38,17 @@ pub(super) fn connect(links: &mut [UrdfLink], joints: &[UrdfJoint]) -> Result<us
 impl Description {
     /// All joints outward from `link`, those of one link in the file's order and each branch before the next.
     pub fn outward(&self, link: usize) -> Vec<usize> {
-        let mut joints_of = vec![Vec::new(); self.links.len()];
-        // Backward, since a stack is emptied from its end.
+        // The first joint of each link, and of each joint the next of the same link.
+        let (mut first, mut next) = (vec![None; self.links.len()], vec![None; self.joints.len()]);
         for (index, joint) in self.joints.iter().enumerate().rev() {
-            joints_of[joint.parent].push(index);
+            next[index] = first[joint.parent].replace(index);
         }
-        let (mut order, mut waiting) = (Vec::with_capacity(self.joints.len()), joints_of[link].clone());
+        let (mut order, mut waiting) = (Vec::with_capacity(self.joints.len()), Vec::from_iter(first[link]));
         while let Some(index) = waiting.pop() {
             order.push(index);
-            waiting.extend(&joints_of[self.joints[index].child]);
+            // A stack is emptied from its end.
+            waiting.extend(next[index]);
+            waiting.extend(first[self.joints[index].child]);
         }
         order
     }

@@ -1,7 +1,7 @@
 //! The values of an element in urdf-rs's types, each number checked: urdf-rs gives the types and what holds where a
 //! file leaves something out, roxmltree the attributes.
 
-use super::{Geometry, Inertial, JointKind, Mesh, Mimic, Pose, xml};
+use super::{Collision, Geometry, Inertial, JointKind, Mesh, Mimic, Pose, xml};
 use crate::error::{Reason, Result};
 use roxmltree::Node;
 use urdf_rs::Vec3;
@@ -16,9 +16,9 @@ impl From<urdf_rs::Pose> for Pose {
     }
 }
 
-/// The `<origin>` of `parent`.
-pub(super) fn origin(parent: Node<'_, '_>) -> Result<Pose> {
-    let Some(origin) = xml::child(parent, "origin")? else { return Ok(urdf_rs::Pose::default().into()) };
+/// An `<origin>`, if there is one.
+pub(super) fn origin(origin: Option<Node<'_, '_>>) -> Result<Pose> {
+    let Some(origin) = origin else { return Ok(urdf_rs::Pose::default().into()) };
     if origin.has_attribute("quat_xyzw") {
         let reason = "quat_xyzw of <origin> is not handled".into();
         return Err(xml::refuse(origin, Reason::Unsupported(reason)).hint("give the rotation as rpy"));
@@ -29,9 +29,10 @@ pub(super) fn origin(parent: Node<'_, '_>) -> Result<Pose> {
 
 /// An `<inertial>`.
 pub(super) fn inertial(element: Node<'_, '_>) -> Result<Inertial> {
-    let origin = origin(element)?;
-    let [mass] = required(xml::required_child(element, "mass")?, "value", NOT_NEGATIVE)?;
-    let inertia = xml::child(element, "inertia")?.map(inertia).transpose()?;
+    let [own, mass, moments] = xml::named(element, ["origin", "mass", "inertia"]);
+    let origin = origin(own?)?;
+    let [mass] = required(xml::required_child(element, mass, "mass")?, "value", NOT_NEGATIVE)?;
+    let inertia = moments?.map(inertia).transpose()?;
     let matrix =
         |urdf_rs::Inertia { ixx, ixy, ixz, iyy, iyz, izz }| [[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]];
     Ok(Inertial { origin, mass, inertia: inertia.map(matrix) })
@@ -45,9 +46,14 @@ fn inertia(element: Node<'_, '_>) -> Result<urdf_rs::Inertia> {
     Ok(urdf_rs::Inertia { ixx, iyy, izz, ixy: product("ixy")?, ixz: product("ixz")?, iyz: product("iyz")? })
 }
 
-/// The `<geometry>` of a `<collision>`.
-pub(super) fn geometry(collision: Node<'_, '_>) -> Result<Geometry> {
-    let geometry = xml::required_child(collision, "geometry")?;
+/// A `<collision>`.
+pub(super) fn collision(element: Node<'_, '_>) -> Result<Collision> {
+    let [own, shape] = xml::named(element, ["origin", "geometry"]);
+    Ok(Collision { origin: origin(own?)?, geometry: geometry(xml::required_child(element, shape, "geometry")?)? })
+}
+
+/// A `<geometry>`.
+fn geometry(geometry: Node<'_, '_>) -> Result<Geometry> {
     // Beside a shape of URDF elements of other programs may stand, such as <drake:declare_convex>.
     let (mut shapes, foreign) = (xml::children(geometry), || geometry.children().find(Node::is_element));
     let missing = || xml::refuse(geometry, Reason::Missing("a shape in <geometry>".into()));
@@ -73,8 +79,8 @@ pub(super) fn geometry(collision: Node<'_, '_>) -> Result<Geometry> {
 
 /// The `<axis>` of a joint, if it has a direction: `<axis/>` means what no `<axis>` means. It must not be zero where the
 /// joint has an axis.
-pub(super) fn axis(joint: Node<'_, '_>, kind: JointKind) -> Result<Option<urdf_rs::Axis>> {
-    let Some(axis) = xml::child(joint, "axis")? else { return Ok(None) };
+pub(super) fn axis(axis: Option<Node<'_, '_>>, kind: JointKind) -> Result<Option<urdf_rs::Axis>> {
+    let Some(axis) = axis else { return Ok(None) };
     let Some(xyz) = optional(axis, "xyz", ANY)? else { return Ok(None) };
     if kind.has_axis() && xyz == [0.0; 3] {
         let reason = "xyz of <axis> is zero, so the joint has no direction".into();
@@ -102,13 +108,13 @@ fn optional<const N: usize>(element: Node<'_, '_>, name: &str, least: f64) -> Re
 /// The numbers in the `text` of an attribute: `N` finite ones from `least` on.
 fn numbers<const N: usize>(element: Node<'_, '_>, name: &str, text: &str, least: f64) -> Result<[f64; N]> {
     let what = || format!("{name} of <{}>", element.tag_name().name());
-    let (mut numbers, mut words) = ([0.0; N], text.split_whitespace());
-    let mut read = |number: &mut f64| words.next().and_then(|word| word.parse().ok()).map(|value| *number = value);
-    if numbers.iter_mut().any(|number| read(number).is_none()) || words.next().is_some() {
+    // Other white space than ASCII's is rare, and takes longer to look for.
+    let numbers = parsed(text.split_ascii_whitespace()).or_else(|| parsed(text.split_whitespace()));
+    let numbers: [f64; N] = numbers.ok_or_else(|| {
         let expected = if N == 1 { "a number".into() } else { format!("{N} numbers") };
         let reason = format!("{} must be {expected}, not \"{text}\"", what());
-        return Err(xml::refuse(element, Reason::Syntax(reason)));
-    }
+        xml::refuse(element, Reason::Syntax(reason))
+    })?;
     match numbers.iter().find(|number| !number.is_finite() || **number < least) {
         None => Ok(numbers),
         Some(&value) if value.is_finite() => {
@@ -116,4 +122,13 @@ fn numbers<const N: usize>(element: Node<'_, '_>, name: &str, text: &str, least:
         }
         Some(&value) => Err(xml::refuse(element, Reason::NotFinite { what: what(), value })),
     }
+}
+
+/// These `N` words and no more as numbers.
+fn parsed<'t, const N: usize>(mut words: impl Iterator<Item = &'t str>) -> Option<[f64; N]> {
+    let mut numbers = [0.0; N];
+    for number in &mut numbers {
+        *number = words.next()?.parse().ok()?;
+    }
+    words.next().is_none().then_some(numbers)
 }

@@ -1,7 +1,7 @@
 //! XML elements with their places in the text; hostile texts are refused here, in bounded time and memory.
 
 use crate::error::{Error, Location, Reason, Result};
-use memchr::{memchr_iter, memmem};
+use memchr::{memchr_iter, memmem, memrchr};
 use roxmltree::{Document, Node, ParsingOptions};
 
 /// The deepest nesting of elements that is accepted; URDF itself needs six.
@@ -166,19 +166,33 @@ pub(super) fn children<'a, 'input: 'a>(node: Node<'a, 'input>) -> impl Iterator<
     node.children().filter(move |child| child.is_element() && child.tag_name().namespace() == namespace)
 }
 
-/// The child element `tag`, if there is one; a second one is refused.
-pub(super) fn child<'a, 'input: 'a>(node: Node<'a, 'input>, tag: &str) -> Result<Option<Node<'a, 'input>>> {
-    let mut found = children(node).filter(|child| child.tag_name().name() == tag);
-    let first = found.next();
-    match found.next() {
-        Some(second) => Err(refuse(second, Reason::Duplicate { what: "element", name: tag.into() })),
-        None => Ok(first),
+/// A child element, if there is one.
+pub(super) type Child<'a, 'input> = Option<Node<'a, 'input>>;
+
+/// The child elements of these tags, found in one pass over all children; a second one of a tag is refused.
+pub(super) fn named<'a, 'input: 'a, const N: usize>(
+    node: Node<'a, 'input>,
+    tags: [&str; N],
+) -> [Result<Child<'a, 'input>>; N] {
+    let mut found = tags.map(|_| Ok(None));
+    for child in children(node) {
+        let tag = child.tag_name().name();
+        match tags.iter().position(|known| *known == tag).map(|at| &mut found[at]) {
+            Some(first @ Ok(None)) => *first = Ok(Some(child)),
+            Some(known @ Ok(_)) => *known = Err(refuse(child, Reason::Duplicate { what: "element", name: tag.into() })),
+            Some(Err(_)) | None => {}
+        }
     }
+    found
 }
 
-/// The one child element `tag`.
-pub(super) fn required_child<'a, 'input: 'a>(node: Node<'a, 'input>, tag: &str) -> Result<Node<'a, 'input>> {
-    child(node, tag)?.ok_or_else(|| refuse(node, Reason::Missing(format!("<{tag}>"))))
+/// `child`, the child element `tag` of `node`, which must be there.
+pub(super) fn required_child<'a, 'input: 'a>(
+    node: Node<'_, '_>,
+    child: Result<Child<'a, 'input>>,
+    tag: &str,
+) -> Result<Node<'a, 'input>> {
+    child?.ok_or_else(|| refuse(node, Reason::Missing(format!("<{tag}>"))))
 }
 
 /// The attribute `name`, which must be there and not be empty.
@@ -208,7 +222,8 @@ impl<'a> Cursor<'a> {
         if lines > 0 {
             self.location = Location { line: self.location.line + lines, column: 1 };
         }
-        self.location.column += passed.rsplit('\n').next().unwrap_or_default().chars().count();
+        let line = memrchr(b'\n', passed.as_bytes()).map_or(passed, |end| &passed[end + 1..]);
+        self.location.column += line.chars().count();
         self.offset = self.offset.max(offset);
         self.location
     }

@@ -93,8 +93,8 @@ pub(super) fn judge(description: &Description, roles: &mut [Role], asked: Option
 struct Welded {
     group: Vec<usize>,
     masses: Vec<f64>,
-    /// The moving joints whose parent is in each group.
-    exits: Vec<Vec<usize>>,
+    /// How many moving joints have their parent in each group, and the last of them.
+    exits: Vec<(usize, usize)>,
     world: Option<usize>,
     total: f64,
 }
@@ -104,7 +104,7 @@ impl Welded {
         let Description { links, root, .. } = description;
         let mass = |link: usize| links[link].inertial.as_ref().map_or(0.0, |inertial| inertial.mass);
         let mut group = vec![0; links.len()];
-        let (mut masses, mut exits) = (vec![mass(*root)], vec![Vec::new()]);
+        let (mut masses, mut exits) = (vec![mass(*root)], vec![(0, 0)]);
         for index in description.outward(description.root) {
             let joint = &description.joints[index];
             let parent = group[joint.parent];
@@ -112,10 +112,10 @@ impl Welded {
                 group[joint.child] = parent;
                 masses[parent] += mass(joint.child);
             } else {
-                exits[parent].push(index);
+                exits[parent] = (exits[parent].0 + 1, index);
                 group[joint.child] = masses.len();
                 masses.push(mass(joint.child));
-                exits.push(Vec::new());
+                exits.push((0, 0));
             }
         }
         let total = masses.iter().sum();
@@ -133,10 +133,8 @@ impl Welded {
     }
 
     fn single_exit(&self, link: usize) -> Option<usize> {
-        match self.exits[self.group[link]][..] {
-            [joint] => Some(joint),
-            _ => None,
-        }
+        let (count, joint) = self.exits[self.group[link]];
+        (count == 1).then_some(joint)
     }
 
     /// The three joints, from the root on, that let their descendants move freely in the plane, if all that they move

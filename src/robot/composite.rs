@@ -83,21 +83,33 @@ impl LinkInertia {
     }
 }
 
+/// Mass, CoG and moment about the CoG of each of so many `bodies`, by the parts, each with its body's index.
+pub(super) fn composites(bodies: usize, mut parts: Vec<(usize, LinkInertia)>) -> Vec<(f64, Vector<f64>, f64)> {
+    let mut wholes = vec![composite(&[]); bodies];
+    // Those of one body keep their order, and so the sums their digits.
+    parts.sort_by_key(|(body, _)| *body);
+    for parts in parts.chunk_by(|(a, _), (b, _)| a == b) {
+        wholes[parts[0].0] = composite(parts);
+    }
+    wholes
+}
+
 /// Mass, CoG and moment about the CoG of all `parts` as one; a single one with mass keeps its digits.
-pub(super) fn composite(parts: &[LinkInertia]) -> (f64, Vector<f64>, f64) {
-    let mass = parts.iter().map(|part| part.mass).sum();
-    let mut massive = parts.iter().filter(|part| part.mass > 0.0);
+fn composite(parts: &[(usize, LinkInertia)]) -> (f64, Vector<f64>, f64) {
+    let parts = parts.iter().map(|(_, part)| part);
+    let mass = parts.clone().map(|part| part.mass).sum();
+    let mut massive = parts.clone().filter(|part| part.mass > 0.0);
     let com = match (massive.next(), massive.next()) {
         (None, _) => Vector::zero(),
         (Some(single), None) => single.com,
         _ => {
             let mean = |entry: fn(Vector<f64>) -> f64| {
-                parts.iter().map(|part| part.mass * entry(part.com)).sum::<f64>() / mass
+                parts.clone().map(|part| part.mass * entry(part.com)).sum::<f64>() / mass
             };
             Vector::new(mean(|com| com.x), mean(|com| com.z))
         }
     };
-    let moment = parts.iter().map(|part| {
+    let moment = parts.map(|part| {
         let arm = part.com - com;
         if part.mass > 0.0 { part.moment + part.mass * arm.dot(arm) } else { part.moment }
     });

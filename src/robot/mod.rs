@@ -36,7 +36,7 @@ pub use shape::{FootShape, Rim};
 use crate::error::Reason;
 use crate::planar::Vector;
 use crate::scalar::Real;
-use composite::{LinkInertia, composite};
+use composite::{LinkInertia, composites};
 
 /// How the root body is attached.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -296,7 +296,7 @@ impl Robot {
     /// The CoG of each body together with all that is fixed to it, in its frame \[m\]; `None` for a body that is fixed
     /// to another.
     pub(crate) fn centers(&self) -> Vec<Option<Vector<f64>>> {
-        let mut parts: Vec<Vec<LinkInertia>> = vec![Vec::new(); self.bodies.len()];
+        let mut parts = Vec::with_capacity(self.bodies.len());
         // The body that each is rigid on in the end, and its own origin there.
         let mut grounds: Vec<(usize, Vector<f64>)> = Vec::with_capacity(self.bodies.len());
         for (index, body) in self.bodies.iter().enumerate() {
@@ -305,11 +305,10 @@ impl Robot {
                 _ => (index, Vector::zero()),
             };
             grounds.push((ground, place));
-            parts[ground].push(LinkInertia::point(body.mass, place + body.com));
+            parts.push((ground, LinkInertia::point(body.mass, place + body.com)));
         }
-        let center =
-            |(index, parts): (usize, &Vec<LinkInertia>)| (grounds[index].0 == index).then(|| composite(parts).1);
-        parts.iter().enumerate().map(center).collect()
+        let wholes = composites(self.bodies.len(), parts).into_iter().enumerate();
+        wholes.map(|(index, (_, center, _))| (grounds[index].0 == index).then_some(center)).collect()
     }
 
     /// The greatest distance from the root's origin to a CoG or to one of these shapes of bodies, with all joints at

@@ -1,7 +1,7 @@
 //! Description -> robot: the tree placed at zero coordinates, projected into its plane, and welded at joints that leave
 //! it.
 
-use super::composite::{LinkInertia, composite};
+use super::composite::{LinkInertia, composites};
 use super::legs::{OBLIQUE, legs};
 use super::outline::outline;
 use super::plane::{PARALLEL, Plane};
@@ -97,7 +97,8 @@ impl Robot {
         let reading = Reading {
             plane,
             plane_because,
-            better_plane: better_plane(description, &pose, plane).filter(|_| plane_because != PlaneReason::Legs),
+            better_plane: better_plane(description, &pose, (plane, &roles))
+                .filter(|_| plane_because != PlaneReason::Legs),
             base_because: found.because,
             frozen: frozen.into_iter().map(|(_, joint)| joint).collect(),
             outside: outside.into_iter().map(|link| link.name.clone()).collect(),
@@ -114,7 +115,7 @@ impl Robot {
             links: Vec::new(),
         };
 
-        let mut parts = vec![Vec::new(); robot.bodies.len()];
+        let mut parts = Vec::with_capacity(description.links.len());
         let mut moments = vec![0.0; description.links.len()];
         for ((link, place), moment) in description.links.iter().zip(&tree.places).zip(&mut moments) {
             let Some(place) = place else { continue };
@@ -125,7 +126,7 @@ impl Robot {
                 let mut part = part.map_err(|reason| link.refuse(reason))?;
                 robot.left_out.extend(part.without_negative_moment().map(|moment| left_out::rounded(link, moment)));
                 *moment = part.moment;
-                parts[place.body].push(part);
+                parts.push((place.body, part));
             }
             robot.left_out.extend(left_out::doubtful_inertia(link));
             let mut reduced = reduce_link(link, place, &mut robot.left_out);
@@ -135,8 +136,9 @@ impl Robot {
             }
             robot.links.push(reduced);
         }
-        for (body, parts) in robot.bodies.iter_mut().zip(&parts) {
-            (body.mass, body.com, body.moment) = composite(parts);
+        let wholes = composites(robot.bodies.len(), parts);
+        for (body, whole) in robot.bodies.iter_mut().zip(wholes) {
+            (body.mass, body.com, body.moment) = whole;
         }
         robot.left_out.extend(left_out::passed_over(description));
         let mut shapes =
@@ -192,18 +194,16 @@ fn find_plane(
     }
 }
 
-/// The plane in which most joints move, if that is more than in `plane`.
-fn better_plane(description: &Description, pose: &ReferencePose, plane: Plane) -> Option<(Plane, usize)> {
-    let moving = |plane| {
-        let roles = roles(description, pose, plane);
-        roles.iter().filter(|role| matches!(role, Role::Moves { .. })).count()
-    };
-    let here = moving(plane);
+/// The plane in which most joints move, if that is more than in this one, where they have the roles `here`.
+fn better_plane(description: &Description, pose: &ReferencePose, here: (Plane, &[Role])) -> Option<(Plane, usize)> {
+    let moving = |roles: &[Role]| roles.iter().filter(|role| matches!(role, Role::Moves { .. })).count();
+    let (plane, here) = (here.0, moving(here.1));
     let can_move = |kind| matches!(kind, JointKind::Revolute | JointKind::Continuous | JointKind::Prismatic);
     if here == description.joints.iter().filter(|joint| can_move(joint.kind)).count() {
         return None;
     }
-    let others = Plane::ALL.into_iter().filter(|&other| other != plane).map(|other| (other, moving(other)));
+    let others = Plane::ALL.into_iter().filter(|&other| other != plane);
+    let others = others.map(|other| (other, moving(&roles(description, pose, other))));
     // Of equally good ones the first.
     others.rev().max_by_key(|&(_, moving)| moving).filter(|&(_, most)| most > here)
 }

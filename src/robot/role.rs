@@ -33,17 +33,18 @@ pub(super) enum Role {
 /// The role of every joint.
 pub(super) fn roles(description: &Description, pose: &ReferencePose, plane: Plane) -> Vec<Role> {
     let joints = &description.joints;
-    let alone: Vec<Role> = (0..joints.len()).map(|index| role(joints[index].kind, index, pose, plane)).collect();
-    let mut roles = alone.clone();
+    let mut roles: Vec<Role> = (0..joints.len()).map(|index| role(joints[index].kind, index, pose, plane)).collect();
     for (index, mimicked) in pose.mimicked.iter().enumerate() {
         let Some(mimicked) = mimicked else { continue };
         let value = pose.frozen[index].unwrap_or(0.0);
         let follows = || Role::Frozen(FreezeReason::Follows { mimicked: joints[mimicked.joint].name.clone(), value });
-        match (&mut roles[index], &alone[mimicked.joint]) {
-            (Role::Moves { mimicked: followed, .. }, Role::Moves { .. }) => *followed = Some(mimicked.clone()),
-            (role @ Role::Moves { .. }, _) => *role = follows(),
+        // The mimicked joint mimics none, so that its own role stays.
+        let is_followed = matches!(roles[mimicked.joint], Role::Moves { .. });
+        match &mut roles[index] {
+            Role::Moves { mimicked: followed, .. } if is_followed => *followed = Some(mimicked.clone()),
+            role @ Role::Moves { .. } => *role = follows(),
             // Reported as what it is: frozen at zero whatever the mimicked joint does.
-            (Role::Free | Role::Frozen(_), _) => {}
+            Role::Free | Role::Frozen(_) => {}
         }
         if pose.frozen[index].is_some() && joints[index].kind != JointKind::Fixed {
             roles[index] = follows();

@@ -160,6 +160,7 @@ fn robots_are_refused_word_for_word() {
             robot(&many(200_000, |k| format!("<a{k}/>\n"))),
             robot(&format!("<a {}/>\n", many(100, |k| format!("a{k}='' "))).repeat(100_000)),
             robot(&"<a/>".repeat(2_000_000)),
+            robot(&format!("<link name=\"a\">{}</link>", "<collison/>".repeat(200_000))),
         ]);
     assert_refused("robots", cases, &["inspect", "-"], |text| Robot::from_urdf(text).map(drop));
 }
