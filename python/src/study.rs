@@ -158,7 +158,7 @@ fn found(
     let of_table = notes::missing(&header).into_iter().chain(notes::left_out(&header, &dropped));
     let nothing = (summary.states == 0).then(|| recording.nothing_found(thresholds, &seen));
     let of_states = notes::own_friction(summary.own_friction, "state").into_iter().chain(summary.of_touchdowns());
-    let of_motion = seen.disorder().into_iter().chain(seen.misfit(robot));
+    let of_motion = seen.notes(robot, thresholds);
     let notes = of_table.chain(of_states).chain(of_motion).chain(nothing).collect();
     let lines: Vec<&[u8]> = lines.trim_ascii_end().split(|&byte| byte == b'\n').collect();
     Ok(([b"[", &*lines.join(&b','), b"]"].concat(), notes))

@@ -175,8 +175,7 @@ pub(super) fn run(args: &Args) -> Completion {
         note_all(notes::left_out(header, &dropped));
     }
     let seen = seen.into_inner().unwrap_or_default();
-    note_all(seen.disorder());
-    note_all(seen.misfit(&robot));
+    note_all(seen.notes(&robot, thresholds));
     args.report(&question, &counts, answered, (thresholds, &seen))?;
     if args.plot.path().is_some() {
         let page = |rendered| Ok(gait.page(&robot.name, rendered));
@@ -396,7 +395,9 @@ impl Args {
         if header.is_none() && format == RecordFormat::Ndjson && (in_order || !self.foreign.is_empty()) {
             let what = if in_order { "touchdowns and velocities over time need" } else { "--foreign needs" };
             let error = Error::new(Reason::Inconsistent(format!("{what} a table")));
-            return Err(Failure::Usage(error.hint("give CSV with a header, or say --input-format csv")));
+            let hint = "give CSV with a header (--input-format csv), or a flat object on each line: `jq -c '.[]'` takes a \
+                        list apart";
+            return Err(Failure::Usage(error.hint(hint)));
         }
         let header = match (header, self.recording.touchdowns) {
             (Some(header), true) => header.with_base().map(Some),

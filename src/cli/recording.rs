@@ -2,6 +2,7 @@
 
 use super::options::{Choices, choice, from_zero};
 use crate::batch::RowOrigin;
+use crate::error::rounded;
 use crate::gait::{self, At, Difference, Dropped, Heights, Sampled, Seen, Thresholds, Touching};
 use crate::read::table::{Header, Rates};
 use crate::state::NamedContact;
@@ -129,7 +130,10 @@ impl RecordingOptions {
         }
         let settings = if self.simulated { "`drop`" } else { "`drop`, `ground_height`" };
         let odd = odd_joint.as_ref().map_or(String::new(), |odd| format!("; {odd}"));
-        format!("{} (see {settings}){odd}", thresholds.nothing_found(self.heights(), *lowest))
+        let long =
+            seen.long_step().map(|step| format!("; rows are {} s apart: is the time in seconds?", rounded(step)));
+        let found = thresholds.nothing_found(self.heights(), *lowest);
+        format!("{found} (see {settings}){odd}{}", long.unwrap_or_default())
     }
 
     fn heights(&self) -> Heights {

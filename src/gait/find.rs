@@ -289,6 +289,11 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
             let is_early = heights == Heights::Recorded && first.is_soft() && is_clean;
             let row = self.window.frames[first.row].row;
             let is_deep = shift_z > self.deep;
+            // Another row's heights are not those of the ground, and what is deep is noted by itself.
+            let is_level = heights == Heights::Recorded && at == At::Crossing && !is_deep;
+            if let Some(Ok(mut seen)) = self.seen.filter(|_| is_level).map(Mutex::lock) {
+                seen.add_depth(shift_z);
+            }
             sample.landing = Some(Landing { row, striking, shift_z, at, touching, is_early, is_deep });
             let finite = sample.state.position.iter().chain(&sample.state.velocity).all(|entry| entry.is_finite());
             self.ready.push_back(if finite {

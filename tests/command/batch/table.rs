@@ -129,15 +129,18 @@ fn velocities_are_the_same_for_any_threads() {
 fn the_note_of_no_touchdown_says_what_would_count() {
     let still =
         "time,q_base_x,q_base_z,q_base_pitch,v_base_x,v_base_z,v_base_pitch\n0,0,0.57,0,0,0,0\n0.1,0,0.6,0,0,0,0\n";
-    let note = |options: &[&str]| {
+    let note_of = |table: &str, options: &[&str]| {
         let always = ["-", "--input-format", "csv", "--friction", "1", "--touchdowns"];
-        batch(&[&always, options].concat(), still).refusal(0)
+        batch(&[&always, options].concat(), table).refusal(0)
     };
+    let note = |options: &[&str]| note_of(still, options);
     let expected = "no touchdown found: the lowest foot comes to z = 0.07 m; a foot must descend 0.0120 m or more, \
                     faster than 0.0500 m/s, to at most 0.0200 m above the ground (see --drop, --ground-height)\n";
     assert_eq!(note(&[]), expected);
     let expected = expected.replace("0.0200", "0.0300").replace("0.0120", "0.0250");
     assert_eq!(note(&["--drop", "0.025", "--ground-height", "0.03"]), expected);
+    let milliseconds = note_of(&still.replace("\n0.1,", "\n100,"), &[]);
+    assert!(milliseconds.ends_with("; rows are 100 s apart: is the time in seconds?\n"), "{milliseconds}");
 }
 
 /// A walk with the columns of a header that begin so multiplied by a factor, and others moved.
@@ -191,6 +194,9 @@ fn rows_that_are_missing_or_out_of_order_are_noted() {
     let without = |left_out: std::ops::Range<usize>| [&rows[..left_out.start], &rows[left_out.end..]].concat();
     let after = stderr(&without(51..52));
     assert!(after.contains("touchdowns without an impact, as their foot does not come down: 1; "), "{after}");
+    assert!(!whole.contains("rows seem to be missing"), "{whole}");
+    let gap = stderr(&without(30..31));
+    assert!(gap.contains("note: rows seem to be missing once, first from "), "{gap}");
     let mut exchanged = rows.clone();
     exchanged.swap(49, 50);
     let exchanged = stderr(&exchanged);
@@ -205,6 +211,62 @@ fn rows_that_are_missing_or_out_of_order_are_noted() {
         .collect();
     let still = stderr(&still.iter().map(String::as_str).collect::<Vec<_>>());
     assert!(still.contains("no touchdown found: the time never rises"), "{still}");
+}
+
+/// Recorders repeat frames and lose track of markers; trials are joined, and rounded; the ground is where it is.
+#[test]
+fn rows_that_no_robot_moves_through_are_noted() {
+    /// What is done to the rows of a table.
+    type Change<'c> = &'c dyn Fn(&mut Vec<Vec<String>>);
+    let walk = read("examples/gait/ramone_walk.csv");
+    let names: Vec<&str> = walk.lines().next().expect("a header").split(',').collect();
+    let rows: Vec<Vec<String>> = walk.lines().skip(1).map(|row| row.split(',').map(str::to_owned).collect()).collect();
+    let place = |name: &str| names.iter().position(|known| *known == name).unwrap_or_else(|| panic!("{name}"));
+    let (time, x, z, pitch) = (place("time"), place("q_base_x"), place("q_base_z"), place("q_base_pitch"));
+    let number = |cell: &String| cell.parse::<f64>().expect("a number");
+    let notes = |change: Change| {
+        let mut rows = rows.clone();
+        change(&mut rows);
+        let table: Vec<String> = rows.iter().map(|row| row.join(",")).collect();
+        let options = ["batch", RAMONE, "-", "--input-format", "csv", "--touchdowns", "--friction", "0.6", "--brief"];
+        heelstrike_reads(&options, format!("{}\n{}", names.join(","), table.join("\n"))).well().stderr
+    };
+    let turn = |rows: &mut Vec<Vec<String>>| {
+        let (v_x, v_z) = (place("v_base_x"), place("v_base_z"));
+        for row in rows {
+            // As if the robot leaned by half a radian, which changes no velocity in the world.
+            let lean = 0.5 + number(&row[pitch]);
+            let [along, up] = [v_x, v_z].map(|at| number(&row[at]));
+            row[pitch] = lean.to_string();
+            row[v_x] = (lean.cos() * along - lean.sin() * up).to_string();
+            row[v_z] = (lean.sin() * along + lean.cos() * up).to_string();
+        }
+    };
+    let shift = |rows: &mut Vec<Vec<String>>| {
+        let again = rows.clone();
+        rows.extend(again);
+        rows.iter_mut().for_each(|row| row[z] = (number(&row[z]) - 0.03).to_string());
+    };
+    let cases: [(&str, Change); 6] = [
+        ("rows repeat the positions of the row before, although the robot moves, once, first at ", &|rows| {
+            rows[31] = [&rows[31][..=time], &rows[30][time + 1..]].concat();
+        }),
+        ("positions jump 2 times, first from 0.", &|rows| rows[30][z] = (number(&rows[30][z]) + 0.1).to_string()),
+        ("positions jump once, first from 0.", &|rows| {
+            rows[30..].iter_mut().for_each(|row| row[x] = (number(&row[x]) + 3.0).to_string());
+        }),
+        ("more than two rows have the same time once, first at 0.", &|rows| {
+            (29..31).for_each(|at| rows[at][time] = rows[28][time].clone());
+        }),
+        ("the base's velocity fits its positions over time if it is turned by the pitch: ", &turn),
+        ("feet reach the ground at z = -0.03 m, in the middle of all touchdowns: ", &shift),
+    ];
+    let plain = notes(&|_| {});
+    for (note, change) in cases {
+        assert!(!plain.contains(note), "{plain}");
+        let found = notes(change);
+        assert!(found.contains(note), "{note}: {found}");
+    }
 }
 
 #[test]

@@ -1,0 +1,157 @@
+//! Whether the positions and velocities of a recording fit each other.
+
+use super::order::Found;
+use crate::Robot;
+use crate::error::rounded;
+use crate::gait::clip::ClockStep;
+use crate::robot::Base;
+use crate::state::State;
+
+/// Velocities fit positions if they are between this part and this many times dq/dt: recordings are noisy.
+const FIT: [f64; 2] = [0.55, 1.8];
+/// They are proportional to dq/dt from this correlation on; of noise it is up to 0.5.
+const CORRELATED: f64 = 0.8;
+/// A coordinate that moves at less on average may be noise about one that stands \[m/s, rad/s\].
+const MOVING: f64 = 0.1;
+/// So many rows are compared at least.
+const ENOUGH: usize = 30;
+/// No coordinate moves so much faster than its velocity says \[m/s\] \[rad/s\].
+const FASTEST: [f64; 2] = [8.0, 100.0];
+/// What moves no farther in a step does not jump \[m\] \[rad\].
+const NEAR: f64 = 1e-3;
+/// Turned by the pitch, the base's velocity fits better if the squares of its errors are this part.
+const BETTER: f64 = 0.5;
+/// So much the base's velocity is in error where it is said to be in its own frame \[m/s\].
+const APART: f64 = 0.01;
+
+/// What has been seen of the motion.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Motion {
+    /// Of each coordinate the sums of v^2, of (dq/dt)^2 and of their product over steps from row to row.
+    sums: Vec<[f64; 3]>,
+    /// Of the base's velocity, as it is and turned by the pitch, the sums of squared differences from dq/dt.
+    errors: [f64; 2],
+    steps: usize,
+    /// Where positions stand still for a row while the robot moves, and where they jump.
+    repeats: Found,
+    jumps: Found,
+    /// The first coordinate that jumps, and how fast.
+    jumped: Option<String>,
+    /// Whether it moved to the row before, and since when it has stood still after that \[s\].
+    moved: bool,
+    stands_since: Option<f64>,
+    /// Positions and velocities of the row before.
+    last: [Vec<f64>; 2],
+}
+
+impl Motion {
+    /// Adds the next row at `time` \[s\]; whether its velocity `is_recorded`, and not taken from positions.
+    pub fn add(&mut self, state: &State, time: f64, step: ClockStep, is_recorded: bool, robot: &Robot) {
+        if let ClockStep::Later(passed) = step {
+            let rates: Vec<f64> =
+                self.last[0].iter().zip(&state.position).map(|(from, to)| (to - from) / passed).collect();
+            let velocities: Vec<f64> = match is_recorded {
+                true => self.last[1].iter().zip(&state.velocity).map(|(from, to)| 0.5 * (from + to)).collect(),
+                false => vec![0.0; rates.len()],
+            };
+            self.follow(&rates, &velocities, (time, passed), robot);
+            if is_recorded {
+                self.compare(&rates, &velocities, 0.5 * passed, state, robot);
+            }
+        }
+        if step == ClockStep::NewClip {
+            (self.moved, self.stands_since) = (false, None);
+        }
+        for (last, own) in self.last.iter_mut().zip([&state.position, &state.velocity]) {
+            own.clone_into(last);
+        }
+    }
+
+    /// Looks for rows that repeat the one before, and for jumps, in a step to this time, which `passed` \[s\].
+    fn follow(&mut self, rates: &[f64], velocities: &[f64], (time, passed): (f64, f64), robot: &Robot) {
+        let moves = rates.iter().any(|rate| rate.abs() > MOVING);
+        let stands = rates.iter().all(|rate| *rate == 0.0);
+        // What comes to rest repeats its position, too, and does not move on.
+        match self.stands_since.take() {
+            Some(since) if moves => self.repeats.add([since; 2]),
+            since if stands => self.stands_since = since.or(self.moved.then_some(time)),
+            _ => {}
+        }
+        self.moved = moves;
+        let jumps = |((&rate, velocity), (unit, _)): ((&f64, &f64), (&str, &str))| {
+            let limit = FASTEST[usize::from(unit == "rad")];
+            rate.abs().min((rate - velocity).abs()) > limit && rate.abs() * passed > NEAR
+        };
+        let Some(jumped) = rates.iter().zip(velocities).zip(robot.units()).position(jumps) else { return };
+        self.jumps.add([time - passed, time]);
+        let name = || robot.coordinates().zip(robot.units()).nth(jumped);
+        if let (None, Some((name, (_, unit)))) = (&self.jumped, name()) {
+            self.jumped = Some(format!("{name} at {} {unit}", rounded(rates[jumped])));
+        }
+    }
+
+    /// Compares recorded velocities with positions, `half` a step \[s\] after the middle.
+    fn compare(&mut self, rates: &[f64], velocities: &[f64], half: f64, state: &State, robot: &Robot) {
+        self.sums.resize(rates.len(), [0.0; 3]);
+        self.steps += 1;
+        for (sums, (&rate, &velocity)) in self.sums.iter_mut().zip(rates.iter().zip(velocities)) {
+            let own = [velocity * velocity, rate * rate, velocity * rate];
+            sums.iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
+        }
+        if let (Base::Floating, &[x, z, turning, ..]) = (robot.base, rates) {
+            let (sin, cos) = libm::sincos(state.position[2] - half * turning);
+            let turned = [cos * velocities[0] + sin * velocities[1], cos * velocities[1] - sin * velocities[0]];
+            for (error, [own_x, own_z]) in self.errors.iter_mut().zip([[velocities[0], velocities[1]], turned]) {
+                *error += (own_x - x) * (own_x - x) + (own_z - z) * (own_z - z);
+            }
+        }
+    }
+
+    /// What is odd about it.
+    pub fn notes(&self, robot: &Robot) -> impl Iterator<Item = String> {
+        let misfit = self.misfit(robot);
+        let repeats = self.repeats.text().map(|when| {
+            format!(
+                "rows repeat the positions of the row before, although the robot moves, {when}: touchdowns next to them \
+                 may be missed or false; leave such rows out"
+            )
+        });
+        // In other units velocities say nothing about jumps.
+        let jumps = self.jumps.text().zip(self.jumped.as_ref()).filter(|_| misfit.is_none()).map(|(when, jumped)| {
+            format!(
+                "positions jump {when} ({jumped}): touchdowns there may be false; leave outliers out, and let time \
+                 go back where another trial begins"
+            )
+        });
+        let [own, turned] = self.errors;
+        let is_turned = self.steps >= ENOUGH && own > APART * APART * self.steps as f64 && turned < BETTER * own;
+        let turned = is_turned.then(|| {
+            "the base's velocity fits its positions over time if it is turned by the pitch: give it in the world's axes, \
+             not the body's"
+                .to_owned()
+        });
+        [repeats, jumps, turned, misfit].into_iter().flatten()
+    }
+
+    /// That velocities of the recording are not the rates of its positions, as in other units or of other sign.
+    fn misfit(&self, robot: &Robot) -> Option<String> {
+        let misfit = |(name, &[squared, rates, product]): (&str, &[f64; 3])| {
+            let (correlation, factor) = (product / (squared * rates).sqrt(), product / rates);
+            if squared == 0.0 && rates > MOVING * MOVING * self.steps as f64 {
+                Some(format!("{name} is 0 although it moves"))
+            } else if correlation < -CORRELATED {
+                Some(format!("{name} has the opposite sign of dq/dt"))
+            } else if correlation > CORRELATED && !(FIT[0]..=FIT[1]).contains(&factor) {
+                Some(format!("{name} is {factor:.3} times dq/dt"))
+            } else {
+                None
+            }
+        };
+        let found: Vec<String> = robot.coordinates().zip(&self.sums).filter_map(misfit).collect();
+        let first = found.first().filter(|_| self.steps >= ENOUGH)?;
+        let also = if found.len() > 1 { format!(", and {} more", found.len() - 1) } else { String::new() };
+        Some(format!(
+            "velocities do not fit positions over time: v of {first}{also}; are they of these coordinates, in m, rad and s?"
+        ))
+    }
+}

@@ -1,0 +1,124 @@
+//! Whether the rows of a recording follow each other in time.
+
+use crate::error::shortest_within;
+use crate::gait::clip::ClockStep;
+
+/// Time that goes back by no more steps is that of rows out of order.
+const FEW_STEPS: f64 = 10.0;
+/// A step of time lacks rows if it is so many times the next one and the longest of those before that do not.
+const GAP: f64 = 1.8;
+/// A recording of a gait has several rows in this time \[s\].
+const LONG: f64 = 0.5;
+/// A time is shown to this \[s\].
+const ACCURATE: f64 = 1e-6;
+/// More gaps, as a part of all rows, are those of uneven steps.
+const FEW_GAPS: f64 = 0.05;
+
+/// What has been seen of the times.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Order {
+    rows: usize,
+    /// Where it goes back by a few steps, within the clip.
+    returns: Found,
+    gaps: Found,
+    /// Where three rows have the same time.
+    halts: Found,
+    /// The times of the clip's first row and of the row before \[s\].
+    clip: [f64; 2],
+    /// The first step forward of all, and the last one of the clip \[s\].
+    first_step: Option<f64>,
+    last_step: Option<f64>,
+    /// The longest step of the clip before the last one, apart from gaps \[s\].
+    longest: Option<f64>,
+    /// How many rows have this time.
+    together: usize,
+}
+
+/// How often something was found, and from when to when the first time \[s\].
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Found {
+    count: usize,
+    first: Option<[f64; 2]>,
+}
+
+impl Found {
+    pub fn add(&mut self, first: [f64; 2]) {
+        self.count += 1;
+        self.first.get_or_insert(first);
+    }
+
+    /// How often and when.
+    pub fn text(&self) -> Option<String> {
+        let [from, to] = self.first?;
+        let times = if self.count == 1 { "once".to_owned() } else { format!("{} times", self.count) };
+        let digits = |tolerance| [from, to].map(|time| shortest_within(time, tolerance));
+        Some(match from == to {
+            true => format!("{times}, first at {} s", digits(ACCURATE)[0]),
+            false => {
+                let [from, to] = digits(0.01 * (to - from).abs());
+                format!("{times}, first from {from} s to {to} s")
+            }
+        })
+    }
+}
+
+impl Order {
+    /// Adds the time of the next row \[s\].
+    pub fn add(&mut self, time: f64, step: ClockStep) {
+        self.rows += 1;
+        let [first, before] = self.clip;
+        match step {
+            ClockStep::Later(passed) => {
+                self.first_step.get_or_insert(passed);
+                match (self.last_step, self.longest) {
+                    (Some(last), Some(longest)) if last > GAP * passed.max(longest) => {
+                        self.gaps.add([before - last, before]);
+                    }
+                    (Some(last), longest) => self.longest = Some(longest.unwrap_or(last).max(last)),
+                    (None, _) => {}
+                }
+                self.last_step = Some(passed);
+            }
+            ClockStep::Impact if self.together == 2 => self.halts.add([time; 2]),
+            ClockStep::Impact => {}
+            ClockStep::NewClip => {
+                // A clip of its own begins anywhere.
+                let few = self.last_step.map_or(0.0, |step| FEW_STEPS * step);
+                if first < time && time < before && before - time <= few {
+                    self.returns.add([before, time]);
+                }
+                (self.last_step, self.longest) = (None, None);
+            }
+        }
+        self.together = if step == ClockStep::Impact { self.together + 1 } else { 1 };
+        self.clip = [if step == ClockStep::NewClip { time } else { first }, time];
+    }
+
+    /// Whether time rises from no row to the next.
+    pub fn stands_still(&self) -> bool {
+        self.rows > 1 && self.first_step.is_none()
+    }
+
+    /// The first step of time \[s\], if no row of a gait lasts so long.
+    pub fn long_step(&self) -> Option<f64> {
+        self.first_step.filter(|step| *step > LONG)
+    }
+
+    /// What is odd about them.
+    pub fn notes(&self) -> impl Iterator<Item = String> {
+        let few_gaps = self.gaps.count as f64 <= FEW_GAPS * self.rows as f64;
+        let returns = self
+            .returns
+            .text()
+            .map(|when| format!("rows are not in the order of time, which goes back {when}: a new clip begins there"));
+        let gaps =
+            self.gaps.text().filter(|_| few_gaps).map(|when| {
+                format!("rows seem to be missing {when}: a touchdown there may be missed or less accurate")
+            });
+        let halts =
+            self.halts.text().filter(|_| !self.stands_still()).map(|when| {
+                format!("more than two rows have the same time {when}: is it rounded? each row needs its own")
+            });
+        [returns, gaps, halts].into_iter().flatten()
+    }
+}
