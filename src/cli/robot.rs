@@ -166,6 +166,11 @@ impl RobotOptions {
             note_all(foot.out_of_scale(robot));
             Ok(foot)
         };
+        if let Some((_, twice)) = self.contact.iter().enumerate().find(|(at, foot)| self.contact[..*at].contains(foot))
+        {
+            let name = twice.link.clone();
+            return Err(Failure::Usage(Error::new(Reason::Duplicate { what: "foot on link", name }).at("--contact")));
+        }
         self.contact.iter().map(foot).collect()
     }
 }

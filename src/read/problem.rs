@@ -24,9 +24,11 @@ const LONG: [&str; 7] =
     ["friction", "restitution", "delassus", "velocity_before", "mass_matrix", "contact_jacobian", "velocity"];
 
 /// What other programs and the formulas call some of them.
-const SYNONYMS: [(&str, &str); 4] = [
+const SYNONYMS: [(&str, &str); 6] = [
     ("mu", "friction"),
     ("friction_coefficient", "friction"),
+    ("e", "restitution"),
+    ("cor", "restitution"),
     ("coefficient_of_restitution", "restitution"),
     ("restitution_coefficient", "restitution"),
 ];
@@ -192,7 +194,9 @@ mod tests {
             Problem::from_json(&text, &defaults).err().and_then(|error| error.remedy().map(str::to_owned))
         };
         assert_eq!(hint("\"mu\": 0.1").as_deref(), Some("did you mean friction?"));
-        assert_eq!(hint("\"restitution_coefficient\": 0.5").as_deref(), Some("did you mean restitution?"));
+        for meant in ["\"restitution_coefficient\": 0.5", "\"friction\": 1, \"e\": 0.5"] {
+            assert_eq!(hint(meant).as_deref(), Some("did you mean restitution?"));
+        }
         assert_eq!(hint("\"friction\": 0.1, \"mu\": 0.1, \"note\": 1"), None);
     }
 }

@@ -6,7 +6,9 @@ use super::plane::Plane;
 use super::reading::{FreezeReason, FrozenJoint};
 use super::reference_pose::ReferencePose;
 use super::{Body, ParentJoint, Robot};
-use crate::description::{Description, Geometry, Inertial, JointKind, Matrix, Mesh, UrdfJoint, UrdfLink, apply, turn};
+use crate::description::{
+    Collision, Description, Geometry, Inertial, JointKind, Matrix, Mesh, Pose, UrdfJoint, UrdfLink, apply, turn,
+};
 use crate::error::rounded;
 use std::f64::consts::TAU;
 
@@ -104,6 +106,7 @@ pub(super) fn about_axes(description: &Description) -> Option<String> {
 
 /// The caution about lengths that no legged robot has, as millimeters taken for meters.
 pub(super) fn about_lengths(description: &Description) -> Option<String> {
+    const SHAPE: &str = "a shape of";
     let span = |points: &[[f64; 3]], at: usize| {
         let along = points.iter().map(|point| point[at]);
         along.clone().fold(f64::NEG_INFINITY, f64::max) - along.fold(f64::INFINITY, f64::min)
@@ -117,18 +120,21 @@ pub(super) fn about_lengths(description: &Description) -> Option<String> {
         }
         Geometry::Mesh { .. } | Geometry::Unknown { .. } => 0.0,
     };
-    let shapes = description
-        .links
-        .iter()
-        .flat_map(|link| link.collisions.iter().map(|collision| ("a shape", &link.name, extent(&collision.geometry))));
-    let joints = description
-        .joints
-        .iter()
-        .map(|joint| ("the origin", &joint.name, joint.origin.xyz.iter().fold(0.0_f64, |most, x| most.max(x.abs()))));
-    let (what, name, length) = joints.chain(shapes).max_by(|a, b| a.2.total_cmp(&b.2))?;
+    let reach = |origin: &Pose| origin.xyz.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let of_links = description.links.iter().flat_map(|link| {
+        let inertial =
+            link.inertial.iter().map(|inertial| ("the origin of the inertial of", &link.name, reach(&inertial.origin)));
+        let shapes = link.collisions.iter().flat_map(|Collision { origin, geometry }| {
+            [("the origin of a shape of", &link.name, reach(origin)), (SHAPE, &link.name, extent(geometry))]
+        });
+        inertial.chain(shapes)
+    });
+    let joints = description.joints.iter().map(|joint| ("the origin of", &joint.name, reach(&joint.origin)));
+    let (what, name, length) = joints.chain(of_links).max_by(|a, b| a.2.total_cmp(&b.2))?;
     (length > LONGEST).then(|| {
+        let length = if what == SHAPE { format!("spans {length} m") } else { format!("is {length} m away") };
         format!(
-            "{what} of {name} spans {length} m: lengths are in meters; scale=\"0.001 0.001 0.001\" is for meshes in \
+            "{what} {name} {length}: lengths are in meters; scale=\"0.001 0.001 0.001\" is for meshes in \
              millimeters"
         )
     })

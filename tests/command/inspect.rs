@@ -66,6 +66,9 @@ fn plane_hold_and_base_shape_the_robot() {
 
     let twice = heelstrike(&["inspect", A1, "--hold", "FR_calf_joint=0", "--hold", "FR_calf_joint=1"]).refusal(2);
     assert_eq!(twice, "error: --hold: joint \"FR_calf_joint\" is given twice\n");
+    let foot = ["--contact", "FR_calf:0,0,-0.2"];
+    let twice = heelstrike(&[&["inspect", A1], &foot[..], &foot].concat()).refusal(2);
+    assert_eq!(twice, "error: --contact: foot on link \"FR_calf\" is given twice\n");
     let unknown = heelstrike(&["inspect", A1, "--hold", "FR_calf=0"]).refusal(2);
     let expected = "error: --hold: the robot has no joint named \"FR_calf\"\nhint: did you mean FR_calf_joint?\n";
     assert_eq!(unknown, expected);

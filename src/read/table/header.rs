@@ -243,8 +243,16 @@ impl Header {
 
     /// The same, refused if there is no column `time`; without a line.
     pub fn with_time(self) -> Result<Self> {
-        let missing = || Error::new(Reason::Missing("a column \"time\"".into()));
-        if self.time.is_some() { Ok(self) } else { Err(missing().hint("touchdowns need the time of each row")) }
+        let hint = "touchdowns and velocities over time need that of each row: name its column time, in seconds";
+        let missing = || Error::new(Reason::Missing("a column \"time\"".into())).hint(hint);
+        self.time.ok_or_else(missing)?;
+        #[cfg(feature = "columnar")]
+        if let Some((types, _)) = &self.types
+            && types.fields().iter().any(|field| field.name().trim() == "time" && field.data_type().is_temporal())
+        {
+            return Err(Error::new(Reason::WrongKind { expected: "seconds", found: "dates" }).at("time"));
+        }
+        Ok(self)
     }
 
     /// The same, refused if the base floats and no column says how high it is, as touchdowns need; without a line.

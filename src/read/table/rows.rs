@@ -436,7 +436,9 @@ impl Row<'_> {
         let value: f64 = match self.cell(at)? {
             Cell::Empty => {
                 let reason = Reason::WrongKind { expected: "a number", found: "an empty cell" };
-                return Err(self.refuse(at, reason).hint("write 0 where it is 0, or leave the column out"));
+                return Err(self
+                    .refuse(at, reason)
+                    .hint("write 0 where it is 0, or leave out the column, or a row that was not recorded"));
             }
             Cell::Number(value) => value,
             Cell::Text(text) if self.header.form == Form::Ndjson => {

@@ -186,6 +186,15 @@ fn strikes() -> Vec<(&'static str, ArrayRef)> {
 }
 
 #[test]
+fn time_as_a_date_is_refused_where_it_is_needed() {
+    let times: ArrayRef = Arc::new(TimestampSecondArray::from(vec![0, 1]));
+    let heights: ArrayRef = Arc::new(Float64Array::from(vec![0.7, 0.6]));
+    let dated = written("dated.parquet", &[("time", times), ("q_base_z", Arc::clone(&heights)), ("v_base_z", heights)]);
+    let refused = batch(&[&dated, "--touchdowns"], "").refusal(1);
+    assert!(refused.ends_with(": time: expected seconds, found dates\n"), "{refused}");
+}
+
+#[test]
 fn columns_of_any_type_are_carried_and_cells_refused() {
     for ending in ENDINGS {
         let input = written(&format!("strikes.{ending}"), &strikes());

@@ -152,7 +152,10 @@ fn lengths_that_look_like_millimeters_are_noted() {
     assert!(caution.starts_with("a shape of a spans 400 m: lengths are in meters"), "{caution}");
     assert!(box_of("4").reading.cautions.is_empty());
     let far = load(&massive(&[PITCH]).replace("0 0 -1", "0 0 -350"));
-    assert!(only_caution(&far).starts_with("the origin of j spans 350 m"), "{}", only_caution(&far));
+    assert!(only_caution(&far).starts_with("the origin of j is 350 m away"), "{}", only_caution(&far));
+    let sole = urdf::collision([0.0, -500.0], "sphere radius=\"0.02\"");
+    let far = load(&urdf::robot(&[link("a", 1.0, [0.0; 2], 1.0, &sole)]));
+    assert!(only_caution(&far).starts_with("the origin of a shape of a is 500 m away"), "{}", only_caution(&far));
 }
 
 #[test]
