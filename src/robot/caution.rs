@@ -26,6 +26,8 @@ const WIDEST: f64 = 2.0;
 const SLIGHT: f64 = 1e-3;
 /// A moment of less than this part of the link's largest is what rotations rounded off.
 const ROUNDED: f64 = 1e-9;
+/// A link with a smaller radius of gyration \[m\] is a point.
+const POINT: f64 = 1e-4;
 /// The most joints or links that are named.
 const NAMED: usize = 3;
 
@@ -208,6 +210,7 @@ pub(super) fn about_inertias<'l>(
         ("with an inertia that needs a part far beyond the robot's size", "inertia is in kg m^2, mass in kg"),
         ("with an inertia that no body has, one moment being more than the other two together", "correct it"),
         ("with a single moment of inertia, which is not about the plane's normal", "only that about the normal counts"),
+        ("with an inertia of less than 0.1 mm around, and so a point mass", "inertia is in kg m^2, mass in kg"),
     ];
     let mut found = kinds.map(|_| Vec::new());
     for (link, moment) in links {
@@ -222,6 +225,7 @@ pub(super) fn about_inertias<'l>(
             Some(_) if largest > size * size * (WIDEST * WIDEST * mass).max(SLIGHT * whole) => 2,
             Some(inertia) if !is_planar && !is_physical(inertia) => 3,
             Some(_) if is_planar && moment < ROUNDED * largest => 4,
+            Some(_) if largest > 0.0 && largest < POINT * POINT * mass && *mass > SLIGHT * whole => 5,
             _ => continue,
         };
         found[kind].push(link.name.as_str());

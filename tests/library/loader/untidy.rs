@@ -103,6 +103,7 @@ fn doubtful_inertias_and_angles_are_noted() {
     for (from, to, words) in [
         (inertia, "", "with a mass but no <inertia>, and so a point mass: a; give its moments"),
         (mass, "mass value=\"0.001\"", "with an inertia that needs a part far beyond the robot's size: a; "),
+        (inertia, &inertia.replace("0.05", "1e-9"), "with an inertia of less than 0.1 mm around, and"),
         ("izz=\"0.05\"", "izz=\"0.2\"", "with an inertia that no body has, one moment being more than"),
         (drawn, "<origin rpy=\"0 90 0\"/><geometry>", "the rpy of a, \"0 90 0\", is more than a turn: angles are"),
     ] {
