@@ -56,7 +56,7 @@ fn points_lie_in_the_area_of_their_outcomes() {
     let check = |model: &RobotStudy, map: &Map| {
         let mut solver = Solver::new(model);
         let [first, second] = model.study.parameters() else { panic!("two parameters") };
-        let (mut random, mut wrong, count) = (Random::new(0), 0, 4_000);
+        let (mut random, mut wrong, count) = (Random::new(0), 0, 2_000);
         for _ in 0..count {
             let [x, y] = [first, second].map(|parameter| random.between(parameter.from, parameter.to));
             let inside: Vec<&Area> = map.areas.iter().filter(|area| winding(area, [x, y]) != 0).collect();

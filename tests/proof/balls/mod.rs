@@ -33,7 +33,7 @@ use std::time::Instant;
 
 #[test]
 fn states_are_decided_rightly() {
-    let states = environment("HEELSTRIKE_STATES", 6_000);
+    let states = environment("HEELSTRIKE_STATES", 3_000);
     let threads = environment("HEELSTRIKE_THREADS", std::thread::available_parallelism().map_or(4, usize::from));
     let start = Instant::now();
     let census = census(&states::models(), states, threads);

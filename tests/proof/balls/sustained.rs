@@ -105,7 +105,7 @@ fn check_rounding(
 
 #[test]
 fn forces_are_decided_rightly() {
-    let states = environment("HEELSTRIKE_STATES", 10_000_u64) / 10;
+    let states = environment("HEELSTRIKE_STATES", 6_000_u64) / 10;
     let models = [states::models(), states::tied_models(&mut Random::new(5))].concat();
     let counts = total(states, |seed| check(&models[seed as usize % models.len()], &mut Random::new(seed)));
     let [
