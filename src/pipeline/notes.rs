@@ -14,7 +14,18 @@ const NEAR_MISS: f64 = 1e-2;
 /// A slope beyond this is noted \[rad\].
 const STEEP: f64 = 0.8;
 
+/// No legged robot is faster \[m/s\].
+const FASTEST: f64 = 100.0;
+
 impl Pipeline<'_> {
+    /// Notes a base that is faster than any robot, as in millimeters per second.
+    pub(super) fn note_speed(&self, velocity: &[f64], notes: &mut Vec<String>) {
+        let base = velocity.iter().zip(["x", "z"]).take(self.robot.base_dofs());
+        base.filter(|(rate, _)| rate.abs() > FASTEST).for_each(|(rate, name)| {
+            notes.push(format!("velocity.base.{name} is {rate} m/s: velocities are in m/s and rad/s"));
+        });
+    }
+
     /// Notes friction and restitution of links on which nothing can touch.
     pub(super) fn note_unused_laws(&self, State { scene, uncertainty, .. }: &State, notes: &mut Vec<String>) {
         let named = |link| scene.contacts.iter().flatten().any(|contact| contact.link == link);

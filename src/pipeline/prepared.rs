@@ -137,6 +137,7 @@ impl Pipeline<'_> {
             .map_err(|error| self.sunk(error, state, self.open_foot(&footing, &[], velocity)))?;
         *nearest = if self.options.brief { None } else { self.open_foot(&footing, contacts, velocity) };
         if !self.options.brief {
+            self.note_speed(&state.velocity, notes);
             self.note_contacts(scene, (contacts, *nearest), placement, notes);
         }
         check_matrix_size(contacts.len())?;

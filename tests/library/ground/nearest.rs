@@ -157,7 +157,7 @@ fn tolerance_beyond_the_robot_is_noted() {
 }
 
 #[test]
-fn ground_as_in_degrees_and_a_robot_head_down_are_noted() {
+fn ground_speed_and_pose_beyond_any_robots_are_noted() {
     let notes = |more: Value| {
         let contact = json!({"friction": 1, "contacts": [{"link": "body"}]});
         let mut state = striking(0.0, contact);
@@ -167,6 +167,9 @@ fn ground_as_in_degrees_and_a_robot_head_down_are_noted() {
     let steep = |slope: f64| notes(json!({"ground": {"slope": slope}}));
     assert!(steep(-0.7).is_empty(), "{:?}", steep(-0.7));
     assert_eq!(steep(-1.0), ["the ground's slope of -1 rad is one of -57.3 degrees: was it meant in degrees?"]);
+    let falling = |z: f64| notes(json!({"velocity": {"base": {"z": z}}}));
+    assert!(falling(-100.0).is_empty(), "{:?}", falling(-100.0));
+    assert_eq!(falling(-500.0), ["velocity.base.z is -500 m/s: velocities are in m/s and rad/s"]);
     let at_the_head = notes(json!({"contacts": [{"link": "body", "offset": [0, 0, 0.25]}]}));
     assert_eq!(at_the_head, ["the center of mass is 0.250 m below all contacts: is the pose upside down?"]);
 }
