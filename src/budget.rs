@@ -143,10 +143,12 @@ impl TotalBudget {
 
     /// Does the work, as [`Budget::within`].
     pub fn within<R>(&self, work: impl FnOnce() -> R) -> R {
-        let time = nanoseconds(self.each.time).min(self.left.load(Ordering::Relaxed) / PARTS);
-        let budget = Budget { time: Duration::from_nanos(time), ..self.each };
+        // Almost always enough is left for the whole time of one.
+        let part = Duration::from_nanos(self.left.load(Ordering::Relaxed) / PARTS);
+        let budget = Budget { time: self.each.time.min(part), ..self.each };
         let (made, is_spent) = budget.within(|| (work(), WORK.with(|work| work.spent.get())));
         if is_spent {
+            let time = nanoseconds(budget.time);
             self.least.fetch_min(time, Ordering::Relaxed);
             let less = |left: u64| Some(left.saturating_sub(time));
             let _ = self.left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, less);

@@ -247,13 +247,15 @@ impl Summary {
     }
 
     fn near(&mut self, state: impl Fn() -> StateRef, outcomes: &[Outcome]) {
+        let farthest = self.smallest_margins.get(NAMED - 1).map(|farthest| farthest.margin.abs());
+        let is_near = |margin: &f64| farthest.is_none_or(|farthest| margin.abs() < farthest);
         // Without any impulse all of its slacks are zero, which says nothing.
-        let pressed = |outcome: &&Outcome| outcome.impulse.iter().flatten().any(|&entry| entry != 0.0);
-        let margins =
-            outcomes.iter().filter(|outcome| outcome.decided).filter(pressed).filter_map(|outcome| outcome.margin);
-        let Some(margin) = margins.min_by(|a, b| a.abs().total_cmp(&b.abs())) else { return };
-        let farthest = self.smallest_margins.get(NAMED - 1);
-        if farthest.is_none_or(|farthest| margin.abs() < farthest.margin.abs()) {
+        let pressed = |outcome: &Outcome| outcome.impulse.iter().flatten().any(|&entry| entry != 0.0);
+        let near = outcomes.iter().filter_map(|outcome| {
+            let margin = outcome.margin.filter(is_near)?;
+            (outcome.decided && pressed(outcome)).then_some(margin)
+        });
+        if let Some(margin) = near.min_by(|a, b| a.abs().total_cmp(&b.abs())) {
             self.insert(Nearest { state: state(), margin });
         }
     }

@@ -28,8 +28,9 @@ type Batches = Box<dyn Iterator<Item = std::result::Result<RecordBatch, ArrowErr
 pub struct Parts {
     batches: Batches,
     schema: SchemaRef,
-    /// The columns of the header, once it is known.
+    /// The columns of the header, and how many coordinates a state has, once they are known.
     columns: Arc<[TableColumn]>,
+    dofs: usize,
     /// Columns that were read and not given yet, from this row of theirs on.
     ready: Option<(Arc<Typed>, usize)>,
     /// The number of the next row, from 1.
@@ -40,6 +41,8 @@ pub struct Parts {
 #[derive(Debug, Clone)]
 pub struct Part {
     columns: Arc<Typed>,
+    /// [`Typed::states`].
+    states: Vec<f64>,
     /// The first row in these columns, and how many there are.
     start: usize,
     count: usize,
@@ -104,7 +107,7 @@ impl Parts {
     }
 
     fn new(batches: Batches, schema: SchemaRef) -> Self {
-        Self { batches, schema, columns: Arc::new([]), ready: None, next: 1 }
+        Self { batches, schema, columns: Arc::new([]), dofs: 0, ready: None, next: 1 }
     }
 
     /// Reads the columns' names, as [`Header::read`] does, and their types.
@@ -138,7 +141,7 @@ impl Parts {
         let carried = self.schema.project(&carried).map_err(unreadable)?;
         let id = header.id.map(|at| kind(self.schema.field(at).data_type()));
         header.types = Some((Arc::new(carried), id == Some(DataType::Int64)));
-        self.columns = header.columns.clone().into();
+        (self.columns, self.dofs) = (header.columns.clone().into(), robot.dofs());
         Ok(header)
     }
 
@@ -151,7 +154,7 @@ impl Parts {
             let Some(batch) = guarded(|| self.batches.next())? else { return Ok(true) };
             let batch = batch.map_err(unreadable)?;
             if batch.num_rows() > 0 {
-                self.ready = Some((Arc::new(Typed::new(&batch, &self.columns)?), 0));
+                self.ready = Some((Arc::new(Typed::new(&batch, &self.columns, self.dofs)?), 0));
             }
         }
         Ok(false)
@@ -172,7 +175,8 @@ impl Parts {
         if start + count < rows {
             self.ready = Some((Arc::clone(&columns), start + count));
         }
-        Ok(Some(Part { columns, start, count, first }))
+        let states = columns.states(start..start + count, self.dofs);
+        Ok(Some(Part { columns, states, start, count, first }))
     }
 }
 
@@ -190,6 +194,10 @@ impl Part {
 
     /// Its rows.
     pub fn rows<'p>(&'p self, header: &'p Header) -> impl Iterator<Item = Row<'p>> {
-        (0..self.count).map(|at| Row::of_columns(header, &self.columns, self.start + at, self.first + at))
+        let width = self.states.len() / self.count.max(1);
+        (0..self.count).map(move |at| {
+            let state = &self.states[width * at..][..width];
+            Row::of_columns(header, (&self.columns, self.start + at, state), self.first + at)
+        })
     }
 }

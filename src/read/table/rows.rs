@@ -47,9 +47,9 @@ pub struct Row<'r> {
 enum Source<'r> {
     /// Cells, and the bytes that they were read from.
     Text(&'r ByteRecord, &'r [u8]),
-    /// Columns, and a row of theirs.
+    /// Columns, a row of theirs, and its part of [`Typed::states`].
     #[cfg(feature = "columnar")]
-    Columns(&'r Typed, usize),
+    Columns(&'r Typed, usize, &'r [f64]),
 }
 
 /// The cells of a row to copy to the result, kept longer than their chunk.
@@ -196,9 +196,13 @@ fn reader(form: Form) -> csv::Reader<Cursor<Vec<u8>>> {
 
 #[cfg(feature = "columnar")]
 impl<'r> Row<'r> {
-    /// Row `at` of these columns, which is number `line` of the table.
-    pub(super) fn of_columns(header: &'r Header, columns: &'r Typed, at: usize, line: usize) -> Self {
-        Self { header, source: Source::Columns(columns, at), line }
+    /// A row of these columns, with its part of [`Typed::states`], which is number `line` of the table.
+    pub(super) fn of_columns(
+        header: &'r Header,
+        (columns, row, state): (&'r Typed, usize, &'r [f64]),
+        line: usize,
+    ) -> Self {
+        Self { header, source: Source::Columns(columns, row, state), line }
     }
 }
 
@@ -230,7 +234,7 @@ impl Row<'_> {
         let text = match self.source {
             Source::Text(cells, _) => cells.get(at).and_then(|text| std::str::from_utf8(text).ok()),
             #[cfg(feature = "columnar")]
-            Source::Columns(columns, row) => columns.text(at, row),
+            Source::Columns(columns, row, _) => columns.text(at, row),
         };
         match (text, id.as_mut()) {
             (Some(""), _) => *id = None,
@@ -240,7 +244,7 @@ impl Row<'_> {
             (None, _) => {
                 *id = None;
                 #[cfg(feature = "columnar")]
-                if let Source::Columns(columns, row) = self.source {
+                if let Source::Columns(columns, row, _) = self.source {
                     *id = columns.integer(at, row).map(Value::from);
                 }
             }
@@ -253,7 +257,7 @@ impl Row<'_> {
             Source::Text(cells, _) if cells.len() == self.header.columns.len() => cells,
             Source::Text(..) => return None,
             #[cfg(feature = "columnar")]
-            Source::Columns(columns, row) => {
+            Source::Columns(columns, row, _) => {
                 let some = columns.carried.num_columns() > 0;
                 return some.then(|| Carried::Columns(Arc::clone(&columns.carried), row));
             }
@@ -295,17 +299,21 @@ impl Row<'_> {
         let stance = self.stance(robot)?;
         let place_lowest = defaults.place_lowest && stance.is_none();
         self.read_id(&mut state.id);
-        state.position.fill(0.0);
-        state.velocity.fill(0.0);
         state.scene.restitution.default = None;
         (state.scene.stance, state.scene.place_lowest) = (stance, place_lowest);
         state.scene.loops.clone_from(&defaults.loops);
         let mut friction = None;
         match self.source {
-            Source::Text(..) => (0..columns).try_for_each(|at| self.read_cell(at, state, &mut friction))?,
+            Source::Text(..) => {
+                state.position.fill(0.0);
+                state.velocity.fill(0.0);
+                (0..columns).try_for_each(|at| self.read_cell(at, state, &mut friction))?;
+            }
             #[cfg(feature = "columnar")]
-            Source::Columns(typed, row) => {
-                typed.fill(row, state);
+            Source::Columns(typed, _, whole) => {
+                let (position, velocity) = whole.split_at(whole.len() / 2);
+                state.position.copy_from_slice(position);
+                state.velocity.copy_from_slice(velocity);
                 typed.open.iter().try_for_each(|&at| self.read_cell(at, state, &mut friction))?;
             }
         }
@@ -422,7 +430,7 @@ impl Row<'_> {
     #[inline]
     fn number(&self, at: usize) -> Result<f64> {
         #[cfg(feature = "columnar")]
-        if let Source::Columns(columns, row) = self.source
+        if let Source::Columns(columns, row, _) = self.source
             && let Some(value) = columns.number(at, row)
             && value.is_finite()
         {
@@ -472,7 +480,7 @@ impl Row<'_> {
         let field = match self.source {
             Source::Text(cells, _) => cells.get(at).unwrap_or_default().trim_ascii(),
             #[cfg(feature = "columnar")]
-            Source::Columns(columns, row) => return Ok(columns.cell(at, row)),
+            Source::Columns(columns, row, _) => return Ok(columns.cell(at, row)),
         };
         let Ok(text) = std::str::from_utf8(field) else {
             return Err(self.refuse(at, Reason::Syntax("the cell is not UTF-8".into())));

@@ -2,21 +2,22 @@
 
 use super::header::TableColumn;
 use super::records::Cell;
-use crate::state::State;
 use crate::{Error, Reason, Result};
 use arrow_array::cast::AsArray;
 use arrow_array::types::{Float64Type, Int64Type};
 use arrow_array::{Array, ArrayRef, Float64Array, Int64Array, RecordBatch, StringArray};
 use arrow_cast::cast::{CastOptions, cast_with_options};
 use arrow_schema::DataType;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Columns as they are needed.
 #[derive(Debug)]
 pub(super) struct Typed {
     columns: Vec<Column>,
-    /// The columns of positions and velocities in which every cell is a finite number, and their indices into q and v.
-    whole: [Vec<(usize, Float64Array)>; 2],
+    /// The columns of positions and velocities in which every cell is a finite number, and their indices into q and,
+    /// behind it, v.
+    whole: Vec<(usize, Float64Array)>,
     /// All others.
     pub open: Vec<usize>,
     /// Those that are carried through.
@@ -53,7 +54,8 @@ pub(super) fn kind(own: &DataType) -> DataType {
 }
 
 impl Typed {
-    pub fn new(batch: &RecordBatch, columns: &[TableColumn]) -> Result<Self> {
+    /// The columns of a batch, for a robot of so many coordinates.
+    pub fn new(batch: &RecordBatch, columns: &[TableColumn], dofs: usize) -> Result<Self> {
         let places = (0..columns.len()).filter(|&at| columns[at] == TableColumn::Carried).collect::<Vec<_>>();
         let carried = batch.project(&places).map_err(unreadable)?;
         let typed =
@@ -81,11 +83,11 @@ impl Typed {
         let typed = typed.collect::<Result<Vec<_>>>()?;
         // A stance leaves cells of the base's coordinates empty, or refuses them.
         let least = if columns.contains(&TableColumn::Stance) { 2 } else { 0 };
-        let (mut whole, mut open) = (<[Vec<_>; 2]>::default(), Vec::new());
+        let (mut whole, mut open) = (Vec::new(), Vec::new());
         for (at, (&column, typed)) in columns.iter().zip(&typed).enumerate() {
             let coordinate = match column {
-                TableColumn::Position(to) => Some((0, to)),
-                TableColumn::Velocity(to) => Some((1, to)),
+                TableColumn::Position(to) => Some((to, to)),
+                TableColumn::Velocity(to) => Some((to, dofs + to)),
                 _ => None,
             };
             // Without a branch for each value.
@@ -94,8 +96,8 @@ impl Typed {
                 numbers.null_count() == 0 && finite()
             };
             match (coordinate, typed) {
-                (Some((part, to)), Column::Numbers(numbers)) if to >= least && is_whole(numbers) => {
-                    whole[part].push((to, numbers.clone()));
+                (Some((coordinate, cell)), Column::Numbers(numbers)) if coordinate >= least && is_whole(numbers) => {
+                    whole.push((cell, numbers.clone()));
                 }
                 _ => open.push(at),
             }
@@ -103,13 +105,19 @@ impl Typed {
         Ok(Self { columns: typed, whole, open, carried: Arc::new(carried) })
     }
 
-    /// Sets the coordinates of a row that are finite in every row.
-    pub fn fill(&self, row: usize, state: &mut State) {
-        for (part, coordinates) in self.whole.iter().zip([&mut state.position, &mut state.velocity]) {
-            for (to, numbers) in part {
-                coordinates[*to] = numbers.values()[row];
+    /// Row by row q and v, of so many coordinates each, with 0 for what is not finite in every row: so a state lies in one
+    /// piece, and not in as many as the table has columns.
+    pub fn states(&self, rows: Range<usize>, dofs: usize) -> Vec<f64> {
+        let mut states = vec![0.0; rows.len() * 2 * dofs];
+        // A few rows at once stay in the fastest cache.
+        for (block, states) in states.chunks_mut(8 * 2 * dofs.max(1)).enumerate() {
+            for (cell, numbers) in &self.whole {
+                let numbers = &numbers.values()[rows.start + 8 * block..];
+                let states = states.chunks_exact_mut(2 * dofs).zip(numbers);
+                states.for_each(|(state, &number)| state[*cell] = number);
             }
         }
+        states
     }
 
     pub fn rows(&self) -> usize {
