@@ -64,7 +64,7 @@ fn read_document(document: &Document<'_>) -> Result<Description> {
         joints: Vec::with_capacity(joints.elements.len()),
         root: 0,
         ignored: Vec::new(),
-        misspelt: misspelt(links.elements.iter().chain(&joints.elements).map(|&(_, element, _)| element)),
+        misspelt: misspelt(robot),
     };
     let mut shapes = 0;
     for &(name, element, location) in &links.elements {

@@ -79,7 +79,8 @@ impl IgnoredCount {
 }
 
 /// What is read of elements: their attributes and their children.
-const READ: [(&str, &[&str], &[&str]); 18] = [
+const READ: [(&str, &[&str], &[&str]); 19] = [
+    ("robot", &["name"], &["link", "joint"]),
     ("link", &["name"], &["inertial", "collision", "visual"]),
     ("joint", &["name", "type"], &["origin", "parent", "child", "axis", "mimic", "limit"]),
     ("inertial", &[], &["origin", "mass", "inertia"]),
@@ -111,21 +112,34 @@ pub(super) fn limits(limit: Node<'_, '_>) -> Option<[f64; 2]> {
 /// The most misspelt names that are kept.
 const MOST_MISSPELT: usize = 100;
 
-/// The names of attributes and elements in these links and joints that are not read, but a letter away from one that is
+/// The names of attributes and elements in a robot that are not read, but a letter away from one that is
 /// and that is not there, and limits that cannot be.
-pub(super) fn misspelt<'a, 'input: 'a>(elements: impl DoubleEndedIterator<Item = Node<'a, 'input>>) -> Vec<String> {
-    let (mut waiting, mut found): (Vec<_>, Vec<_>) = (elements.rev().collect(), Vec::new());
+pub(super) fn misspelt(robot: Node<'_, '_>) -> Vec<String> {
+    let (mut waiting, mut found) = (vec![robot], Vec::new());
     while let Some(element) = waiting.pop() {
         let tag = element.tag_name().name();
+        let line = |node: Node| node.document().text_pos_at(node.range().start).row;
+        if tag == "visual" {
+            // Nothing in it is read, but what would be elsewhere.
+            let of_link = |child: &Node| matches!(child.tag_name().name(), "inertial" | "collision");
+            for child in xml::children(element).filter(of_link).take(MOST_MISSPELT.saturating_sub(found.len())) {
+                found.push(format!("<{}> in <visual> on line {} (in <link>?)", child.tag_name().name(), line(child)));
+            }
+        }
         let Some((_, attributes, children)) = READ.iter().find(|(known, ..)| *known == tag) else { continue };
         let first = waiting.len();
         waiting.extend(element.children().filter(Node::is_element));
         waiting[first..].reverse();
-        let tags = || waiting[first..].iter().rev().map(|child| child.tag_name().name());
-        let line = |node: Node| node.document().text_pos_at(node.range().start).row;
+        let elements = || waiting[first..].iter().rev().copied();
+        let tags = || elements().map(|child| child.tag_name().name());
         let given = || element.attributes().filter(|own| own.namespace().is_none()).map(|own| own.name());
         // In most elements everything is read: no name to compare with others.
         let is_read = given().all(|name| attributes.contains(&name)) && tags().all(|tag| children.contains(&tag));
+        // Numbers between the tags, not in an attribute.
+        let text = element.text().map(str::trim).filter(|text| children.is_empty() && !text.is_empty());
+        if text.is_some() && found.len() < MOST_MISSPELT {
+            found.push(format!("text in <{tag}> on line {} ({}?)", line(element), attributes.join(" or ")));
+        }
         if is_read && tag != "limit" {
             continue;
         }
@@ -142,18 +156,20 @@ pub(super) fn misspelt<'a, 'input: 'a>(elements: impl DoubleEndedIterator<Item =
             found.push(format!("{name} of <{tag}> on line {} (<{owner}>?)", line(element)));
         }
         let meant = self::meant(tags(), children);
-        let misread = tags().filter_map(|name| Some((name, meant(name)?)));
-        for (name, meant) in misread.take(MOST_MISSPELT.saturating_sub(found.len())) {
-            found.push(format!("<{name}> in <{tag}> on line {} (<{meant}>?)", line(element)));
+        let misread = elements().filter_map(|child| Some((child, meant(child.tag_name().name())?)));
+        for (child, meant) in misread.take(MOST_MISSPELT.saturating_sub(found.len())) {
+            found.push(format!("<{}> in <{tag}> on line {} (<{meant}>?)", child.tag_name().name(), line(child)));
         }
         let around = element.parent().map_or("", |parent| parent.tag_name().name());
         let takes = |name: &str, of: &str| READ.iter().any(|(tag, _, children)| *tag == of && children.contains(&name));
-        let of_others = tags().filter(|name| !children.contains(name) && meant(name).is_none()).filter_map(|name| {
+        let named = elements().map(|child| (child, child.tag_name().name()));
+        let unread = named.filter(|(_, name)| !children.contains(name) && meant(name).is_none());
+        let of_others = unread.filter_map(|(child, name)| {
             let near = children.iter().copied().chain([around]).find(|other| takes(name, other));
-            Some((name, near.or_else(|| Some(READ.iter().find(|(.., children)| children.contains(&name))?.0))?))
+            Some((child, near.or_else(|| Some(READ.iter().find(|(.., children)| children.contains(&name))?.0))?))
         });
-        for (name, owner) in of_others.take(MOST_MISSPELT.saturating_sub(found.len())) {
-            found.push(format!("<{name}> in <{tag}> on line {} (in <{owner}>?)", line(element)));
+        for (child, owner) in of_others.take(MOST_MISSPELT.saturating_sub(found.len())) {
+            found.push(format!("<{}> in <{tag}> on line {} (in <{owner}>?)", child.tag_name().name(), line(child)));
         }
         if tag == "limit" && limits(element).is_none_or(|[lower, upper]| lower > upper) && found.len() < MOST_MISSPELT {
             let [lower, upper] = ["lower", "upper"].map(|end| element.attribute(end).unwrap_or("0"));
@@ -169,7 +185,9 @@ fn owner(name: &str, children: &[&'static str]) -> Option<&'static str> {
         return None;
     }
     let child = children.iter().copied().find(|&child| child == name);
-    child.or_else(|| Some(READ.iter().find(|(_, attributes, _)| attributes.contains(&name))?.0))
+    let of_attribute = || READ.iter().find(|(_, attributes, _)| attributes.contains(&name));
+    let of_element = || READ.iter().find(|(tag, ..)| *tag == name);
+    child.or_else(|| Some(of_attribute().or_else(of_element)?.0))
 }
 
 /// Which of the `known` names another name may be meant as, if that one is not `given`.

@@ -84,7 +84,9 @@ pub(super) fn judge(description: &Description, roles: &mut [Role], asked: Option
                     names(chain)
                 )
             });
-            Judgment { caution, ..at_root(Base::Floating, "the root has mass".into()) }
+            let own = description.links[root].inertial.as_ref().is_some_and(|own| own.mass > 0.0);
+            let because = if own { "the root has mass" } else { "what is fixed to the root has mass" };
+            Judgment { caution, ..at_root(Base::Floating, because.into()) }
         }
     }
 }

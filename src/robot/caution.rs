@@ -5,6 +5,7 @@ use super::legs::OBLIQUE;
 use super::plane::Plane;
 use super::reading::{FreezeReason, FrozenJoint};
 use super::reference_pose::ReferencePose;
+use super::role::Role;
 use super::{Body, ParentJoint, Robot};
 use crate::description::{
     Collision, Description, Geometry, Inertial, JointKind, Matrix, Mesh, Pose, UrdfJoint, UrdfLink, apply, turn,
@@ -96,7 +97,7 @@ pub(super) fn about_loops(description: &Description) -> Option<String> {
 
 /// Whether an element of this tag closes a loop, as extensions of URDF have it.
 pub(super) fn closes_loops(parent: &str, tag: &str) -> bool {
-    parent == "robot" && matches!(tag, "loop" | "loop_joint")
+    parent == "robot" && matches!(tag, "loop" | "loop_joint" | "linear_bushing_rpy")
 }
 
 /// The caution about joints that move, but whose `<axis>` the file leaves out.
@@ -104,6 +105,18 @@ pub(super) fn about_axes(description: &Description) -> Option<String> {
     let without = description.joints.iter().filter(|joint| joint.kind.has_axis() && !joint.has_axis);
     let names = names(without.map(|joint| format!("{} on line {}", joint.name, joint.location.line)))?;
     Some(format!("without an <axis>, and so about or along x: {names}; name the axis, as in <axis xyz=\"0 1 0\"/>"))
+}
+
+/// The caution about planar joints whose axis is off the normal, but nearer to it than to the plane.
+pub(super) fn about_planar(description: &Description, pose: &ReferencePose, plane: Plane) -> Option<String> {
+    let off = |(joint, axis): &(&UrdfJoint, &[f64; 3])| {
+        joint.kind == JointKind::Planar
+            && joint.has_axis
+            && (pose.tolerance..=OBLIQUE).contains(&plane.off_normal(**axis))
+    };
+    let off = description.joints.iter().zip(&pose.axes).filter(off);
+    let names = names(off.map(|(joint, _)| &joint.name))?;
+    Some(format!("planar, with an axis off the plane's normal, and taken as in the plane: {names}"))
 }
 
 /// The caution about lengths that no legged robot has, as millimeters taken for meters.
@@ -168,6 +181,19 @@ pub(super) fn about_held(description: &Description, frozen: &[(usize, FrozenJoin
         }
     });
     Some(format!("held beyond limits, or in degrees: {}", names(odd)?))
+}
+
+/// The caution about joints that follow one that moves, but turn or slide out of the plane.
+pub(super) fn about_followers(description: &Description, pose: &ReferencePose, roles: &[Role]) -> Option<String> {
+    let moves = |joint: usize| matches!(roles[joint], Role::Moves { .. });
+    let followers = pose.mimicked.iter().enumerate().filter_map(|(index, mimicked)| {
+        let followed = mimicked.as_ref()?.joint;
+        let is_off = matches!(roles[index], Role::Frozen(FreezeReason::OffPlane { .. }));
+        let [own, other] = [index, followed].map(|joint| &description.joints[joint].name);
+        (is_off && moves(followed)).then(|| format!("{own} follows {other}"))
+    });
+    let followers = names(followers)?;
+    Some(format!("frozen at zero although what they follow moves, their axes being off the plane: {followers}"))
 }
 
 /// The caution about rotations of more than a turn, as degrees taken for radians.
@@ -253,24 +279,29 @@ pub(super) fn about_massless(robot: &Robot) -> Option<String> {
     Some(format!("without mass, although a joint of its own moves it: {massless}; give it an <inertial>"))
 }
 
-/// The caution about collision meshes that could not be read.
-pub(super) fn about_meshes(description: &Description) -> Option<String> {
-    let mut left_out: Vec<String> = Vec::new();
+/// The cautions about collision meshes that could not be read, and shapes that URDF does not have.
+pub(super) fn about_shapes(description: &Description) -> impl Iterator<Item = String> {
+    let (mut meshes, mut unknown) = (Vec::new(), Vec::new());
     for link in &description.links {
         for collision in &link.collisions {
-            if let Geometry::Mesh { file, mesh: Mesh::LeftOut { why }, .. } = &collision.geometry {
-                left_out.push(format!("{file} of {}: {why}", link.name));
+            match &collision.geometry {
+                Geometry::Mesh { file, mesh: Mesh::LeftOut { why }, .. } => {
+                    meshes.push(format!("{file} of {}: {why}", link.name));
+                }
+                Geometry::Unknown { tag } => unknown.push(format!("<{tag}> of {}", link.name)),
+                _ => {}
             }
         }
     }
-    let what =
-        if left_out.len() == 1 { "1 collision mesh is" } else { &format!("{} collision meshes are", left_out.len()) };
-    (!left_out.is_empty()).then(|| {
-        format!(
-            "{what} left out, so that nothing touches there ({}{}): give the file, or name a foot by `feet: LINK:X,Y,Z`",
-            left_out[0],
-            if left_out.len() == 1 { "" } else { ", and others" },
-        )
+    let kinds = [("mesh", "meshes", meshes, "give the file"), ("shape", "shapes", unknown, "give a shape of URDF")];
+    kinds.into_iter().filter_map(|(one, many, left_out, remedy)| {
+        let first = left_out.first()?;
+        let count = left_out.len();
+        let (what, more) = if count == 1 { (format!("{one} is"), "") } else { (format!("{many} are"), ", and others") };
+        Some(format!(
+            "{count} collision {what} left out, so that nothing touches there ({first}{more}): {remedy}, or name a foot by \
+             `feet: LINK:X,Y,Z`"
+        ))
     })
 }
 

@@ -11,6 +11,9 @@ use crate::description::{Matrix, apply};
 /// The greatest angle between two directions that still count as parallel \[rad\]: files round their axes.
 pub(super) const PARALLEL: f64 = 1e-3;
 
+/// The same of shapes: pi is often written as 3.14.
+pub(super) const PARALLEL_SHAPE: f64 = 2e-3;
+
 /// A plane through the root link's origin, named by the root link's axes that point forward and up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Plane {

@@ -4,10 +4,10 @@
 use super::composite::{LinkInertia, composites};
 use super::legs::{OBLIQUE, legs};
 use super::outline::outline;
-use super::plane::{PARALLEL, Plane};
+use super::plane::{PARALLEL, PARALLEL_SHAPE, Plane};
 use super::reading::{FreezeReason, FrozenJoint, PlaneReason, Reading};
 use super::reference_pose::ReferencePose;
-use super::role::{Role, roles};
+use super::role::{self, Role, roles};
 use super::tree::{Place, Tree};
 use super::{Base, LeftOutPart, Link, ParentJoint, Robot, base, caution, left_out};
 use crate::description::{self, Description, Inertial, JointKind, UrdfLink, product};
@@ -72,7 +72,7 @@ impl Robot {
         let (plane, plane_because) = find_plane(description, &pose, &legs, reduction.plane);
         let roles_in = |pose: &ReferencePose| roles(description, pose, plane);
         let mut roles = roles_in(&pose);
-        while pose.follow(description, |joint| matches!(roles[joint], Role::Frozen(_))) {
+        while pose.follow(description, |own, other, turns| role::stays(&roles, tolerance, (own, other), turns)) {
             roles = roles_in(&pose);
         }
         let found = base::judge(description, &mut roles, reduction.base);
@@ -86,11 +86,13 @@ impl Robot {
         let mut cautions = caution::about_frozen(&seen, &frozen, tree.joints.len() + tree.mimic_joints.len());
         cautions.extend(found.caution);
         cautions.extend(caution::about_held(description, &frozen));
+        cautions.extend(caution::about_followers(description, &pose, &roles));
         cautions.extend(caution::about_outside(description, &outside));
-        cautions.extend(caution::about_meshes(description));
+        cautions.extend(caution::about_shapes(description));
         cautions.extend(caution::about_spelling(description));
         cautions.extend(caution::about_loops(description));
         cautions.extend(caution::about_axes(description));
+        cautions.extend(caution::about_planar(description, &pose, plane));
         cautions.extend(caution::about_lengths(description));
         cautions.extend(caution::about_angles(description));
         cautions.extend(caution::about_limits(description));
@@ -196,9 +198,13 @@ fn find_plane(
 
 /// The plane in which most joints move, if that is more than in this one, where they have the roles `here`.
 fn better_plane(description: &Description, pose: &ReferencePose, here: (Plane, &[Role])) -> Option<(Plane, usize)> {
-    let moving = |roles: &[Role]| roles.iter().filter(|role| matches!(role, Role::Moves { .. })).count();
-    let (plane, here) = (here.0, moving(here.1));
     let can_move = |kind| matches!(kind, JointKind::Revolute | JointKind::Continuous | JointKind::Prismatic);
+    let moving = |roles: &[Role]| {
+        let kinds = description.joints.iter().map(|joint| joint.kind);
+        let moving = |(role, kind): &(&Role, JointKind)| can_move(*kind) && matches!(role, Role::Moves { .. });
+        roles.iter().zip(kinds).filter(moving).count()
+    };
+    let (plane, here) = (here.0, moving(here.1));
     if here == description.joints.iter().filter(|joint| can_move(joint.kind)).count() {
         return None;
     }
@@ -256,7 +262,7 @@ fn reduce_link(link: &UrdfLink, place: &Place, left_out: &mut Vec<LeftOutPart>) 
     let mut shapes = Vec::with_capacity(link.collisions.len());
     for collision in &link.collisions {
         let frame = place.frame(&collision.origin);
-        match outline(&collision.geometry, &frame.rotation, frame.in_plane(), PARALLEL) {
+        match outline(&collision.geometry, &frame.rotation, frame.in_plane(), PARALLEL_SHAPE) {
             Ok(shape) => shapes.push(shape),
             Err(why) => left_out.push(left_out::skipped(link, collision, why)),
         }

@@ -62,15 +62,17 @@ impl ReferencePose {
     }
 
     /// Moves joints that follow one which is frozen at zero to where that puts them; whether there are any.
-    pub(super) fn follow(&mut self, description: &Description, is_frozen: impl Fn(usize) -> bool) -> bool {
+    ///
+    /// Only those that `stay` frozen with the joint that they follow, which is their second argument; the third says
+    /// whether they turn it, being on the way to it.
+    pub(super) fn follow(&mut self, description: &Description, stay: impl Fn(usize, usize, bool) -> bool) -> bool {
         let mut moved = false;
         for (index, mimicked) in self.mimicked.iter().enumerate() {
             let Some(&Mimic { joint, offset, .. }) = mimicked.as_ref() else { continue };
             let has_place = self.frozen[index].is_some() || offset == 0.0 || !description.joints[index].kind.has_axis();
-            // One on the way to the joint that it follows would turn that, which may then not be frozen any more.
             let inward = |&joint: &usize| description.links[description.joints[joint].parent].joint;
-            let mut way = std::iter::successors(Some(joint), inward);
-            if !has_place && is_frozen(index) && is_frozen(joint) && !way.any(|before| before == index) {
+            let on_the_way = || std::iter::successors(Some(joint), inward).any(|before| before == index);
+            if !has_place && stay(index, joint, on_the_way()) {
                 self.frozen[index] = Some(offset);
                 moved = true;
             }

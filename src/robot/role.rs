@@ -3,12 +3,14 @@
 //! ```text
 //!     revolute:   angle(a, n) <= tolerance      ->  it turns about ±n exactly         else frozen
 //!     prismatic:  angle(a, plane) <= tolerance  ->  it slides along a in the plane    else frozen
+//!     planar:     angle(a, n) <= 0.9            ->  the base itself                   else it slides along n x a
 //! ```
 
+use super::legs::OBLIQUE;
 use super::plane::Plane;
 use super::reference_pose::ReferencePose;
 use super::{Axis, FreezeReason};
-use crate::description::{Description, JointKind, Mimic, apply, unit};
+use crate::description::{Description, JointKind, Mimic, UrdfJoint, apply, unit};
 use crate::planar::Vector;
 
 /// An axis this near to the normal is off by rounding alone \[rad\].
@@ -33,7 +35,7 @@ pub(super) enum Role {
 /// The role of every joint.
 pub(super) fn roles(description: &Description, pose: &ReferencePose, plane: Plane) -> Vec<Role> {
     let joints = &description.joints;
-    let mut roles: Vec<Role> = (0..joints.len()).map(|index| role(joints[index].kind, index, pose, plane)).collect();
+    let mut roles: Vec<Role> = (0..joints.len()).map(|index| role(&joints[index], index, pose, plane)).collect();
     for (index, mimicked) in pose.mimicked.iter().enumerate() {
         let Some(mimicked) = mimicked else { continue };
         let value = pose.frozen[index].unwrap_or(0.0);
@@ -53,15 +55,41 @@ pub(super) fn roles(description: &Description, pose: &ReferencePose, plane: Plan
     roles
 }
 
+/// Whether a joint that follows another one stays frozen with it at its offset, also if it then `turns` that.
+///
+/// A joint that is frozen because of its axis may move after a turn, but not after one in the plane, to which axes belong
+/// that are no farther off than `tolerance`.
+pub(super) fn stays(roles: &[Role], tolerance: f64, (follower, followed): (usize, usize), turns: bool) -> bool {
+    let in_plane = matches!(roles[follower], Role::Frozen(FreezeReason::Follows { .. }));
+    let keeps = match roles[followed] {
+        Role::Frozen(FreezeReason::OffPlane { angle, .. }) => in_plane && angle > 3.0 * tolerance,
+        Role::Frozen(_) => true,
+        Role::Moves { .. } | Role::Free => return false,
+    };
+    matches!(roles[follower], Role::Frozen(_)) && (keeps || !turns)
+}
+
 /// A joint's role by itself.
-fn role(kind: JointKind, index: usize, pose: &ReferencePose, plane: Plane) -> Role {
+fn role(joint: &UrdfJoint, index: usize, pose: &ReferencePose, plane: Plane) -> Role {
+    let kind = joint.kind;
     if let (Some(value), true) = (pose.frozen[index], kind.has_axis()) {
         return Role::Frozen(FreezeReason::Asked { value });
     }
     let axis = pose.axes[index];
+    let [x, along_normal, z] = apply(&plane.axes(), axis);
+    let along = |x: f64, z: f64| {
+        let [x, _, z] = unit([x, 0.0, z]);
+        Axis::Prismatic { direction: Vector::new(x, z) }
+    };
     match kind {
         JointKind::Fixed => Role::Frozen(FreezeReason::Fixed),
         JointKind::Spherical => Role::Frozen(FreezeReason::Kind(kind)),
+        // Without an <axis>, or with one that is nearly normal, it is meant in this plane.
+        JointKind::Planar if joint.has_axis && plane.off_normal(axis) > OBLIQUE => {
+            // Its one motion in the plane, counted forward or up.
+            let [x, z] = if f64::max(z, -x) > f64::max(-z, x) { [z, -x] } else { [-z, x] };
+            Role::Moves { axis: along(x, z), mimicked: None, tilt: 0.0 }
+        }
         JointKind::Planar | JointKind::Floating => Role::Free,
         JointKind::Revolute | JointKind::Continuous | JointKind::Prismatic => {
             let slides = kind == JointKind::Prismatic;
@@ -69,10 +97,8 @@ fn role(kind: JointKind, index: usize, pose: &ReferencePose, plane: Plane) -> Ro
             if angle > pose.tolerance {
                 return Role::Frozen(FreezeReason::OffPlane { angle, slides });
             }
-            let [x, along_normal, z] = apply(&plane.axes(), axis);
-            let [x, _, z] = unit([x, 0.0, z]);
             let axis = match slides {
-                true => Axis::Prismatic { direction: Vector::new(x, z) },
+                true => along(x, z),
                 false => Axis::Revolute { sign: if along_normal < 0.0 { -1.0 } else { 1.0 } },
             };
             Role::Moves { axis, mimicked: None, tilt: if angle > ROUNDING { angle } else { 0.0 } }

@@ -132,10 +132,12 @@ pub fn posed(robot: &Robot, feet: &[NamedContact], placement: &Placement, forwar
         shapes,
         ..view
     };
-    let joints = robot.joints.len() + robot.mimic_joints.len();
+    let counted = |count: usize, one: &str, many: &str| format!("{count} {}", if count == 1 { one } else { many });
+    let bodies = counted(robot.bodies.len(), "body", "bodies");
+    let joints = counted(robot.joints.len() + robot.mimic_joints.len(), "joint", "joints");
     let axes = LegendEntry::new("axes of the root link", LegendKey::Line(ROOT));
     Picture {
-        title: format!("{}: {} bodies, {joints} joints, {} kg", robot.name, robot.bodies.len(), number(robot.mass())),
+        title: format!("{}: {bodies}, {joints}, {} kg", robot.name, number(robot.mass())),
         rows: vec![vec![panel]],
         legend: drawing.legend(JOINT).chain([axes]).collect(),
     }

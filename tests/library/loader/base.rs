@@ -22,7 +22,7 @@ fn world(text: &str) -> String {
 
 #[test]
 fn root_floats_by_its_mass_and_joints() {
-    let mass = "the root has mass";
+    let (mass, fixed_to) = ("the root has mass", "what is fixed to the root has mass");
     let alone = "the root is massless and joint \"j\" alone carries the robot";
     let several = "the root is massless, but several joints carry the robot";
     let fixed = chain(&[0.0, 1.0, 1.0], &[FIXED, PITCH]);
@@ -31,8 +31,8 @@ fn root_floats_by_its_mass_and_joints() {
         // However little it weighs.
         (chain(&[0.001, 1.0], &[PITCH]), (Base::Floating, "a", vec!["j"]), 1.001, Some(mass)),
         // Massless by itself, but fixed to what has mass; a joint that is frozen fixes as well.
-        (fixed.clone(), (Base::Floating, "a", vec!["k"]), 2.0, None),
-        (chain(&[0.0, 1.0, 1.0], &[ROLL, PITCH]), (Base::Floating, "a", vec!["k"]), 2.0, None),
+        (fixed.clone(), (Base::Floating, "a", vec!["k"]), 2.0, Some(fixed_to)),
+        (chain(&[0.0, 1.0, 1.0], &[ROLL, PITCH]), (Base::Floating, "a", vec!["k"]), 2.0, Some(fixed_to)),
         // A rail, a single hinge, two of them.
         (chain(&[0.0, 1.0, 1.0], &[X, PITCH]), (Base::Fixed, "a", vec!["j", "k"]), 2.0, Some(alone)),
         (chain(&[0.0, 1.0], &[PITCH]), (Base::Fixed, "a", vec!["j"]), 1.0, Some(alone)),
@@ -103,6 +103,28 @@ fn a_planar_or_floating_joint_is_the_base_itself() {
         let bolted = reduce(&text, &Reduction { base: Some(Base::Fixed), ..Reduction::default() });
         assert_eq!(found(&bolted), (Base::Fixed, "a", vec!["k"]));
     }
+}
+
+#[test]
+fn a_planar_joint_about_another_axis_slides() {
+    let of_base = |axis: &str| load(&chain(&[0.0, 2.0, 1.0], &[("planar", axis), PITCH]));
+    for (axis, along) in [("0 0 1", [1.0, 0.0]), ("0 0 -2", [1.0, 0.0]), ("1 0 0", [0.0, 1.0]), ("0 3 4", [1.0, 0.0])] {
+        let robot = of_base(axis);
+        assert_eq!(found(&robot), (Base::Fixed, "a", vec!["j", "k"]), "{axis}");
+        assert_eq!(robot.joints[0].axis, Axis::Prismatic { direction: along.into() }, "{axis}");
+    }
+    // As the same mechanism of single joints.
+    let yaw = ("revolute", "0 0 1");
+    let single = load(&chain(&[0.0, 0.0, 0.0, 2.0, 1.0], &[X, ("prismatic", "0 1 0"), yaw, PITCH]));
+    assert_eq!(found(&single), (Base::Fixed, "a", vec!["j", "m"]));
+    assert_eq!(single.joints[0].axis, of_base("0 0 1").joints[0].axis);
+    // Nearly normal, it is meant in the plane.
+    let robot = of_base("0 1 0.02");
+    assert_eq!(found(&robot), (Base::Floating, "b", vec!["k"]));
+    assert_eq!(only_caution(&robot), "planar, with an axis off the plane's normal, and taken as in the plane: j");
+    // Without an <axis> it is meant in the plane.
+    let text = chain(&[0.0, 2.0, 1.0], &[("planar", "0 0 1"), PITCH]).replace("<axis xyz=\"0 0 1\"/>", "");
+    assert_eq!(found(&load(&text)), (Base::Floating, "b", vec!["k"]));
 }
 
 #[test]

@@ -311,6 +311,15 @@ fn misspelt_names_are_named_with_their_lines() {
         ("<origin xyz=", "<origin quaternion=\"1 0 0 0\" xyz=", "quaternion of <origin> on line 2 (rpy?)"),
         ("<origin ", "<com ", "<com> in <inertial> on line 2"),
         ("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 1 0\"><origin/></axis>", "<origin> in <axis> on line"),
+        ("<origin xyz=\"0 0 -1\"/>", "<origin>0 0 -1</origin>", "text in <origin> on line 4 (xyz or rpy?)"),
+        ("<link name=\"a\">", "<link name=\"a\" mass=\"3\">", "mass of <link> on line 2 (<mass>?)"),
+        ("<link name=\"a\">", "<link name=\"a\"><link name=\"x\"/>", "<link> in <link> on line 2 (in <robot>?)"),
+        ("<link name=\"a\">", "<inertial/><link name=\"a\">", "<inertial> in <robot> on line 2 (in <link>?)"),
+        (
+            "<link name=\"a\">",
+            "<link name=\"a\"><visual><inertial/></visual>",
+            "<inertial> in <visual> on line 2 (in <link>?)",
+        ),
     ] {
         assert!(caution(from, to).unwrap_or_default().contains(named), "{to}: {:?}", caution(from, to));
     }
@@ -369,6 +378,14 @@ fn a_mimic_joint_of_a_frozen_joint_is_frozen_with_it() {
     let expected = [-first.sin() - both.sin(), -1.0 - first.cos() - both.cos()];
     assert_at(robot.links[2].point::<f64>([0.0, 0.0, -1.0]), expected);
 
+    // So is one on the way to the joint that it mimics, which that turn leaves off the plane, or fixed.
+    let tilted = with_mimic(&massive(&[PITCH, ROLL]), "j", "joint=\"k\" multiplier=\"-0.5\" offset=\"0.6\"");
+    for text in [tilted.clone(), tilted.replace("name=\"k\" type=\"revolute\"", "name=\"k\" type=\"fixed\"")] {
+        let robot = load(&text);
+        assert_eq!(still(&robot, "j"), &FreezeReason::Follows { mimicked: "k".into(), value: 0.6 });
+        assert_at(robot.links[1].point::<f64>([0.0, 0.0, -1.0]), [-0.6_f64.sin(), -1.0 - 0.6_f64.cos()]);
+    }
+
     // One on the way to the joint that it mimics does not turn that into the plane, where it would move.
     let quarter = "joint=\"l\" offset=\"1.5707963267948966\"";
     let robot = load(&with_mimic(&massive(&[PITCH, ROLL, ("revolute", "0 0 1")]), "k", quarter));
@@ -379,6 +396,8 @@ fn a_mimic_joint_of_a_frozen_joint_is_frozen_with_it() {
     let robot = load(&with_mimic(&massive(&[PITCH, ROLL]), "k", "joint=\"j\""));
     assert_eq!((names(&robot), robot.mimic_joints.len()), (vec!["j"], 0));
     assert!(matches!(still(&robot, "k"), FreezeReason::OffPlane { .. }));
+    let words = "frozen at zero although what they follow moves, their axes being off the plane: k follows j";
+    assert!(robot.reading.cautions.iter().any(|caution| caution == words), "{:?}", robot.reading.cautions);
 }
 
 // Whatever the order and the names.

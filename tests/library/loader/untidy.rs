@@ -160,6 +160,29 @@ fn lengths_that_look_like_millimeters_are_noted() {
 }
 
 #[test]
+fn shapes_that_urdf_does_not_have_are_noted() {
+    let feet = ["ellipsoid radii=\"1 1 1\"", "plane normal=\"0 0 1\""].map(|shape| urdf::collision([0.0; 2], shape));
+    let with = |shapes: &str| load(&urdf::robot(&[link("a", 1.0, [0.0; 2], 1.0, shapes)])).reading.cautions;
+    let words = "1 collision shape is left out, so that nothing touches there (<ellipsoid> of a): give a shape of URDF, or \
+                 name a foot by `feet: LINK:X,Y,Z`";
+    assert_eq!(with(&feet[0]), [words]);
+    assert!(with(&feet.concat())[0].starts_with("2 collision shapes are left out"));
+}
+
+#[test]
+fn a_sole_turned_by_3_14_is_flat() {
+    let corners = |roll: f64| {
+        let sole = format!(
+            "<collision><origin rpy=\"{roll} 0 0\"/><geometry><cylinder radius=\"0.1\" length=\"0.03\"/></geometry>\
+             </collision>"
+        );
+        let robot = load(&urdf::robot(&[link("a", 1.0, [0.0; 2], 1.0, &sole)]));
+        robot.links[0].shapes[0].corners().len()
+    };
+    assert_eq!([0.0, 314.0 / 100.0, 1e-2].map(corners), [4, 4, 2]);
+}
+
+#[test]
 fn a_mass_in_grams_is_noted() {
     let of_mass = |mass: f64| {
         let shape = urdf::collision([0.0; 2], "sphere radius=\"0.1\"");
