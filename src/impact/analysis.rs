@@ -110,9 +110,9 @@ impl Scratch {
 
     /// The friction with which no contact would have to slide; `None` if one slides whatever the friction is.
     ///
-    /// It is the greatest |L_t| / L_n of the sticking contacts, of the outcome without a sliding contact that needs
-    /// least; `problem` and `source` have infinite friction everywhere. More contacts than [`CONTACT_LIMIT`] have none,
-    /// and so have those that a budget leaves open.
+    /// It is the greatest [`Outcome::friction_needed`] of the outcome without a sliding contact that needs least;
+    /// `problem` and `source` have infinite friction everywhere. More contacts than [`CONTACT_LIMIT`] have none, and so
+    /// have those that a budget leaves open.
     pub fn friction_without_slip(
         &mut self,
         problem: &ContactProblem,
@@ -224,12 +224,14 @@ impl Scratch {
     }
 }
 
-/// The greatest |L_t| / L_n of the sticking contacts.
+/// The greatest friction that a contact needs, of an outcome that friction without bound may hold: infinite where a
+/// contact resists without being pressed.
 fn steepest(outcome: &Outcome) -> f64 {
-    let sticking = outcome.impulse.iter().zip(&outcome.modes).filter(|(_, mode)| **mode == Mode::Stick);
-    let ratios = sticking.map(|(&[tangential, normal], _)| match tangential.abs() {
-        0.0 => 0.0,
-        tangential => tangential / normal.max(0.0),
+    let contacts = outcome.impulse.iter().zip(&outcome.friction_needed);
+    let ratios = contacts.map(|(&[tangential, _], needed)| match needed {
+        Some(needed) => *needed,
+        None if tangential == 0.0 => 0.0,
+        None => f64::INFINITY,
     });
     ratios.fold(0.0, f64::max)
 }

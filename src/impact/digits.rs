@@ -160,7 +160,7 @@ pub fn is_known_range<T: Ordered>(ends: [Option<T>; 2], own: T, digits: f64) -> 
 }
 
 /// The share of the normal impulse that counts as a tangential impulse's scale.
-fn least_friction(law: &Law) -> f64 {
+pub fn least_friction(law: &Law) -> f64 {
     match law.friction() {
         Friction::Finite(mu) => mu.min(1.0),
         Friction::Infinite => 1.0,

@@ -1,17 +1,28 @@
 //! The friction that sticking contacts need if their impulses are not unique.
 //!
 //! ```text
-//!     contacts of equal friction that share impulses whose sums are unique:  |sum L_t| / sum L_n      as of a flat foot
-//!     all others:                                                            min |L_t| / L_n over the admissible impulses
+//!     contacts that depend on each other, all of the same friction:  min over the admissible impulses of max |L_t| / L_n
+//!         whose tangential impulses can be exchanged, of unique sums:  = |sum L_t| / sum L_n         as of a flat foot
+//!     all others:                                                    min |L_t| / L_n, each for itself
 //! ```
 //!
-//! The minimum is a linear program in w = s y with s = 1 / L_n (Charnes and Cooper 1962).
+//! The minimum of one ratio is a linear program in w = s y with s = 1 / L_n (Charnes and Cooper 1962). Whether a friction
+//! is enough for several contacts is one as well.
 
-use super::linear::{LinearFunction, Unsettled, settled};
-use super::simplex::{join, maximize};
-use crate::law::{Law, Mode};
+use super::digits::least_friction;
+use super::linear::{LinearFunction, Unsettled, settled, solve};
+use super::simplex::{join, maximize, widest};
+use crate::law::{Friction, Law, Mode};
 use crate::planar::Pair;
-use crate::scalar::{Ordered, Real};
+use crate::scalar::{Ordered, Real, Sign};
+use std::cmp::Ordering;
+
+/// How well the least friction of several contacts is known: a tenth of what is promised.
+const KNOWN: f64 = 1e-11;
+/// What no greater friction holds, only an infinite one does.
+const GREATEST: f64 = 1e12;
+/// No slack is sought beyond this.
+const ENOUGH: f64 = 1e3;
 
 /// |L_t| / L_n of each sticking contact that some admissible impulse presses on the ground. The impulses are functions of
 /// y, admissible where no function is negative, as none is at y = 0.
@@ -22,19 +33,122 @@ pub fn friction_needed<T: Ordered>(
     functions: &[LinearFunction<T>],
 ) -> Result<Vec<Option<T>>, Unsettled> {
     let groups = groups(impulses)?;
-    let mut needed = vec![None; modes.len()];
+    let (mut needed, mut common) = (vec![None; modes.len()], vec![None; modes.len()]);
     for contact in (0..modes.len()).filter(|&contact| modes[contact] == Mode::Stick) {
         let members = || (0..modes.len()).filter(|&own| groups[own] == groups[contact] && modes[own] == Mode::Stick);
         let [t, n] = [0, 1].map(|entry| sum(members().map(|own| &impulses[own][entry])));
         let are_alike = members().all(|own| laws[own] == laws[contact]);
-        needed[contact] = if are_alike && t.is_constant()? && n.is_constant()? {
+        if are_alike && t.is_constant()? && n.is_constant()? && exchange(members(), impulses)? {
             let is_pressed = settled(n.constant)?.is_gt();
-            if is_pressed { Some(magnitude(t.constant)? / n.constant) } else { None }
-        } else {
-            least_ratio(&impulses[contact], functions)?
-        };
+            needed[contact] = if is_pressed { Some(magnitude(t.constant)? / n.constant) } else { None };
+            continue;
+        }
+        needed[contact] = least_ratio(&impulses[contact], functions)?;
+        if are_alike && members().count() > 1 {
+            if members().next() == Some(contact) {
+                common[groups[contact]] = least_common(members().map(|own| &impulses[own]), &laws[contact], functions)?;
+            }
+            needed[contact] = needed[contact].map(|alone| common[groups[contact]].unwrap_or(alone));
+        }
     }
     Ok(needed)
+}
+
+/// Whether each of the contacts can take over the tangential impulse of the first, and nothing else changes.
+fn exchange<T: Ordered>(
+    mut members: impl Iterator<Item = usize>,
+    impulses: &[Pair<LinearFunction<T>>],
+) -> Result<bool, Unsettled> {
+    let Some(first) = members.next() else { return Ok(true) };
+    let directions = impulses[first][0].coefficients.len();
+    for other in members {
+        // What is known to share a tangential row has a direction of its own for that, of exact zeros and ones.
+        let is_one = |direction: usize| {
+            impulses.as_flattened().iter().enumerate().all(|(row, entry)| {
+                let is_zero = entry.coefficients[direction].sign() == Sign::Zero;
+                is_zero != (row == 2 * first || row == 2 * other)
+            })
+        };
+        if (0..directions).any(is_one) {
+            continue;
+        }
+        let equation = |(row, entry): (usize, &LinearFunction<T>)| {
+            let given = |place: usize| if row == 2 * place { T::one() } else { T::zero() };
+            [&entry.coefficients[..], &[given(first) - given(other)]].concat()
+        };
+        let rows = impulses.as_flattened().iter().enumerate().map(equation).collect();
+        if solve(directions, rows)?.is_none() {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+/// The least friction with which some admissible impulses hold all of these contacts, of which `law` is one's; `None` if
+/// only an infinite one does. The secant method and bisection enclose it.
+fn least_common<'a, T: Ordered + 'a>(
+    members: impl Iterator<Item = &'a Pair<LinearFunction<T>>> + Clone,
+    law: &Law,
+    functions: &[LinearFunction<T>],
+) -> Result<Option<T>, Unsettled> {
+    let dimension = functions.first().map_or(0, |function| function.coefficients.len());
+    // The most that a friction leaves of the smallest slack; negative if it is not enough, which is shown.
+    let room = |friction: f64| {
+        let edge = |side: f64| {
+            move |[t, n]: &'a Pair<LinearFunction<T>>| {
+                let slack = |t: T, n: T| n.scaled(friction) + t.scaled(side);
+                let coefficients = t.coefficients.iter().zip(&n.coefficients).map(|(&t, &n)| slack(t, n));
+                LinearFunction { constant: slack(t.constant, n.constant), coefficients: coefficients.collect() }
+            }
+        };
+        T::freeing(|| -> Result<f64, Unsettled> {
+            let edges = members.clone().map(edge(1.0)).chain(members.clone().map(edge(-1.0)));
+            let all: Vec<LinearFunction<T>> = functions.iter().cloned().chain(edges).collect();
+            let (_, least) = widest(&all, dimension, T::from_f64(ENOUGH))?;
+            let size = least.to_f64().abs().max(f64::MIN_POSITIVE);
+            Ok(match settled(least)? {
+                Ordering::Less => -size,
+                Ordering::Equal => 0.0,
+                Ordering::Greater => size,
+            })
+        })
+    };
+    let (mut low, mut at_low) = (0.0, room(0.0)?);
+    if at_low >= 0.0 {
+        return Ok(Some(T::zero()));
+    }
+    let most = match law.friction() {
+        Friction::Finite(mu) => mu.min(GREATEST),
+        Friction::Infinite => GREATEST,
+    };
+    let mut high = most.min(1.0);
+    let mut at_high = room(high)?;
+    while at_high < 0.0 {
+        if high >= most {
+            return Ok(None);
+        }
+        (low, at_low, high) = (high, at_high, most.min(4.0 * high));
+        at_high = room(high)?;
+    }
+    let between = |low: f64, high: f64, [at_low, at_high]: [f64; 2]| low + (high - low) * (at_low / (at_low - at_high));
+    for turn in 1.. {
+        let known = KNOWN * f64::max(high, least_friction(law));
+        if high - low <= known {
+            break;
+        }
+        let by_halves = turn % 3 == 0 || at_high == 0.0;
+        let zero = if by_halves { 0.5 * (low + high) } else { between(low, high, [at_low, at_high]) };
+        // Beyond the zero, seen from the end that is nearer, so that both ends close in on it.
+        let aside = if zero - low < high - zero { 0.4 * known } else { -0.4 * known };
+        let friction = (zero + aside).clamp(low + 0.4 * known, high - 0.4 * known);
+        match room(friction)? {
+            own if own < 0.0 => (low, at_low) = (friction, own),
+            own => (high, at_high) = (friction, own),
+        }
+    }
+    // One that ever greater impulses need ever less of is none.
+    let least = if low > 0.0 { between(low, high, [at_low, at_high]) } else { 0.0 };
+    Ok(Some(T::from_f64(least)))
 }
 
 /// The group of each contact: contacts whose impulses some direction of y changes together.
@@ -104,7 +218,6 @@ fn magnitude<T: Ordered>(number: T) -> Result<T, Unsettled> {
 mod tests {
     use super::*;
     use crate::impact::linear::tests::{Number, affine};
-    use crate::law::Friction;
 
     fn needed(frictions: [f64; 2], impulses: [Pair<LinearFunction<Number>>; 2]) -> [Option<f64>; 2] {
         let laws = frictions.map(|mu| Law::from(Friction::Finite(mu)));
@@ -134,6 +247,21 @@ mod tests {
         assert_eq!(needed([1.0, 1.0], impulses.clone()), [Some(0.75); 2]);
         // With different frictions each contact needs what the other cannot take over: 3 - 2 * 1, and nothing.
         assert_eq!(needed([2.0, 1.0], impulses.clone()), [Some(0.0), Some(1.0 / 3.0)]);
+    }
+
+    #[test]
+    fn contacts_that_jam_need_more_than_the_ratio_of_their_sums() {
+        // Sums of 1.5 and 2, but what shifts the tangential impulses shifts the normal ones, too: at a = -y the frictions
+        // (1.5 + a) / (1 + a) and a / (1 - a) are the same.
+        let impulses = [[affine(0.0, &[1.0]), affine(1.0, &[1.0])], [affine(1.5, &[-1.0]), affine(1.0, &[-1.0])]];
+        let a = (14.25_f64.sqrt() - 1.5) / 4.0;
+        let expected = a / (1.0 - a);
+        for needed in needed([5.0, 5.0], impulses.clone()) {
+            let off = needed.expect("pressed") - expected;
+            assert!(off.abs() < 2e-11, "{off}");
+        }
+        // With different frictions each for itself: at y = 0 the first needs none.
+        assert_eq!(needed([5.0, 4.0], impulses)[0], Some(0.0));
     }
 
     #[test]

@@ -74,7 +74,8 @@ pub struct Outcome {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub impulse_range: Option<Vec<Pair<Range>>>,
     /// |L_t| / L_n of each sticking contact that is pressed on the ground; null for others. If `impulse` is not unique,
-    /// it is the ratio of the sums of all contacts that share it, as of one foot's, or else the least admissible one.
+    /// it is the least friction that holds all contacts that share it, as those of one foot, or, if their frictions
+    /// differ, the least admissible ratio of each alone.
     pub friction_needed: Vec<Option<f64>>,
     /// Sign of det A (paper, section 2); null if it is not defined, as on a border.
     pub index: Option<i8>,

@@ -294,6 +294,38 @@ fn a_search_finds_what_trying_all_finds() {
     assert!(seen[0] > 100 && seen[1] > 0 && seen[2] > 1, "{seen:?}");
 }
 
+#[test]
+fn friction_needed_is_the_least_that_holds_contacts_together() {
+    let [compared, jammed] = total(600, |seed| {
+        let mut parts = Parts::dependent(&mut Random::new(seed));
+        let count = parts.friction.len();
+        parts.restitution.fill(0.0);
+        parts.friction.fill(Friction::Infinite);
+        let outcomes = parts.analyze().outcomes;
+        let mut found = [0; 2];
+        for outcome in outcomes.iter().filter(|outcome| !outcome.impulse_unique && !outcome.family && outcome.proven) {
+            let needed = outcome.friction_needed.iter().flatten().copied().fold(0.0, f64::max);
+            // Without a normal impulse only infinite friction holds a contact, which those of others may depend on.
+            let is_held =
+                |contact: usize| outcome.friction_needed[contact].is_some() || outcome.impulse[contact] == [0.0; 2];
+            if needed < 1e-3 || !(0..count).all(is_held) {
+                continue;
+            }
+            let holds = [1.0 + 1e-9, 1.0 - 1e-9].map(|factor| {
+                let friction = vec![Friction::Finite(factor * needed); count];
+                let known = |own: &heelstrike::impact::Outcome| own.modes == outcome.modes;
+                Parts { friction, ..parts.clone() }.analyze().outcomes.iter().any(known)
+            });
+            assert_eq!(holds, [true, false], "{needed} of {:?}: {}", outcome.modes, parts.json());
+            let sums = outcome.impulse.iter().fold([0.0; 2], |sum, l| [sum[0] + l[0], sum[1] + l[1]]);
+            found[0] += 1;
+            found[1] += u64::from(needed > 1.001 * f64::abs(sums[0] / sums[1]));
+        }
+        found
+    });
+    assert!(compared > 20 && jammed > 5, "{compared} {jammed}");
+}
+
 /// A regular problem of four contacts.
 fn of_four(random: &mut Random) -> Parts {
     std::iter::repeat_with(|| Parts::random(random)).find(|parts| parts.friction.len() == 4).expect("one of four")

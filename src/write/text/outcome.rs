@@ -36,9 +36,7 @@ impl Writer<'_> {
         self.loops(outcome);
         self.energy(outcome)?;
         if !outcome.impulse_unique {
-            let own = outcome.friction_needed.iter().flatten().count() > 1;
-            let own = if own { "; each friction needed is the least of that contact alone" } else { "" };
-            writeln!(self.out, "  {}; these are the least{own}", self.subject.wording.others)?;
+            writeln!(self.out, "  {}; these are the least", self.subject.wording.others)?;
         }
         if outcome.family {
             self.out.push_str("  a corner of a family\n");
