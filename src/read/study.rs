@@ -89,7 +89,7 @@ impl<'t> Study<'t> {
             root.missing("parameters").hint(example)
         })?;
         let parameters: Vec<_> =
-            field.fields("parameter")?.map(|entry| parameter(entry, &constants)).collect::<Result<_>>()?;
+            field.fields("parameter")?.map(|entry| parameter(root, entry, &constants)).collect::<Result<_>>()?;
         if !(1..=2).contains(&parameters.len()) {
             let reason = format!("a study varies one or two parameters, not {}", parameters.len());
             return Err(field.refuse(Reason::Inconsistent(reason)).hint("make the others constants"));
@@ -209,8 +209,8 @@ fn constants(tree: &Value, text: &str) -> Result<Names> {
             if entry.as_text().is_some_and(|text| names_in(text).any(is_open)) {
                 later.push(entry.key().to_owned());
             } else {
-                let value = entry.number().map_err(|error| beside_parameters(plain, entry, error))?;
-                constants.set(entry.key(), value);
+                refuse_parameters(plain, entry, "constants")?;
+                constants.set(entry.key(), entry.number()?);
             }
         }
         if later.len() == open.len() {
@@ -222,19 +222,18 @@ fn constants(tree: &Value, text: &str) -> Result<Names> {
     Ok(constants)
 }
 
-/// The refusal of a constant, with a hint if it uses a parameter.
-fn beside_parameters(root: Node, entry: Node, error: Error) -> Error {
+/// Refuses an expression of a parameter, one named as pi or e are as well: what is expected does not vary.
+fn refuse_parameters(root: Node, entry: Node, what: &str) -> Result<()> {
     let used = |name: &&str| names_in(entry.as_text().unwrap_or_default()).any(|used| used == *name);
     let parameters = root.field("parameters").ok().flatten();
     let parameters = parameters.iter().flat_map(|field| field.fields("parameter").into_iter().flatten());
-    match parameters.map(|parameter| parameter.key()).find(used) {
-        Some(name) => error.hint(format!("{name} is a parameter, and constants do not vary: write it into the state")),
-        None => error,
-    }
+    let Some(name) = parameters.map(|parameter| parameter.key()).find(used) else { return Ok(()) };
+    let reason = Reason::Inconsistent(format!("{name} is a parameter, and {what} do not vary"));
+    Err(entry.refuse(reason).hint("write it into the state, or rename the parameter"))
 }
 
 /// `{"from", "to", "steps"}`.
-fn parameter(entry: Node, constants: &Names) -> Result<Parameter> {
+fn parameter(root: Node, entry: Node, constants: &Names) -> Result<Parameter> {
     let name = name(entry)?;
     if constants.iter().any(|constant| constant == name) {
         let error = entry.refuse_name(entry.key(), Reason::Duplicate { what: "name", name });
@@ -247,7 +246,8 @@ fn parameter(entry: Node, constants: &Names) -> Result<Parameter> {
     let [from, to, steps] = entry.object("Parameter", ["from", "to", "steps"])?;
     let example = "a parameter is {\"from\": 0, \"to\": 1, \"steps\": 50}";
     let given = |field: Option<_>, name| field.ok_or_else(|| entry.missing(name).hint(example));
-    let (from, to) = (given(from, "from")?.number()?, given(to, "to")?.number()?);
+    let end = |part: Node| refuse_parameters(root, part, "ends of ranges").and_then(|()| part.number());
+    let (from, to) = (end(given(from, "from")?)?, end(given(to, "to")?)?);
     let steps = samples(given(steps, "steps")?)?;
     if from >= to || !(to - from).is_finite() {
         let reason = Reason::Inconsistent(format!("the range from {from:?} to {to:?} is empty or endless"));
@@ -298,6 +298,17 @@ mod tests {
         let text = r#"{"parameters": {"a": {"from": 0, "to": 1, "steps": 2}, "b": {"from": 0, "to": 1, "steps": 2}},
             "state": {"position": {"base": {"z": "sin(2*a)"}}, "stance": "leg_b"}}"#;
         assert_eq!(Study::from_json(text).expect("a study").unused(), ["b"]);
+    }
+
+    #[test]
+    fn what_does_not_vary_uses_no_parameter() {
+        for (constant, to) in [("2*e", "1"), ("1", "e - 1"), ("1", "e + c")] {
+            let text = format!(
+                r#"{{"constants": {{"c": "{constant}"}}, "parameters": {{"e": {{"from": 0, "to": "{to}", "steps": 3}}}}, "state": {{}}}}"#
+            );
+            let Err(error) = Study::from_json(&text) else { panic!("{text}") };
+            assert!(error.to_string().contains("e is a parameter, and "), "{error}");
+        }
     }
 
     #[test]
