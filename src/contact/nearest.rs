@@ -2,12 +2,16 @@
 
 use super::Contact;
 use super::detect::Footing;
+use super::face::Face;
 use super::feet::Foot;
+use super::outline::Outline;
 use super::placement::Placement;
 use super::point::{Point, Touch, points};
 use super::profile::{self, Closeness};
 use super::surface::Surface;
+use super::terrain::Terrain;
 use crate::error::{Error, Reason, Result};
+use crate::planar::Vector;
 
 /// A sole whose other end is lower than this part of the way to it is meant to be flat on the ground.
 const FLAT: f64 = 0.1;
@@ -37,6 +41,29 @@ impl Footing<'_> {
         nearest
     }
 
+    /// Rises at which a corner of the profile is inside of a foot: one that reaches beyond both ends of the profile has no
+    /// corner above it, and from below does not seem to be in it.
+    fn around(&self, terrain: &Terrain) -> impl Iterator<Item = f64> {
+        let corners = move || (0..=terrain.segments().len()).map(|corner| terrain.at_corner(corner)[0].to);
+        self.feet.iter().flat_map(move |foot| {
+            let outline = Outline::new(foot, self.placement);
+            let [low, high] = outline.region(0.0);
+            corners().filter(move |corner| (low.x..=high.x).contains(&corner.x)).map(move |corner| {
+                let of_sides = outline.bones.iter().filter_map(|Face { from, to, .. }| {
+                    let share = (corner.x - from.x) / (to.x - from.x);
+                    (0.0..=1.0).contains(&share).then_some(from.z + share * (to.z - from.z))
+                });
+                let (least, most) =
+                    of_sides.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), z| (least.min(z), most.max(z)));
+                let near =
+                    |a: &&Vector<f64>, b: &&Vector<f64>| (a.x - corner.x).abs().total_cmp(&(b.x - corner.x).abs());
+                // Beside all sides it may still be within a corner's rim.
+                let beside = || outline.corners.iter().min_by(near).map_or(0.0, |nearest| nearest.z);
+                corner.z - if least <= most { 0.5 * (least + most) } else { beside() }
+            })
+        })
+    }
+
     /// How far the robot must rise along z so that the lowest of its feet, or of the named contacts, is on the ground
     /// \[m\].
     ///
@@ -55,7 +82,9 @@ impl Footing<'_> {
         };
         let rise = match self.surface {
             Surface::HalfPlane(plane) => Some(-gap(self.placement) / plane.normal.z),
-            Surface::Profile(_) => first_above(|rise| gap(&self.placement.raised(rise)), self.feet.size()),
+            Surface::Profile(terrain) => {
+                first_above(|rise| gap(&self.placement.raised(rise)), self.feet.size(), || self.around(terrain))
+            }
         };
         rise.filter(|rise| rise.is_finite()).ok_or_else(|| {
             let (reason, remedy) = match self.named().is_none() && self.feet.iter().next().is_none() {
@@ -68,11 +97,22 @@ impl Footing<'_> {
     }
 }
 
-/// The least rise at which the `gap`, which grows with it, is positive; the search begins with steps of `size` \[m\].
-fn first_above(gap: impl Fn(f64) -> f64, size: f64) -> Option<f64> {
+/// The least rise at which the `gap`, which grows with it, is positive; the search begins with steps of `size` \[m\], and
+/// if the gap is never negative there, at the highest of some `others`.
+fn first_above<I: Iterator<Item = f64>>(
+    gap: impl Fn(f64) -> f64,
+    size: f64,
+    others: impl FnOnce() -> I,
+) -> Option<f64> {
     let steps = || std::iter::successors(Some(size), |step| Some(2.0 * step)).take_while(|step| step.is_finite());
-    let mut below = steps().map(|step| -step).find(|&rise| gap(rise) <= 0.0)?;
-    let mut above = steps().find(|&rise| gap(rise) > 0.0)?;
+    let is_below = |rise: &f64| gap(*rise) <= 0.0;
+    let highest = || {
+        let mut others: Vec<f64> = others().collect();
+        others.sort_unstable_by(|a, b| b.total_cmp(a));
+        others.into_iter().find(is_below)
+    };
+    let mut below = steps().map(|step| -step).find(is_below).or_else(highest)?;
+    let mut above = steps().map(|step| below.max(0.0) + step).find(|&rise| gap(rise) > 0.0)?;
     loop {
         let middle = below + (above - below) / 2.0;
         match middle {

@@ -118,6 +118,23 @@ fn a_point_mass_falls_and_lands_anywhere() {
 }
 
 #[test]
+fn a_foot_beyond_both_ends_of_the_profile_is_put_on_them() {
+    let plank =
+        robot(&urdf::robot(&[link("plank", 2.0, [0.0; 2], 0.1, &collision([0.0; 2], "box size=\"1 1 0.05\""))]));
+    for points in [json!([[-0.2, 0], [0.2, 0]]), json!([[-0.2, 0], [0, -0.3], [0.2, 0]])] {
+        let placed = |z: f64| {
+            let state = json!({"position": {"base": {"z": z}}, "velocity": {"base": {"z": -1}}, "place": "lowest",
+                "friction": 1, "ground": {"profile": points}});
+            impact(&plank, state)
+        };
+        for z in [-3.0, 0.0, 0.02, 5.0] {
+            let points: Vec<f64> = placed(z).contacts.iter().flat_map(|contact| contact.point.components()).collect();
+            assert_close(&points, &[-0.2, 0.0, 0.2, 0.0]);
+        }
+    }
+}
+
+#[test]
 fn lowest_foot_beyond_the_profile_is_refused() {
     let beyond = json!({"position": {"base": {"x": 9}}, "place": "lowest", "ground": {"profile": step(0.0, 0.2)}});
     let error = try_impact(&two_feet(0.0), Options::default(), beyond).expect_err("no ground");
