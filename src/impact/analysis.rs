@@ -108,26 +108,25 @@ impl Scratch {
         explanation(moving.as_ref().unwrap_or(problem), &self.scale)
     }
 
-    /// The friction with which no contact would have to slide; `None` if one slides whatever the friction is.
+    /// The friction with which no contact would have to slide, inside of it `None` if one slides whatever the friction
+    /// is; `None` if it is not known.
     ///
     /// It is the greatest [`Outcome::friction_needed`] of the outcome without a sliding contact that needs least;
-    /// `problem` and `source` have infinite friction everywhere. More contacts than [`CONTACT_LIMIT`] have none, and so
-    /// have those that a budget leaves open.
+    /// `problem` and `source` have infinite friction everywhere. It is not known of more contacts than [`CONTACT_LIMIT`],
+    /// and if no precision, or no time, decides an outcome.
     pub fn friction_without_slip(
         &mut self,
         problem: &ContactProblem,
         source: &dyn Ladder,
         options: AnalysisOptions<'_>,
-    ) -> Option<f64> {
+    ) -> Option<Option<f64>> {
         if problem.contacts() > CONTACT_LIMIT {
             return None;
         }
         self.tableau.without_slip = true;
         let (Findings { outcomes, .. }, _) = self.find(problem, &Remembered::of(source), options);
-        if is_spent() {
-            return None;
-        }
-        let least = outcomes.iter().map(steepest).min_by(f64::total_cmp);
+        let is_known = !is_spent() && outcomes.iter().all(|outcome| outcome.decided);
+        let least = is_known.then(|| outcomes.iter().map(steepest).min_by(f64::total_cmp));
         self.recycle(outcomes);
         least
     }

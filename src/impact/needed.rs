@@ -256,9 +256,11 @@ mod tests {
         let impulses = [[affine(0.0, &[1.0]), affine(1.0, &[1.0])], [affine(1.5, &[-1.0]), affine(1.0, &[-1.0])]];
         let a = (14.25_f64.sqrt() - 1.5) / 4.0;
         let expected = a / (1.0 - a);
-        for needed in needed([5.0, 5.0], impulses.clone()) {
-            let off = needed.expect("pressed") - expected;
-            assert!(off.abs() < 2e-11, "{off}");
+        for friction in [5.0, 1e216] {
+            for needed in needed([friction; 2], impulses.clone()) {
+                let off = needed.expect("pressed") - expected;
+                assert!(off.abs() < 2e-11, "{off}");
+            }
         }
         // With different frictions each for itself: at y = 0 the first needs none.
         assert_eq!(needed([5.0, 4.0], impulses)[0], Some(0.0));

@@ -352,8 +352,8 @@ impl<'r> Pipeline<'r> {
             let rough = problem.under(Law::Unbounded);
             let source = ExactState { laws: rough.laws(), ..source };
             let asked = AnalysisOptions { rejections: ListedRejections::Nothing, ..asked };
-            friction_needed = self.scratch.friction_without_slip(&rough, &source, asked);
-            slides_regardless = friction_needed.is_none() && !is_spent();
+            let found = self.scratch.friction_without_slip(&rough, &source, asked);
+            (friction_needed, slides_regardless) = (found.flatten(), found == Some(None));
         }
         if let Some(analysis) = analysis.as_mut().filter(|_| !brief || next) {
             let unstruck = Unstruck { before: velocity, applied, free, errors: &[], closed: Closed::Change };

@@ -110,13 +110,14 @@ pub(super) fn about_axes(description: &Description) -> Option<String> {
 /// The caution about planar joints whose axis is off the normal, but nearer to it than to the plane.
 pub(super) fn about_planar(description: &Description, pose: &ReferencePose, plane: Plane) -> Option<String> {
     let off = |(joint, axis): &(&UrdfJoint, &[f64; 3])| {
-        joint.kind == JointKind::Planar
-            && joint.has_axis
-            && (pose.tolerance..=OBLIQUE).contains(&plane.off_normal(**axis))
+        let angle = plane.off_normal(**axis);
+        joint.kind == JointKind::Planar && joint.has_axis && angle > pose.tolerance && angle <= OBLIQUE
     };
     let off = description.joints.iter().zip(&pose.axes).filter(off);
     let names = names(off.map(|(joint, _)| &joint.name))?;
-    Some(format!("planar, with an axis off the plane's normal, and taken as in the plane: {names}"))
+    Some(format!(
+        "planar, with an axis off the plane's normal, and taken as in the plane: {names}; straighten the axis"
+    ))
 }
 
 /// The caution about lengths that no legged robot has, as millimeters taken for meters.
@@ -193,7 +194,10 @@ pub(super) fn about_followers(description: &Description, pose: &ReferencePose, r
         (is_off && moves(followed)).then(|| format!("{own} follows {other}"))
     });
     let followers = names(followers)?;
-    Some(format!("frozen at zero although what they follow moves, their axes being off the plane: {followers}"))
+    Some(format!(
+        "frozen at zero although what they follow moves, their axes being off the plane: {followers}; to keep both where \
+         they belong, hold what is followed (`hold: NAME=VALUE`)"
+    ))
 }
 
 /// The caution about rotations of more than a turn, as degrees taken for radians.

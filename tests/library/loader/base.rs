@@ -121,7 +121,10 @@ fn a_planar_joint_about_another_axis_slides() {
     // Nearly normal, it is meant in the plane.
     let robot = of_base("0 1 0.02");
     assert_eq!(found(&robot), (Base::Floating, "b", vec!["k"]));
-    assert_eq!(only_caution(&robot), "planar, with an axis off the plane's normal, and taken as in the plane: j");
+    assert_eq!(
+        only_caution(&robot),
+        "planar, with an axis off the plane's normal, and taken as in the plane: j; straighten the axis"
+    );
     // Without an <axis> it is meant in the plane.
     let text = chain(&[0.0, 2.0, 1.0], &[("planar", "0 0 1"), PITCH]).replace("<axis xyz=\"0 0 1\"/>", "");
     assert_eq!(found(&load(&text)), (Base::Floating, "b", vec!["k"]));
