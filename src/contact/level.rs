@@ -1,41 +1,56 @@
-//! Contacts of one body that stand level on straight ground.
+//! Contacts of one rigid part that stand level on straight ground.
 //!
 //! ```text
 //!     p_b = p_a + tangent (tangent . (p_b - p_a))      if normal . (p_b - p_a) is within rounding
 //! ```
 //!
-//! The angles of a pose are rounded, so a flat sole is tilted by some 1e-16 rad. Contacts that bounce, or whose friction
-//! is infinite, may then balance on that tilt with impulses of 1e16 N s. What only digits below those of the pose say
-//! is not read from it: all numbers beyond f64 take such contacts as exactly level. Points that are given by name are
-//! meant where they are; of these only those count that are level in all digits.
+//! The angles of a pose are rounded, so a flat sole is tilted by some 1e-16 rad, and so is the line between two feet whose
+//! joints are braked. Contacts that bounce, or whose friction is infinite, may then balance on that tilt with impulses of
+//! 1e16 N s. What only digits below those of the pose say is not read from it: all numbers beyond f64 take such contacts
+//! as exactly level. Points that are given by name are meant where they are; of these only those of one body count that
+//! are level in all digits.
 
 use super::Contact;
-use super::placement::Placement;
+use crate::dynamics::Workspace;
+use crate::dynamics::plan::{JointMotion, Plan};
+use crate::planar::Vector;
 
 /// How far one point may be above another, as part of what their places in the body were added up from: the bounds of
 /// f64, [`RoundingBounds`](crate::dynamics::RoundingBounds), count 48 units and more of it for each point.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// Where a contact is on the line of another of its body.
+/// Where a contact is on the line of another of its rigid part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Level {
     /// The other one, which is level with none.
     pub with: usize,
     /// How far along the tangent it is taken to be from there \[m\]; `None` if its place is exactly level by itself.
     pub along: Option<f64>,
+    /// The lengths of the arms between both bodies \[m\].
+    pub way: f64,
+    /// Whether both move as points of one body do: no joint between them has a rate.
+    pub moves_alike: bool,
+}
+
+/// A robot in a pose, whose bodies between joints without a column or with a `kept` coordinate are rigid parts.
+#[derive(Clone, Copy)]
+pub struct RigidParts<'a> {
+    pub plan: &'a Plan,
+    /// After `kinematics`.
+    pub workspace: &'a Workspace,
+    pub kept: &'a [usize],
+    /// dq/dt.
+    pub velocity: &'a [f64],
 }
 
 /// Which contacts are level with which, up to rounding; none of those behind the last entry. The foot of a `stance` keeps
 /// its place.
-pub fn level(contacts: &[Contact], placement: &Placement, stance: Option<usize>) -> Vec<Option<Level>> {
+pub fn level(contacts: &[Contact], parts: RigidParts<'_>, stance: Option<usize>) -> Vec<Option<Level>> {
     let mut levels: Vec<Option<Level>> = Vec::new();
     for (index, contact) in contacts.iter().enumerate() {
         let is_own = |&other: &usize| levels.get(other).is_none_or(Option::is_none);
         let others = stance.into_iter().chain((0..index).filter(is_own));
-        let found = others.filter(|_| stance != Some(index)).find_map(|with| {
-            let along = along(contact, &contacts[with], placement)?;
-            Some(Level { with, along: Some(along) })
-        });
+        let found = others.filter(|_| stance != Some(index)).find_map(|with| parts.level(contact, contacts, with));
         if found.is_some() {
             levels.resize(index, None);
             levels.push(found);
@@ -44,13 +59,47 @@ pub fn level(contacts: &[Contact], placement: &Placement, stance: Option<usize>)
     levels
 }
 
-/// How far a contact is from another along the tangent \[m\], if they are level.
-fn along(contact: &Contact, other: &Contact, placement: &Placement) -> Option<f64> {
-    if (contact.body, contact.ground) != (other.body, other.ground) {
-        return None;
+impl RigidParts<'_> {
+    /// How a contact is level `with` another, if it is.
+    fn level(self, contact: &Contact, contacts: &[Contact], with: usize) -> Option<Level> {
+        let other = &contacts[with];
+        let parts = [contact, other].map(|own| self.bodies(own.body).last());
+        if parts[0] != parts[1] || contact.ground != other.ground {
+            return None;
+        }
+        let (arm, way, moves_alike) = if contact.body == other.body {
+            (self.workspace.rotation[contact.body].apply(contact.center - other.center), 0.0, true)
+        } else {
+            let [own, others] = [contact, other].map(|own| self.way(own));
+            (own.0 - others.0, own.1 + others.1, own.2 && others.2)
+        };
+        let rise = contact.normal().dot(arm) - (contact.radius - other.radius);
+        let length = |own: &Contact| size(own.center) + own.radius;
+        let is_level = rise.abs() <= ROUNDING * (length(contact) + length(other) + way);
+        is_level.then(|| Level { with, along: Some(contact.tangent().dot(arm)), way, moves_alike })
     }
-    let arm = placement.turned(contact.body, contact.center - other.center);
-    let rise = contact.normal().dot(arm) - (contact.radius - other.radius);
-    let length = |own: &Contact| own.center.x.abs() + own.center.z.abs() + own.radius;
-    (rise.abs() <= ROUNDING * (length(contact) + length(other))).then(|| contact.tangent().dot(arm))
+
+    /// A body and those below it in its rigid part.
+    fn bodies(&self, body: usize) -> impl Iterator<Item = usize> {
+        std::iter::successors(Some(body), |&body| {
+            let own = &self.plan.bodies[body];
+            own.parent.filter(|_| own.column.is_none() || self.kept.contains(&own.coordinate))
+        })
+    }
+
+    /// Where a contact's center is from the origin of its rigid part \[m\], the lengths of the arms to its body \[m\], and
+    /// whether all joints there are at rest.
+    fn way(&self, contact: &Contact) -> (Vector<f64>, f64, bool) {
+        let center = self.workspace.rotation[contact.body].apply(contact.center);
+        let joints = self.bodies(contact.body).zip(self.bodies(contact.body).skip(1)).map(|(body, _)| body);
+        joints.fold((center, 0.0, true), |(place, length, rests), body| {
+            let (arm, own) = (self.workspace.arm[body], &self.plan.bodies[body]);
+            let has_rate = !matches!(own.motion, JointMotion::Fixed) && self.velocity[own.coordinate] != 0.0;
+            (place + arm, length + size(arm), rests && !has_rate)
+        })
+    }
+}
+
+fn size(vector: Vector<f64>) -> f64 {
+    vector.x.abs() + vector.z.abs()
 }

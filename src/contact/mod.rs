@@ -21,7 +21,7 @@ mod nearest;
 
 pub(crate) use detect::Footing;
 pub use feet::{Feet, Foot};
-pub(crate) use level::{Level, level};
+pub(crate) use level::{Level, RigidParts, level};
 pub use merge::Merged;
 pub use placement::Placement;
 pub(crate) use plane::HalfPlane;

@@ -121,11 +121,20 @@ impl<'a> ExactState<'a> {
         assembly.points.clear();
         assembly.points.extend(self.contacts.iter().map(|contact| self.point(contact)));
         for (index, level) in self.levels.iter().enumerate() {
-            let &Some(Level { with, along: Some(along) }) = level else { continue };
-            let (other, own) = (assembly.points[with], &mut assembly.points[index]);
+            let &Some(Level { with, along: Some(along), .. }) = level else { continue };
+            let Assembly { plan, workspace, points, .. } = &mut *assembly;
+            let (other, own) = (points[with], &mut points[index]);
             let [tangent, normal] = own.axes();
             let arm = tangent * T::from_f64(along) + normal * (own.radius - other.radius);
-            own.center = other.center + assembly.workspace.rotation[own.body].back().apply(arm);
+            let back = workspace.rotation[own.body].back();
+            own.center = if own.body == other.body {
+                other.center + back.apply(arm)
+            } else {
+                let ways = [other.body, own.body]
+                    .map(|body| plan.way_to_root(body).fold(Vector::zero(), |sum, (at, _)| sum + workspace.arm[at]));
+                let center = workspace.rotation[other.body].apply(other.center);
+                back.apply(ways[0] - ways[1] + center + arm)
+            };
         }
     }
 
@@ -286,7 +295,7 @@ impl Source for ExactState<'_> {
     }
 
     fn shared_tangent(&self, contact: usize) -> Option<usize> {
-        let &Level { with, .. } = self.levels.get(contact)?.as_ref()?;
+        let &Level { with, moves_alike: true, .. } = self.levels.get(contact)?.as_ref()? else { return None };
         let still = |contact: usize| self.still.contacts.get(contact);
         let is_alike = still(contact) == still(with) || !self.still.rows.is_empty();
         // Accelerations differ by what the body's turn brings along.

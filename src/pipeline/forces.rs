@@ -319,7 +319,7 @@ impl Pipeline<'_> {
     /// Leaves the contacts that have a slip and so take part, with what is known of them, and poses an impact there.
     fn take_part(&mut self, state: &State, prepared: &mut Prepared, slips: &[Option<Ordering>]) -> Result<()> {
         let Prepared { velocity, foot, levels, merged, still, change, impact, .. } = prepared;
-        let Impact { contacts, stance, resting, placement, problem, .. } = &mut **impact;
+        let Impact { contacts, stance, resting, problem, .. } = &mut **impact;
         let stays: Vec<usize> = (0..slips.len()).filter(|&at| slips[at].is_some()).collect();
         if stays.len() < slips.len() {
             let place = |at: usize| stays.iter().position(|&own| own == at);
@@ -332,7 +332,7 @@ impl Pipeline<'_> {
                 merged.outer = merged.outer.iter().filter_map(|&at| place(at)).collect();
                 !merged.outer.is_empty()
             });
-            *levels = self.levels(state, contacts, placement, *stance);
+            *levels = self.levels(state, contacts, velocity, *stance);
             self.assembly.points = contacts.iter().map(Contact::point_of).collect();
             self.bound_velocities(contacts, levels, velocity, Standing { foot: foot.as_ref(), place: *stance });
             self.assembly.contact_jacobian(velocity, *stance);

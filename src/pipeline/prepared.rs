@@ -11,7 +11,7 @@ use super::exact::ExactState;
 use super::resting::Standing;
 use super::still::Still;
 use super::{CONTACT_TOLERANCE, Impact, Pipeline};
-use crate::contact::{Contact, Footing, Level, Merged, Placement, Surface, level};
+use crate::contact::{Contact, Footing, Level, Merged, Placement, RigidParts, Surface, level};
 use crate::dynamics::plan::Plan;
 use crate::dynamics::{Arm, Constraints, RoundingBounds, Workspace, has_balance, kinetic_energy, mass_diagonal};
 use crate::error::{Error, Reason, Result, finite};
@@ -146,7 +146,7 @@ impl Pipeline<'_> {
         self.assembly.points.extend(contacts.iter().map(Contact::point_of));
         self.assembly.contact_jacobian(velocity, *stance);
         let standing = Standing { foot: foot.as_ref(), place: *stance };
-        *levels = self.levels(state, contacts, placement, *stance);
+        *levels = self.levels(state, contacts, velocity, *stance);
         self.bound_velocities(contacts, levels, velocity, standing);
         if is_rounding {
             self.blur(contacts, *stance, opened.iter().zip(&*velocity).map(|(given, closed)| closed - given).collect());
@@ -382,10 +382,11 @@ impl Pipeline<'_> {
         &self,
         state: &State,
         contacts: &[Contact],
-        placement: &Placement,
+        velocity: &[f64],
         stance: Option<usize>,
     ) -> Vec<Option<Level>> {
-        let mut levels = level(contacts, placement, stance);
+        let Assembly { plan, workspace, kept, .. } = &self.assembly;
+        let mut levels = level(contacts, RigidParts { plan, workspace, kept, velocity }, stance);
         if state.scene.contacts.is_some() {
             for (index, own) in levels.iter_mut().enumerate() {
                 let is_level = |own: &Level| self.is_exactly_level(state, &contacts[index], &contacts[own.with]);
@@ -395,8 +396,11 @@ impl Pipeline<'_> {
         levels
     }
 
-    /// Whether two points of one body have the same height above the ground in all digits of the pose.
+    /// Whether two points are of one body and have the same height above the ground in all digits of the pose.
     fn is_exactly_level(&self, state: &State, a: &Contact, b: &Contact) -> bool {
+        if a.body != b.body {
+            return false;
+        }
         let ground = |own: &Contact| state.scene.ground.axes(own.ground);
         let [a, b] = [a, b].map(|own| own.exact_point::<Residue>(self.robot, ground(own)));
         let turn = self.assembly.plan.rotation::<Residue>(a.body, &state.position);
@@ -418,7 +422,7 @@ impl Pipeline<'_> {
         let arms = contacts.iter().enumerate().map(|(index, contact)| {
             // The place of a level contact is added up from that of the other.
             let other = levels.get(index).copied().flatten().filter(|level| level.along.is_some());
-            let other = other.map(|level| contacts[level.with].arm(robot).length);
+            let other = other.map(|level| contacts[level.with].arm(robot).length + level.way);
             let own = contact.arm(robot);
             Arm { length: own.length + other.unwrap_or(0.0), ..own }
         });

@@ -6,6 +6,7 @@ use crate::support::mechanism::turned;
 use crate::support::random::Random;
 use crate::support::scaled::largest;
 use heelstrike::description::Description;
+use heelstrike::impact::Mode;
 use heelstrike::reductions::Reductions;
 use heelstrike::robot::Reduction;
 
@@ -315,6 +316,56 @@ fn a_flat_sole_is_level_in_every_pose() {
         assert_eq!((modes(&posed), posed.contacts.len()), (modes(&drawn), 2), "seed {seed}");
         for (one, other) in velocities_after(&posed).iter().zip(velocities_after(&drawn)) {
             assert!(near(one, &other, 1e-12 * largest(one)), "seed {seed}: {one:?} is not {other:?}");
+        }
+    }
+}
+
+/// Two feet whose joints are held stand as those of one body: rounding tilts the line between them by 1e-16 rad, and no
+/// impulse of 1e16 N s balances on that.
+#[test]
+fn feet_of_held_legs_are_level_as_one_body_is() {
+    // With bodies whose axes have these pitches where the feet are level.
+    let biped = |torso: f64, legs: [f64; 2], hip: urdf::Axis| {
+        let mut elements = vec![urdf::link("torso", 5.0, turned([0.02, 0.1], -torso), 0.07, "")];
+        for (at, side) in ["left", "right"].into_iter().enumerate() {
+            let [com, foot] =
+                [0.5, 1.0].map(|part| turned([[0.3, -0.75], [-0.2, -0.75]][at].map(|own| part * own), -legs[at]));
+            let sole = urdf::collision(foot, "sphere radius=\"0.02\"");
+            elements.push(urdf::link(side, 1.0, com, 0.02, &sole));
+            let place = turned([0.05, -0.1], -torso);
+            elements.push(urdf::joint(format!("{side}_hip"), hip, ["torso", side], place, ""));
+        }
+        robot(&urdf::robot(&elements))
+    };
+    for seed in 0..60 {
+        let mut random = Random::new(seed);
+        let [torso, left, right] = std::array::from_fn(|_| random.between(-0.6, 0.6));
+        let [x, pitch, bounce, rate] = std::array::from_fn(|_| random.between(-1.0, 1.0));
+        let state = |pitch_now: f64| {
+            json!({
+                "position": {"base": {"x": 40.0, "pitch": pitch_now}},
+                "velocity": {"base": {"x": x, "z": -1.0, "pitch": pitch}},
+                "friction": if seed % 3 == 0 { json!(0.7) } else { json!("infinite") },
+                "restitution": if seed % 4 == 0 { bounce.abs() } else { 0.0 }, "place": "lowest",
+            })
+        };
+        let mut held = state(torso);
+        held["position"]["joints"] = json!({"left_hip": left - torso, "right_hip": right - torso});
+        held["held"] = json!(["left_hip", "right_hip"]);
+        let robot = biped(torso, [left, right], urdf::HINGE);
+        let [posed, welded] = [impact(&robot, &held), impact(&biped(0.0, [0.0; 2], urdf::Axis::Fixed), state(0.0))];
+        assert!(is_proven(&posed) && is_proven(&welded), "seed {seed}");
+        assert_eq!((modes(&posed), posed.contacts.len()), (modes(&welded), 2), "seed {seed}");
+        for (one, other) in velocities_after(&posed).iter().zip(velocities_after(&welded)) {
+            assert!(near(&one[..3], &other, 1e-12 * largest(one).max(1.0)), "seed {seed}: {one:?} is not {other:?}");
+        }
+        // A leg that swings on moves its foot against the other one, so that not both can stick.
+        held["velocity"]["joints"] = json!({"left_hip": rate});
+        let swinging = impact(&robot, &held);
+        assert!(is_proven(&swinging), "seed {seed}");
+        assert!(modes(&swinging).iter().all(|modes| *modes != [Mode::Stick; 2]), "seed {seed}");
+        for impulse in outcomes(&swinging).iter().flat_map(|outcome| &outcome.impulse) {
+            assert!(impulse.iter().all(|own| own.abs() < 1e3), "seed {seed}: {impulse:?}");
         }
     }
 }
