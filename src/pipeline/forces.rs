@@ -75,6 +75,9 @@ impl Unforced {
     }
 }
 
+/// No planet has a stronger gravity \[m/s^2\]; some programs count in centimeters.
+const STRONGEST: f64 = 100.0;
+
 impl Pipeline<'_> {
     /// Every consistent set of contact forces and accelerations of one state.
     ///
@@ -172,8 +175,10 @@ impl Pipeline<'_> {
             // Those of an impact are infinite, or of other velocities.
             self.bound_velocities(contacts, levels, velocity, Standing { foot: foot.as_ref(), place: *stance });
         }
-        if state.scene.gravity() < 0.0 {
-            notes.push("gravity is negative, so it acts upward: 9.81 is that of the earth".into());
+        match state.scene.gravity() {
+            own if own < 0.0 => notes.push("gravity is negative, so it acts upward: 9.81 is that of the earth".into()),
+            own if own > STRONGEST => notes.push(format!("gravity is {own} m/s^2: 9.81 is that of the earth")),
+            _ => {}
         }
         let slips = self.slips(state, velocity, contacts, foot.as_ref(), notes)?;
         let contacts = contacts.iter().zip(&*velocity_before).zip(&slips);

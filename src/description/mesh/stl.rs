@@ -13,14 +13,18 @@ pub(super) fn vertices(bytes: &[u8]) -> Result<Vec<[f64; 3]>, String> {
     Ok(scene.meshes.iter().flat_map(|mesh| &mesh.vertices).map(|vertex| vertex.map(f64::from)).collect())
 }
 
-/// ASCII in small letters, as some programs write it in capitals; binary without what follows its last triangle, and not
+/// ASCII in small letters, as some programs write it in capitals, and with a name, which mesh-loader wants; binary without what follows its last triangle, and not
 /// beginning with "solid", by which mesh-loader takes it for ASCII if a byte of its number of triangles is a line break
 /// (the feet of Solo and Bolt). A binary file that is cut short is refused: mesh-loader would read what is there.
 fn tidied(bytes: &[u8]) -> Result<Cow<'_, [u8]>, String> {
-    let begin = bytes.trim_ascii_start();
+    let begin = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
     let begins_as_text = begin.len() >= 5 && begin[..5].eq_ignore_ascii_case(b"solid");
-    if begins_as_text && bytes.is_ascii() && !bytes.contains(&0) {
-        return Ok(bytes.to_ascii_lowercase().into());
+    if begins_as_text && begin.is_ascii() && !begin.contains(&0) {
+        let mut text = begin.to_ascii_lowercase();
+        if text[5..].trim_ascii_start().starts_with(b"facet") {
+            text.splice(5..5, *b" unnamed\n");
+        }
+        return Ok(text.into());
     }
     let Some(&[a, b, c, d]) = bytes.get(HEADER - 4..HEADER).and_then(|count| count.first_chunk()) else {
         return Err("it is neither ASCII STL nor long enough for binary STL".into());

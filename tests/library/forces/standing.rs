@@ -40,6 +40,21 @@ fn block_stands_by_the_lever_rule() {
 }
 
 #[test]
+fn odd_gravity_is_noted() {
+    for (gravity, expected) in [
+        (9.81, None),
+        (981.0, Some("gravity is 981 m/s^2: 9.81 is that of the earth")),
+        (-9.81, Some("gravity is negative, so it acts upward: 9.81 is that of the earth")),
+    ] {
+        let mut state = on_slope(0.0, 0.0);
+        state["gravity"] = json!(gravity);
+        let found = forces(&block(), state);
+        let note = found.notes.iter().find(|note| note.starts_with("gravity"));
+        assert_eq!(note.map(String::as_str), expected);
+    }
+}
+
+#[test]
 fn block_on_a_slope_holds_within_its_friction() {
     // tan(slope) = 0.5 is the edge.
     let edge = 0.5_f64.atan();
