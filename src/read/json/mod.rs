@@ -321,7 +321,7 @@ const SETTINGS: [&str; 5] = ["contact_tolerance", "resting_speed", "strict_limit
 const SPATIAL: &str = "a table may give a base in three dimensions (q_base_y, q_base_qw and so on)";
 
 /// The names of an object's fields in [`FORMAT`], in the order in which hints list them.
-fn fields_of(object: &str) -> Vec<String> {
+pub(crate) fn fields_of(object: &str) -> Vec<String> {
     let Ok(format) = Value::parse(FORMAT) else { return Vec::new() };
     match ["$defs", object, "properties"].into_iter().try_fold(&format, |value, name| value.get(name)) {
         Some(Value::Object(fields)) => fields.iter().map(|(name, _)| name.to_string()).collect(),

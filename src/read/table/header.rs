@@ -2,7 +2,7 @@
 
 use super::flat;
 use super::records::{Form, Record};
-use crate::read::json::line_and_column;
+use crate::read::json::{fields_of, line_and_column};
 use crate::robot::{Base, FreezeReason, Plane};
 use crate::{Error, Reason, Result, Robot};
 use std::collections::HashSet;
@@ -31,23 +31,6 @@ const OTHERS: [(&str, TableColumn); 5] = [
     ("restitution", TableColumn::Restitution),
     ("stance", TableColumn::Stance),
     ("time", TableColumn::Carried),
-];
-
-/// Fields of a state for which a table has no columns.
-const OF_STATES: [&str; 13] = [
-    "position",
-    "velocity",
-    "ground",
-    "place",
-    "held",
-    "rotor_inertia",
-    "contacts",
-    "impulse",
-    "gravity",
-    "torque",
-    "virtual",
-    "loops",
-    "uncertainty",
 ];
 
 /// The most columns of a table: each name is compared with those of all coordinates.
@@ -194,8 +177,8 @@ impl Header {
     /// Refuses a column that is carried through and is named like a field of a state or resembles one that is missing,
     /// unless it is said to be foreign.
     fn check_foreign(&self, record: Record, robot: &Robot) -> Result<()> {
-        let mut carried = self.unread();
-        if let Some(at) = carried.find(|&at| is_of_states(&self.names[at], robot)) {
+        let without_columns = fields_without_columns();
+        if let Some(at) = self.unread().find(|&at| is_of_states(&self.names[at], &without_columns, robot)) {
             return Err(self.in_column(of_states(&self.names[at]), record, at));
         }
         let others = OTHERS.iter().map(|(name, _)| *name).filter(|name| !self.names.iter().any(|given| given == name));
@@ -451,12 +434,17 @@ fn plain(name: &str) -> String {
     without_unit.chars().map(letter).collect::<String>().trim_matches('_').to_owned()
 }
 
-/// Whether a column is named like a field of a state for which tables have none, or like an entry of such a field.
-fn is_of_states(name: &str, robot: &Robot) -> bool {
+/// Fields of a state for which a table has no columns.
+fn fields_without_columns() -> Vec<String> {
+    fields_of("State").into_iter().filter(|field| OTHERS.iter().all(|(other, _)| other != field)).collect()
+}
+
+/// Whether a column is named like one of these fields of a state, or like an entry of one.
+fn is_of_states(name: &str, fields: &[String], robot: &Robot) -> bool {
     let name = plain(name);
     let entry = |field: &str| name.strip_prefix(field)?.strip_prefix('_');
     let of_joint = |field: &&str| entry(field).is_some_and(|joint| in_columns(robot).any(|own| plain(&own) == joint));
-    OF_STATES.contains(&name.as_str())
+    fields.contains(&name)
         || matches!(name.as_str(), "slope" | "ground_slope")
         || entry("gravity").is_some_and(|axis| matches!(axis, "x" | "y" | "z"))
         || ["held", "rotor_inertia"].iter().any(of_joint)
