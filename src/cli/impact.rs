@@ -1,4 +1,4 @@
-//! `heelstrike impact`: every outcome of one state, or of a few.
+//! `heelstrike impact` and `forces`: every outcome of one state, or of a few.
 
 use super::diagnostic::{note, note_all};
 use super::options::{BudgetOptions, DetailOptions, NextOption, SceneOptions, pipeline_options};

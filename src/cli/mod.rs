@@ -20,7 +20,6 @@ mod sink;
 mod recording;
 mod inspect;
 mod impact;
-mod forces;
 mod batch;
 mod solve;
 mod sweep;
@@ -36,6 +35,7 @@ pub use robot::{BASES, PLANES};
 
 use crate::error::excerpt::Excerpt;
 use crate::error::visible;
+use crate::pipeline::Aspect;
 use anstream::ColorChoice;
 use clap::error::{ContextKind, ContextValue};
 use clap::{Parser, Subcommand};
@@ -75,7 +75,13 @@ const COLORS: Choices<ColorChoice> = &[
 enum Command {
     Inspect(inspect::Args),
     Impact(impact::Args),
-    Forces(forces::Args),
+    /// Find every consistent set of contact forces and accelerations of a state in sustained contact
+    #[command(after_help = "\
+Examples:
+  heelstrike forces urdf/ramone.urdf examples/ramone_stands.json
+  heelstrike forces urdf/block.urdf examples/painleve.json --explain
+  heelstrike forces urdf/ramone.urdf - --friction 0.5 --format json < examples/ramone_stands.json")]
+    Forces(impact::StateArgs),
     Batch(batch::Args),
     Solve(solve::Args),
     Sweep(sweep::Args),
@@ -137,7 +143,7 @@ fn run(cli: Cli) -> u8 {
     let completion = match cli.command {
         Command::Inspect(args) => inspect::run(&args),
         Command::Impact(args) => impact::run(&args),
-        Command::Forces(args) => forces::run(&args),
+        Command::Forces(args) => args.run(Aspect::Forces, false),
         Command::Batch(args) => batch::run(&args),
         Command::Solve(args) => solve::run(&args),
         Command::Sweep(args) => sweep::run(&args),
