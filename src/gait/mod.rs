@@ -122,12 +122,11 @@ impl Thresholds {
     }
 
     /// What to say of a recording without a touchdown, in which no foot is lower than `lowest` \[m\].
-    pub fn nothing_found(&self, heights: Heights, lowest: f64) -> String {
+    pub fn nothing_found(&self, heights: Heights, lowest: Option<f64>) -> String {
         let Self { drop, slow, ground, .. } = self;
         // To 0.1 mm, and 0 in place of -0.
-        let lowest = (1e4 * lowest).round() / 1e4 + 0.0;
-        let reached = format!("the lowest foot comes to z = {lowest} m; ");
-        let reached = if lowest.is_finite() { &*reached } else { "" };
+        let lowest = lowest.map(|lowest| (1e4 * lowest).round() / 1e4 + 0.0).filter(|lowest| lowest.is_finite());
+        let reached = lowest.map_or(String::new(), |lowest| format!("the lowest foot comes to z = {lowest} m; "));
         let descended = format!("no touchdown found: {reached}a foot must descend {drop:.4} m or more");
         match heights {
             Heights::True => format!("{descended} and cross z = 0"),

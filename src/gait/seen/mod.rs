@@ -14,10 +14,10 @@ use crate::error::rounded;
 const ENOUGH: usize = 4;
 
 /// What has been seen of a recording.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Seen {
-    /// The least height of a foot \[m\].
-    pub lowest: f64,
+    /// The least height of a foot so far \[m\].
+    pub lowest: Option<f64>,
     /// What is odd about the joints of the first state with such joints, in words.
     pub odd_joint: Option<String>,
     order: Order,
@@ -26,23 +26,10 @@ pub struct Seen {
     depths: Vec<f64>,
 }
 
-impl Default for Seen {
-    /// Nothing yet.
-    fn default() -> Self {
-        Self {
-            lowest: f64::INFINITY,
-            odd_joint: None,
-            order: Order::default(),
-            motion: Motion::default(),
-            depths: Vec::new(),
-        }
-    }
-}
-
 impl Seen {
     /// Adds the next sample, whose lowest foot is at this height \[m\].
     pub(super) fn add<S>(&mut self, sample: &Sample<S>, step: ClockStep, lowest: f64, robot: &Robot) {
-        self.lowest = self.lowest.min(lowest);
+        self.lowest = Some(self.lowest.map_or(lowest, |before| before.min(lowest)));
         let Sample { state, time, .. } = sample;
         if self.odd_joint.is_none() {
             self.odd_joint = state.odd_joints(robot).next();
