@@ -13,14 +13,12 @@
 
 use super::forces::ForcesRecord;
 use super::result::{Brief, Refused, Report};
-use super::state::HoldsRecord;
 use super::sweep::{MapSweep, RefusedSample, Sweep};
 use crate::read::json::FORMAT;
 use schemars::generate::SchemaSettings;
 use schemars::transform::RecursiveTransform;
-use schemars::{JsonSchema, Schema, SchemaGenerator};
+use schemars::{JsonSchema, Schema};
 use serde_json::{Map, Value, json};
-use std::borrow::Cow;
 
 /// Marks a property that may be null although it may also be absent.
 const MAY_BE_NULL: &str = "x-may-be-null";
@@ -114,18 +112,6 @@ enum SampleResult<'a> {
     Forces(Box<ForcesRecord<'a>>),
     Brief(Box<Brief<'a>>),
     Refused(RefusedSample),
-}
-
-impl JsonSchema for HoldsRecord {
-    fn inline_schema() -> bool {
-        true
-    }
-    fn schema_name() -> Cow<'static, str> {
-        "Holds".into()
-    }
-    fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        schemars::json_schema!({"enum": [true, false, "unknown"]})
-    }
 }
 
 fn schema_of<T: JsonSchema>() -> Value {

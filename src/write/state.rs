@@ -147,6 +147,8 @@ fn entry<M: SerializeMap>(map: &mut M, name: &str, given: bool, value: &impl Ser
 
 /// Whether every state of the box has the same outcomes, as lists of modes; `"unknown"` without a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(inline, extend("enum" = [true, false, "unknown"])))]
 #[serde(into = "Value", try_from = "Value")]
 pub struct HoldsRecord(pub Option<bool>);
 
