@@ -64,21 +64,13 @@ struct Record {
     input: Beginning,
 }
 
-/// Whether the input is that of the run that is continued.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Again {
-    Same,
-    Other,
-    /// Not as much was read yet.
-    Unknown,
-}
-
 struct Reading {
     bytes: u64,
     hasher: Hasher,
     /// What an earlier run had read, until as much is read again.
     earlier: Option<Beginning>,
-    again: Again,
+    /// Whether that was the same, once it is known.
+    is_same: bool,
     kept: Option<(File, Record)>,
 }
 
@@ -91,7 +83,7 @@ impl Reading {
             self.hash(&bytes[..left]);
             bytes = &bytes[left..];
             self.earlier = None;
-            self.again = if self.beginning() == earlier { Again::Same } else { Again::Other };
+            self.is_same = self.beginning() == earlier;
         }
         self.hash(bytes);
         let read = self.beginning();
@@ -136,8 +128,7 @@ impl Origin {
         let bytes = path.as_ref().filter(|_| resume).and_then(|path| std::fs::read(path).ok()).unwrap_or_default();
         let earlier = serde_json::Deserializer::from_slice(&bytes).into_iter::<Record>().next().and_then(Result::ok);
         let known = earlier.as_ref().map(|record| record.input);
-        let again = if known.is_some() { Again::Unknown } else { Again::Same };
-        let reading = Reading { bytes: 0, hasher: Hasher::new(), earlier: known, again, kept: None };
+        let reading = Reading { bytes: 0, hasher: Hasher::new(), earlier: known, is_same: true, kept: None };
         Self { path, earlier, reading: Arc::new(Mutex::new(reading)) }
     }
 
@@ -158,15 +149,16 @@ impl Origin {
     pub fn answers(&self, asked: &Asked, part: bool) -> Result<bool, &'static str> {
         let Some(earlier) = self.earlier.as_ref().filter(|record| record.part == part) else {
             let mut reading = self.reading();
-            (reading.earlier, reading.again) = (None, Again::Same);
+            (reading.earlier, reading.is_same) = (None, true);
             return Ok(false);
         };
         asked.unlike(&earlier.asked).map_or(Ok(true), Err)
     }
 
-    /// Whether the input is the one that an earlier run read.
-    pub fn again(&self) -> Again {
-        self.reading().again
+    /// Whether the input is the one that an earlier run read; `None` if not as much was read yet.
+    pub fn is_same_input(&self) -> Option<bool> {
+        let reading = self.reading();
+        reading.earlier.is_none().then_some(reading.is_same)
     }
 
     /// Keeps the record from here on, for answers in a `part` or not.

@@ -9,7 +9,7 @@
 //! there is compared. The last state is answered again, because its rows or its input may have been cut off. Those
 //! before it are answered again and compared, byte by byte: answers beyond their budget differ each time.
 
-use super::origin::{Again, Asked, Origin};
+use super::origin::{Asked, Origin};
 use super::output::{NewFile, Target, named};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
@@ -84,7 +84,7 @@ impl BatchOutput {
         match self.written {
             Written::New(target) => target.finish(answered)?,
             Written::Continued(mut continued) => {
-                if self.origin.again() != Again::Same {
+                if self.origin.is_same_input() != Some(true) {
                     return Err(unlike(&continued.file, OTHER_INPUT));
                 }
                 if continued.known > 0 {
@@ -167,13 +167,13 @@ impl Continued {
 
     /// Writes behind what was compared, once the input is known to be the same.
     fn write(&mut self, bytes: &[u8], origin: &mut Origin) -> io::Result<usize> {
-        match origin.again() {
-            Again::Other => return Err(unlike(&self.file, OTHER_INPUT)),
-            Again::Unknown => {
+        match origin.is_same_input() {
+            Some(true) => {}
+            Some(false) => return Err(unlike(&self.file, OTHER_INPUT)),
+            None => {
                 self.waiting.extend_from_slice(bytes);
                 return Ok(bytes.len());
             }
-            Again::Same => {}
         }
         if let Some(asked) = self.asked.take() {
             let end = self.file.file.stream_position()?;
