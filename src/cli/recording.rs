@@ -2,7 +2,6 @@
 
 use super::options::{Choices, choice, from_zero};
 use crate::batch::RowOrigin;
-use crate::error::rounded;
 use crate::gait::{self, At, Difference, Dropped, Heights, Sampled, Seen, Thresholds, Touching};
 use crate::read::table::{Header, Rates};
 use crate::state::NamedContact;
@@ -124,16 +123,7 @@ impl RecordingOptions {
 
     /// What to say if there are no touchdowns.
     pub fn nothing_found(&self, thresholds: Thresholds, seen: &Seen) -> String {
-        let Seen { lowest, odd_joint, .. } = seen;
-        if seen.stands_still() {
-            return "no touchdown found: the time never rises from row to row".to_owned();
-        }
-        let settings = if self.simulated { "`drop`" } else { "`drop`, `ground_height`" };
-        let odd = odd_joint.as_ref().map_or(String::new(), |odd| format!("; {odd}"));
-        let long =
-            seen.long_step().map(|step| format!("; rows are {} s apart: is the time in seconds?", rounded(step)));
-        let found = thresholds.nothing_found(self.heights(), *lowest);
-        format!("{found} (see {settings}){odd}{}", long.unwrap_or_default())
+        seen.nothing_found(thresholds, self.heights())
     }
 
     fn heights(&self) -> Heights {

@@ -120,21 +120,6 @@ impl Thresholds {
         let part = (Feet::new(robot, feet).size() / SMALL).min(1.0);
         Self { drop: 0.012 * part, slow: 0.05 * part, ground: 0.02 * part, above: 0.002 * part, together: 1e-6 * part }
     }
-
-    /// What to say of a recording without a touchdown, in which no foot is lower than `lowest` \[m\].
-    pub fn nothing_found(&self, heights: Heights, lowest: Option<f64>) -> String {
-        let Self { drop, slow, ground, .. } = self;
-        // To 0.1 mm, and 0 in place of -0.
-        let lowest = lowest.map(|lowest| (1e4 * lowest).round() / 1e4 + 0.0).filter(|lowest| lowest.is_finite());
-        let reached = lowest.map_or(String::new(), |lowest| format!("the lowest foot comes to z = {lowest} m; "));
-        let descended = format!("no touchdown found: {reached}a foot must descend {drop:.4} m or more");
-        match heights {
-            Heights::True => format!("{descended} and cross z = 0"),
-            Heights::Recorded => {
-                format!("{descended}, faster than {slow:.4} m/s, to at most {ground:.4} m above the ground")
-            }
-        }
-    }
 }
 
 /// A state of a recording.

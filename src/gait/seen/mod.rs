@@ -6,7 +6,7 @@ mod motion;
 use self::motion::Motion;
 use self::order::Order;
 use super::clip::ClockStep;
-use super::{Sample, Thresholds};
+use super::{Heights, Sample, Thresholds};
 use crate::Robot;
 use crate::error::rounded;
 
@@ -16,8 +16,8 @@ const ENOUGH: usize = 4;
 /// What has been seen of a recording.
 #[derive(Debug, Clone, Default)]
 pub struct Seen {
-    /// The least height of a foot so far \[m\].
-    pub lowest: Option<f64>,
+    /// The least height of a foot \[m\].
+    lowest: Option<f64>,
     /// What is odd about the joints of the first state with such joints, in words.
     pub odd_joint: Option<String>,
     order: Order,
@@ -45,14 +45,25 @@ impl Seen {
         self.depths.push(depth);
     }
 
-    /// Whether time rises from no row to the next.
-    pub fn stands_still(&self) -> bool {
-        self.order.stands_still()
-    }
-
-    /// The step of time \[s\], if it is too long for any gait, as in milliseconds.
-    pub fn long_step(&self) -> Option<f64> {
-        self.order.long_step()
+    /// What to say if there is no touchdown.
+    pub fn nothing_found(&self, thresholds: Thresholds, heights: Heights) -> String {
+        if self.order.stands_still() {
+            return "no touchdown found: the time never rises from row to row".to_owned();
+        }
+        let Thresholds { drop, slow, ground, .. } = thresholds;
+        // To 0.1 mm, and 0 in place of -0.
+        let lowest = self.lowest.map(|lowest| (1e4 * lowest).round() / 1e4 + 0.0).filter(|lowest| lowest.is_finite());
+        let reached = lowest.map_or(String::new(), |lowest| format!("the lowest foot comes to z = {lowest} m; "));
+        let must = match heights {
+            Heights::True => " and cross z = 0 (see `drop`)".to_owned(),
+            Heights::Recorded => format!(
+                ", faster than {slow:.4} m/s, to at most {ground:.4} m above the ground (see `drop`, `ground_height`)"
+            ),
+        };
+        let odd = self.odd_joint.as_ref().map_or(String::new(), |odd| format!("; {odd}"));
+        let step = self.order.long_step().map(rounded);
+        let long = step.map_or(String::new(), |step| format!("; rows are {step} s apart: is the time in seconds?"));
+        format!("no touchdown found: {reached}a foot must descend {drop:.4} m or more{must}{odd}{long}")
     }
 
     /// What is odd about the recording.
