@@ -229,7 +229,7 @@ fn a_mirrored_problem_slides_the_other_way() {
 }
 
 /// The mode seen from the other side of the plane.
-pub fn mirror(mode: Mode) -> Mode {
+fn mirror(mode: Mode) -> Mode {
     match mode {
         Mode::SlidePlus => Mode::SlideMinus,
         Mode::SlideMinus => Mode::SlidePlus,

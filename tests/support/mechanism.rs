@@ -128,7 +128,7 @@ impl Mechanism {
     }
 
     /// All points of links, changed.
-    pub fn map_points(&mut self, change: impl Fn(Point) -> Point) {
+    fn map_points(&mut self, change: impl Fn(Point) -> Point) {
         for link in &mut self.links {
             let spheres = link.spheres.iter_mut().map(|(center, _)| center);
             for point in spheres.chain([&mut link.place, &mut link.com, &mut link.anchor]) {

@@ -57,6 +57,11 @@ impl Case {
         state
     }
 
+    /// The coordinates of the robot among those of all joints.
+    fn moving(&self) -> Vec<usize> {
+        (0..self.q.len()).filter(|&k| k < 3 || self.mechanism.links[k - 2].moves()).collect()
+    }
+
     /// The same state over ground at the height of its lowest sphere, whose link is then found to touch.
     fn landing(&self) -> Option<Value> {
         let links = self.mechanism.links.iter().enumerate();
@@ -95,8 +100,8 @@ proptest! {
         case.contacts.iter_mut().for_each(|(.., radius)| *radius = 0.0);
         // What has no mass has no inertia in the file.
         case.mechanism.links.iter_mut().filter(|link| link.mass == 0.0).for_each(|link| link.moment = 0.0);
+        let moving = case.moving();
         let Case { mechanism, q, v, contacts, .. } = &case;
-        let moving: Vec<usize> = (0..q.len()).filter(|&k| k < 3 || mechanism.links[k - 2].moves()).collect();
         let rates = contacts.iter().map(|&(link, [x, z], _)| {
             let Link { name, place, .. } = &mechanism.links[link];
             mechanism.point_rates(q, name, [x - place[0], z - place[1]]).select_columns(&moving)
@@ -131,6 +136,10 @@ proptest! {
         for (one, other) in outcomes(&one).iter().zip(outcomes(&other)) {
             prop_assert_eq!(one.index, other.index);
             let energy = mass * length * length / time / time;
+            let own: Vec<f64> = one.velocity().collect();
+            let units = case.moving().into_iter().map(|k| units_of_q[k] / time);
+            let found: Vec<f64> = other.velocity().zip(units).map(|(rate, unit)| rate / unit).collect();
+            prop_assert!(near(&found, &own, 1e-12 * largest(&own)), "{found:?} {own:?}");
             for (own, unit, found) in [
                 (one.impulse.concat(), mass * length / time, other.impulse.concat()),
                 (one.velocity_after.concat(), length / time, other.velocity_after.concat()),

@@ -4,7 +4,7 @@
 use super::environment;
 use super::loads::imbalance;
 use super::oracle;
-use super::states::{Model, chain, models, tied_models};
+use super::states::{Model, chain, models, tied_models, tree};
 use crate::support::digits::{PROMISED, Truth};
 use crate::support::parallel::total;
 use crate::support::random::Random;
@@ -41,8 +41,9 @@ pub fn frictions(state: &State) -> Vec<Friction> {
 
 #[test]
 fn digits_of_states_are_right() {
-    let models = models();
-    let [compared, marked] = total(environment("HEELSTRIKE_DIGITS", 400), |seed| {
+    let trees = (0..10).map(|seed| tree(&mut Random::new(seed)));
+    let models: Vec<Model> = models().into_iter().chain(trees).collect();
+    let [compared, marked] = total(environment("HEELSTRIKE_DIGITS", 600), |seed| {
         compare(&models[seed as usize % models.len()], &mut Random::new(seed))
     });
     println!("{compared} outcomes of robots, {marked} marked");
