@@ -4,7 +4,6 @@ use crate::support::parallel::total;
 use crate::support::random::Random;
 use heelstrike::impact::{Analysis, ContactProblem, Friction, ListedRejections, Mode, Verdict, analyze};
 use serde_json::json;
-use std::collections::BTreeMap;
 
 /// The parts of a contact problem, kept for transforming and printing.
 #[derive(Debug, Clone)]
@@ -87,45 +86,12 @@ impl Parts {
             restitution: (0..contacts).map(|_| random.pick(&[0.0, 0.0, 0.5])).collect(),
         }
     }
-
-    /// One contact that strikes; half of them without coupling between the tangential and the normal direction.
-    fn single(random: &mut Random) -> Self {
-        let (a, b, c) = (gauss(random), gauss(random), gauss(random));
-        let coupling = if random.once_in(2) { 0.0 } else { a * b };
-        Self {
-            delassus: vec![vec![a * a + 0.1, coupling], vec![coupling, b * b + 0.1 + c * c]],
-            velocity_before: vec![[gauss(random), -0.1 - gauss(random).abs()]],
-            friction: vec![random.pick(&[Friction::ZERO, Friction::Finite(0.7), Friction::Infinite])],
-            restitution: vec![0.0],
-        }
-    }
 }
 
 /// Box and Muller.
 fn gauss(random: &mut Random) -> f64 {
     let radius = (-2.0 * (1.0 - random.uniform()).ln()).sqrt();
     radius * (std::f64::consts::TAU * random.uniform()).cos()
-}
-
-/// Modes and margin of every outcome, in an order of its own.
-fn margins(analysis: &Analysis) -> BTreeMap<Vec<Mode>, f64> {
-    let margin = |outcome: &heelstrike::impact::Outcome| outcome.margin.expect("one inequality at least");
-    analysis.outcomes.iter().map(|outcome| (outcome.modes.clone(), margin(outcome))).collect()
-}
-
-/// Panics with the problem unless both have the same verdict, modes and, to 1e-9 of each, margins.
-///
-/// Transforming a problem rounds every number once, which moves a margin by eps times a condition: by 1e-12 in all but
-/// two of these, by 7e-9 of a margin above 7 in the worst.
-fn assert_same(analysis: &Analysis, other: &Analysis, context: &dyn Fn() -> String) {
-    assert_eq!(analysis.verdict, other.verdict, "{}", context());
-    let (margins, others) = (margins(analysis), margins(other));
-    assert!(margins.keys().eq(others.keys()), "{margins:?}\n{others:?}\n{}", context());
-    for (modes, margin) in &margins {
-        let difference = (margin - others[modes]).abs();
-        assert!(difference <= 1e-9 * margin.abs().max(1.0), "{modes:?}: {difference:e} of {margin}\n{}", context());
-    }
-    assert_eq!(analysis.index_sum, other.index_sum, "{}", context());
 }
 
 #[test]
@@ -143,15 +109,6 @@ fn indices_of_all_outcomes_sum_to_one() {
         assert_eq!(indices.iter().flatten().map(|&index| i32::from(index)).sum::<i32>(), 1, "{}", context());
         assert_eq!(analysis.index_sum, Some(1), "{}", context());
         assert_eq!(indices.len() % 2, 1, "{}", context());
-        assert_eq!(margins(&analysis).len(), indices.len(), "doubled: {}", context());
-        for outcome in &analysis.outcomes {
-            let (l, after) = (outcome.impulse.as_flattened(), outcome.velocity_after.as_flattened());
-            let rows = l.iter().zip(parts.velocity_before.as_flattened()).zip(after);
-            let terms: Vec<f64> = rows.flat_map(|((l, before), after)| [l * before, l * after]).collect();
-            // A sum of 2n products.
-            let error = (outcome.energy_loss + 0.5 * terms.iter().sum::<f64>()).abs();
-            assert!(error <= 1e-13 * terms.iter().map(|term| term.abs()).sum::<f64>(), "{error:e}: {}", context());
-        }
         let frictionless = parts.friction.iter().all(|friction| friction.is_zero());
         match analysis.verdict {
             Verdict::Unique | Verdict::NoImpact => assert_eq!(indices.len(), 1, "{}", context()),
@@ -164,112 +121,6 @@ fn indices_of_all_outcomes_sum_to_one() {
     assert!(undecided <= PROBLEMS / 10_000, "{undecided} undecided");
     // The sum says something only where there are several: 5,186 were ambiguous when this was written.
     assert!(ambiguous > PROBLEMS / 100, "only {ambiguous} ambiguous");
-}
-
-/// Runs `check` on this many random problems, of which hardly one is undecided.
-fn every_problem(count: u64, check: impl Fn(&mut Random, &Parts, &Analysis, &dyn Fn() -> String) + Sync) {
-    let [undecided] = total(count, |seed| {
-        let mut random = Random::new(seed);
-        let parts = Parts::random(&mut random);
-        let analysis = parts.analyze();
-        if analysis.verdict != Verdict::Undecided {
-            check(&mut random, &parts, &analysis, &|| format!("seed {seed}: {}", parts.json()));
-        }
-        [u64::from(analysis.verdict == Verdict::Undecided)]
-    });
-    assert!(undecided < 10, "{undecided} undecided");
-}
-
-#[test]
-fn units_change_no_verdict_and_no_margin() {
-    // G is in 1/kg, velocities in m/s.
-    let units = [(1e6, 1.0), (1e-6, 1.0), (1.0, 1e6), (1.0, 1e-6), (1e-6, 1e12)];
-    every_problem(3_000, |_, parts, analysis, context| {
-        for (mass, speed) in units {
-            let mut scaled = parts.clone();
-            scaled.delassus.iter_mut().flatten().for_each(|g| *g /= mass);
-            scaled.velocity_before.iter_mut().flatten().for_each(|c| *c *= speed);
-            assert_same(analysis, &scaled.analyze(), &|| format!("units of {mass} kg, {speed} m/s, {}", context()));
-        }
-    });
-}
-
-#[test]
-fn the_order_of_contacts_does_not_matter() {
-    every_problem(10_000, |random, parts, analysis, context| {
-        let order = random.permutation(parts.friction.len());
-        let rows: Vec<usize> = order.iter().flat_map(|&k| [2 * k, 2 * k + 1]).collect();
-        let permuted = Parts {
-            delassus: rows.iter().map(|&i| rows.iter().map(|&j| parts.delassus[i][j]).collect()).collect(),
-            velocity_before: order.iter().map(|&k| parts.velocity_before[k]).collect(),
-            friction: order.iter().map(|&k| parts.friction[k]).collect(),
-            restitution: order.iter().map(|&k| parts.restitution[k]).collect(),
-        };
-        let mut other = permuted.analyze();
-        for outcome in &mut other.outcomes {
-            let modes = outcome.modes.clone();
-            order.iter().zip(modes).for_each(|(&k, mode)| outcome.modes[k] = mode);
-        }
-        assert_same(analysis, &other, &|| format!("order {order:?}, {}", context()));
-    });
-}
-
-#[test]
-fn a_mirrored_problem_slides_the_other_way() {
-    every_problem(10_000, |_, parts, analysis, context| {
-        let mut mirrored = parts.clone();
-        for (i, row) in mirrored.delassus.iter_mut().enumerate() {
-            row.iter_mut().enumerate().filter(|(j, _)| (i + j) % 2 == 1).for_each(|(_, g)| *g = -*g);
-        }
-        mirrored.velocity_before.iter_mut().for_each(|c| c[0] = -c[0]);
-        let mut other = mirrored.analyze();
-        other.outcomes.iter_mut().flat_map(|outcome| &mut outcome.modes).for_each(|mode| *mode = mirror(*mode));
-        assert_same(analysis, &other, context);
-    });
-}
-
-/// The mode seen from the other side of the plane.
-fn mirror(mode: Mode) -> Mode {
-    match mode {
-        Mode::SlidePlus => Mode::SlideMinus,
-        Mode::SlideMinus => Mode::SlidePlus,
-        mode => mode,
-    }
-}
-
-/// Contacts that do not act on each other, and points straight below a CoG or level with it: structural zeros in G,
-/// which no random matrix has.
-#[test]
-fn uncoupled_contacts_are_decided_one_by_one() {
-    let [decided] = total(2_000, |seed| {
-        let mut random = Random::new(seed);
-        let contacts = random.whole(2, 3) as usize;
-        let single: Vec<Parts> = (0..contacts).map(|_| Parts::single(&mut random)).collect();
-        let mut joint = Parts {
-            delassus: vec![vec![0.0; 2 * contacts]; 2 * contacts],
-            velocity_before: single.iter().map(|one| one.velocity_before[0]).collect(),
-            friction: single.iter().map(|one| one.friction[0]).collect(),
-            restitution: single.iter().map(|one| one.restitution[0]).collect(),
-        };
-        for (k, one) in single.iter().enumerate() {
-            for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-                joint.delassus[2 * k + i][2 * k + j] = one.delassus[i][j];
-            }
-        }
-        let mut expected = vec![Vec::new()];
-        for one in &single {
-            let modes: Vec<Mode> = one.analyze().outcomes.iter().map(|outcome| outcome.modes[0]).collect();
-            let longer = expected.iter().flat_map(|list| modes.iter().map(|&mode| [&list[..], &[mode]].concat()));
-            expected = longer.collect();
-        }
-        expected.sort();
-        let analysis = joint.analyze();
-        let found: Vec<Vec<Mode>> = margins(&analysis).into_keys().collect();
-        assert_eq!(found, expected, "seed {seed}, {:?}: {}", analysis.verdict, joint.json());
-        assert_ne!(analysis.verdict, Verdict::Undecided, "seed {seed}: {}", joint.json());
-        [1]
-    });
-    assert_eq!(decided, 2_000);
 }
 
 #[test]
