@@ -1,4 +1,5 @@
-//! Contact problems given as matrices.
+//! Contact problems given as matrices: the index theorem, what a search of combinations leaves out, and the friction that
+//! is needed.
 
 use crate::support::parallel::total;
 use crate::support::random::Random;
