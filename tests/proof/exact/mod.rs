@@ -10,7 +10,6 @@ mod cells;
 mod digits;
 mod enumeration;
 mod redundant;
-mod self_test;
 
 use crate::balls::environment;
 use crate::support::digits::check;
