@@ -80,10 +80,8 @@ fn texts_are_kept_word_for_word() {
         ("solve_borders_brief", &["solve", "-", "--format", "text", "--brief"], problems),
         ("solve_without_outcome", &["solve", "-", "--format", "text", "--brief"], walls),
         ("solve_painleve_rod", &["solve", "examples/problems/painleve_rod.json"], ""),
-        ("impact_uncertain", &["impact", RAMONE, "examples/ramone_measured.json", "--brief"], ""),
         ("impact_brief", &["impact", BLOCK, "examples/block_jams.json", "--brief"], ""),
         ("impact_in_the_air", &["impact", BLOCK, "-"], IN_THE_AIR),
-        ("impact_next", &["impact", WALKER, "examples/minimalistic.json", "--next", "--brief"], ""),
     ] {
         insta::assert_snapshot!(name, heelstrike_reads(arguments, stdin).text());
     }
