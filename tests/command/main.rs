@@ -283,6 +283,7 @@ fn the_outputs_ending_determines_its_form() {
     let as_text = &[impact, &["--format", "text"]].concat();
     let solve = &["solve", "examples/problems/rod.json"];
     let batch = &["batch", WALKER, "examples/keyframes.ndjson", "--friction", "1"];
+    let sweep = &["sweep", WALKER, "examples/paper/figure_7.json"];
     for (command, name, [start, end]) in [
         (impact, "a.json", ["{\"", "}\n"]),
         (impact, "a.ndjson", ["{\"", "}\n"]),
@@ -291,6 +292,11 @@ fn the_outputs_ending_determines_its_form() {
         (solve, "b.dat", ["{\"", "}\n"]),
         (batch, "c", ["{\"", "}\n"]),
         (as_text, "d.json", ["block", ""]),
+        (sweep, "e.json", ["{\"", "}\n"]),
+        (sweep, "e.ndjson", ["{\"", "}\n"]),
+        (sweep, "e.csv", ["id,verdict,", "\n"]),
+        (sweep, "e.txt", ["minimalistic against alpha", "\n"]),
+        (sweep, "e", ["minimalistic against alpha", "\n"]),
     ] {
         let path = file(name, "what was there before, and longer than nothing");
         let run = heelstrike(&[command, &["-o", &path]].concat()).well();

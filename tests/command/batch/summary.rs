@@ -132,12 +132,6 @@ fn a_single_state_has_a_summary_only_if_asked_for() {
     assert_eq!(parsed(&read(&path))["states"], 1);
 }
 
-#[test]
-fn a_summary_that_cannot_be_written_is_refused_first() {
-    let stderr = batch(&["-", "--summary", "nowhere/at/all.json"], strike(1, 0.0)).refusal(1);
-    assert!(stderr.starts_with("error: the output cannot be written: nowhere/at/all.json: "), "{stderr}");
-}
-
 /// Walk of the README: a foot that stands rests, although rounding moves it.
 const WALK: [&str; 4] = ["batch", "urdf/ramone.urdf", "--friction", "0.6"];
 

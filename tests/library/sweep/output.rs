@@ -1,6 +1,6 @@
 //! What is written: samples, tables, text, endings, and what happens to refused samples.
 
-use crate::support::command::{Run, heelstrike_reads, place};
+use crate::support::command::{Run, heelstrike_reads};
 use crate::sweep::command::{assert_begins, kneed, run, straight, sweep, written};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
@@ -167,19 +167,6 @@ fn tables_add_parameter_and_region_to_those_of_batch() {
     let rows: Vec<&str> = stdout.lines().skip(1).collect();
     assert_eq!(rows.len(), 5, "{stdout}");
     assert!(rows[1].contains("no_contact") && rows[2].contains("the expression has no value"), "{stdout}");
-}
-
-#[test]
-fn the_ending_of_the_output_chooses_its_form() {
-    let mut study = straight(None);
-    study["parameters"]["alpha"]["steps"] = json!(3);
-    for (ending, format) in [("json", "json"), ("ndjson", "json"), ("csv", "csv"), ("txt", "text"), ("", "text")] {
-        let path = &place(&format!("sweep.{ending}"));
-        let written = run("urdf/minimalistic.urdf", &study, &["-o", path]);
-        assert_eq!((written.status, written.stdout.as_str()), (0, ""), "{}", written.stderr);
-        let printed = run("urdf/minimalistic.urdf", &study, &["--format", format]).stdout;
-        assert_eq!(std::fs::read_to_string(path).expect("the output"), printed, "{ending}");
-    }
 }
 
 #[test]
