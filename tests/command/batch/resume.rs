@@ -228,20 +228,6 @@ fn answers_without_a_record_are_all_compared() {
 }
 
 #[test]
-fn options_that_few_answers_show_are_compared() {
-    let output = place("walk.ndjson");
-    let run = |friction, more: &[&str]| {
-        let walk = [RAMONE, "examples/gait/ramone_walk.csv", "--friction", friction, "-o", &output];
-        heelstrike(&[&["batch"], &walk[..], more].concat())
-    };
-    run("0.6", &[]);
-    let begun = read(&output).split_inclusive('\n').take(70).collect::<String>();
-    fs::write(&output, &begun).expect("a file");
-    run("0.1", &["--resume"]).refusal_with(1, "it was begun with other answers");
-    assert_eq!(read(&output), begun);
-}
-
-#[test]
 fn a_refused_input_replaces_no_old_result() {
     let kept = file("kept.ndjson", "an old result");
     for arguments in [
