@@ -58,6 +58,7 @@ fn refusals_of_hostile_names_are_escaped() {
         (state(&nobody), SHOWN),
         (state(&format!("\"{KEY}\": 1")), SHOWN),
         (state("\"stance\": \"x\u{9b}\u{202e}\""), "x\\u{9b}\\u{202e}"),
+        (state("\"stance\": \"\\u001b[2J\""), "\\u{1b}[2J"),
         (state("\u{9b}"), "\u{fffd}"),
     ] {
         let refusal = heelstrike_reads(&["impact", &robot, "-"], stdin).refusal(1);
@@ -70,6 +71,8 @@ fn refusals_of_hostile_names_are_escaped() {
         read(BLOCK).replace("</robot>", &joint(NAME)),
         read(BLOCK).replace("<sphere radius=\"0\"/>", &mesh),
         "<robot name=\"r\"><\u{9b}\u{202e}></robot>".to_string(),
+        // XML has no such character; JSON may hold it escaped.
+        "<robot name=\"r\"><link name=\"a\"/><link name=\"\u{1b}[2J\"/></robot>".to_string(),
     ] {
         let run = heelstrike(&["inspect", &file("refused.urdf", urdf)]);
         assert_shown(&(run.stdout + &run.stderr), "a URDF");

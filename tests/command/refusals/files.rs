@@ -106,16 +106,6 @@ fn an_output_that_cannot_be_written_is_reported() {
 }
 
 #[test]
-fn escape_sequences_do_not_reach_the_terminal() {
-    // XML has no such character; JSON strings may hold it escaped.
-    let urdf = "<robot name=\"r\"><link name=\"a\"/><link name=\"\x1b[2J\"/></robot>";
-    for (arguments, stdin) in [(INSPECT, urdf), (IMPACT, "{\"stance\": \"\\u001b[2J\"}")] {
-        let stderr = heelstrike_reads(arguments, stdin).refusal(1);
-        assert!(!stderr.contains('\x1b'), "{stderr}");
-    }
-}
-
-#[test]
 fn a_refusal_of_a_line_of_1_mb_stays_short() {
     let pad = "x".repeat(500_000);
     for (arguments, stdin) in [

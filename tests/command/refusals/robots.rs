@@ -164,12 +164,3 @@ fn robots_are_refused_word_for_word() {
         ]);
     assert_refused("robots", cases, &["inspect", "-"], |text| Robot::from_urdf(text).map(drop));
 }
-
-#[test]
-fn a_chain_of_1000_links_is_read() {
-    let inertial = "<inertial><mass value=\"1\"/></inertial>";
-    let text =
-        chain(1000, "continuous").replace("<link name=\"999\"/>", &format!("<link name=\"999\">{inertial}</link>"));
-    let text = text.replace("type=\"continuous\">", "type=\"continuous\"><axis xyz=\"0 1 0\"/>");
-    assert_eq!(Robot::from_urdf(&text).expect("a robot").joints.len(), 999);
-}

@@ -1,8 +1,8 @@
 //! States and problems that are refused.
 
 use super::{assert_refused, lines};
+use crate::RAMONE;
 use crate::schema::ROBOT;
-use crate::{RAMONE, heelstrike_reads};
 use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::read::Problem;
 use heelstrike::state::{Defaults, State};
@@ -121,13 +121,6 @@ fn states_are_refused_word_for_word() {
     });
 }
 
-#[test]
-fn refused_states_have_place_reason_and_hint() {
-    let run = heelstrike_reads(&["batch", RAMONE, "-"], STATES.trim());
-    assert_eq!((run.status, run.lines().len()), (1, STATES.trim().lines().count()));
-    insta::assert_snapshot!("states_as_json", run.stdout);
-}
-
 /// A line each.
 const PROBLEMS: &str = r#"
 [[]]
@@ -164,14 +157,4 @@ fn problems_are_refused_word_for_word() {
         let problem = Problem::from_json(text, &Defaults::default())?;
         heelstrike::impact::analyze(&problem.contact, heelstrike::impact::ListedRejections::Nothing).map(drop)
     });
-}
-
-#[test]
-fn refused_problems_have_place_reason_and_hint() {
-    let stdout = |problem: &str| {
-        let run = heelstrike_reads(&["solve", "-", "--format", "json"], problem);
-        assert_eq!((run.status, run.lines().len()), (1, 1), "{problem}");
-        run.stdout
-    };
-    insta::assert_snapshot!("problems_as_json", PROBLEMS.trim().lines().map(stdout).collect::<String>());
 }
