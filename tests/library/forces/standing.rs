@@ -1,12 +1,9 @@
 //! Bodies that stand, slide and roll on level ground and slopes.
 
 use super::{forces, modes, outcomes};
-use crate::support::command::read;
 use crate::support::impact::robot;
-use crate::support::robots::{ROBOTS, by_name, robot_and_reference};
 use crate::support::urdf::{HINGE, POINT, body, collision, joint, link, robot as urdf};
 use heelstrike::impact::{Mode, Verdict};
-use heelstrike::robot::Base;
 use serde_json::{Value, json};
 
 const GRAVITY: f64 = 9.81;
@@ -124,21 +121,6 @@ fn nothing_touches_in_mid_flight() {
     let found = forces(&block(), json!({"position": {"base": {"z": 3.0}}, "gravity": 1.62}));
     assert_eq!(found.analysis.as_ref().unwrap().verdict, Verdict::NoContact);
     assert_eq!(outcomes(&found)[0].velocity().collect::<Vec<_>>(), [0.0, -1.62, 0.0]);
-}
-
-/// Whatever robot is dropped, it falls as it is.
-#[test]
-fn robot_that_is_dropped_falls_with_gravity() {
-    let robots = ROBOTS.map(|own| robot(&read(&robot_and_reference::<Value>(own).0)));
-    for robot in robots.iter().filter(|robot| robot.base == Base::Floating) {
-        let names: Vec<String> = robot.coordinates().map(str::to_owned).collect();
-        let q: Vec<f64> = (0..robot.dofs()).map(|at| 0.3 * at as f64).collect();
-        let found = forces(robot, json!({"position": by_name(&names, 3, &q), "contacts": []}));
-        for (at, found) in outcomes(&found)[0].velocity().enumerate() {
-            let expected = if at == 1 { -GRAVITY } else { 0.0 };
-            assert!((found - expected).abs() < 1e-11 * GRAVITY, "{}: {found} of coordinate {at}", robot.name);
-        }
-    }
 }
 
 /// A heel that lifts off with the turning foot takes no part; the toe about which it turns does.

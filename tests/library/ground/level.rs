@@ -4,7 +4,7 @@ use super::*;
 use crate::support::urdf::{HINGE, POINT, collision, joint, link};
 use heelstrike::pipeline::Pipeline;
 use heelstrike::robot::{FootShape, Rim};
-use heelstrike::state::{Defaults, NamedContact, State};
+use heelstrike::state::{Defaults, State};
 
 fn names(impact: &Impact) -> Vec<&str> {
     impact.contacts.iter().map(|contact| &*contact.name).collect()
@@ -143,18 +143,6 @@ fn a_foot_deep_in_the_ground_besides_named_contacts_is_noted() {
     let expected = "leg is 0.05 m deep in the ground, and is not among the contacts: it takes no part";
     assert_eq!(notes(0.95, false), [expected]);
     assert_eq!([notes(0.95, true), notes(0.999, false), notes(1.05, false)], [const { Vec::<String>::new() }; 3]);
-}
-
-#[test]
-fn feet_of_options_are_detected_by_height() {
-    let robot = body(r#"<geometry><sphere radius="0.1"/></geometry>"#);
-    let feet = vec![NamedContact { link: 0, offset: [0.5, 0.0, -0.25], radius: 0.0 }];
-    let contacts = |z: f64| {
-        let options = Options { feet: feet.clone(), ..Options::default() };
-        try_impact(&robot, options, at(z, 0.0)).unwrap().contacts
-    };
-    assert_eq!(contacts(0.25)[0].point, [0.5, 0.0]);
-    assert!(contacts(0.3).is_empty());
 }
 
 #[test]

@@ -189,21 +189,4 @@ proptest! {
             prop_assert_eq!(difference(&one, &other, None), Ok(()), "root {}\n{}", root, case.state(root));
         }
     }
-
-    /// Infinite friction has no cone to test: the pair (a, b) = (1, 0) of a L_n >= b |L_t| asks for pressure alone. No
-    /// unreduced computation would be another; a huge finite coefficient must lead to the same modes.
-    #[test]
-    fn huge_friction_has_the_modes_of_infinite_friction(case in case()) {
-        let robot = floating(&case.mechanism.urdf(0), Reductions::ALL);
-        let outcomes = |friction| {
-            let mut state = case.state(0);
-            // Two contacts of one link may be pressed together without bound, which no finite friction allows.
-            state["contacts"].as_array_mut().expect("a list").truncate(1);
-            state["friction"] = friction;
-            let mut modes = modes(&answer(&robot, &state, Reductions::ALL).expect("an answer"));
-            modes.sort();
-            modes
-        };
-        prop_assert_eq!(outcomes(json!("infinite")), outcomes(json!(1e12)));
-    }
 }

@@ -57,12 +57,6 @@ fn a_reversed_parameter_has_the_regions_reversed() {
 }
 
 #[test]
-fn names_of_constants_do_not_matter() {
-    let study = renamed(&renamed(&kneed(), "bend", "e"), "upper", "zz_1");
-    assert_eq!(run(ROBOT, &study, &["--format", "json"]).stdout, run(ROBOT, &kneed(), &["--format", "json"]).stdout);
-}
-
-#[test]
 fn threads_do_not_change_a_byte() {
     for format in ["text", "json", "csv"] {
         let with = |threads: &str| run(ROBOT, &kneed(), &["--format", format, "--threads", threads]);
