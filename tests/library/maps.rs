@@ -6,6 +6,7 @@ use crate::sweep::command::straight;
 use crate::sweep::studies::with;
 use heelstrike::sweep::{Area, Findings, Map, Regime, RobotStudy, Solver, Workers};
 use serde_json::{Value, json};
+use std::sync::LazyLock;
 
 const PDW: &str = include_str!("../../urdf/pdw.urdf");
 const MINIMALISTIC: &str = include_str!("../../urdf/minimalistic.urdf");
@@ -20,6 +21,9 @@ fn inertia() -> Value {
     study["robot"] = json!({"links": {"left_leg": leg, "right_leg": leg}});
     study
 }
+
+/// The map of that study, found once for all tests of this file.
+static INERTIA: LazyLock<Map> = LazyLock::new(|| with(PDW, &inertia(), 0, |model| Map::of(model, WORKERS)));
 
 /// Asks about the model of a study and its map.
 fn with_map<T>(urdf: &str, study: &Value, ask: impl FnOnce(&RobotStudy, &Map) -> T) -> T {
@@ -67,35 +71,33 @@ fn points_lie_in_the_area_of_their_outcomes() {
         // Curves are straight between points at most a sixty-fourth of the ranges apart.
         assert!(wrong * 500 < count, "{wrong} of {count} points are not in the area of their outcomes");
     };
-    with_map(PDW, &inertia(), check);
+    with(PDW, &inertia(), 0, |model| check(model, &INERTIA));
     with_map(MINIMALISTIC, &many, check);
 }
 
 #[test]
 fn a_map_is_the_same_for_any_number_of_threads() {
-    let found = |threads| {
-        with(PDW, &inertia(), 0, |model| {
-            let map = Map::of(model, Workers { threads, done: &|| () });
-            let loops: Vec<_> = map.areas.iter().map(|area| (area.loops.clone(), area.middles.clone())).collect();
-            let curves: Vec<_> = map.curves.iter().map(|curve| (curve.sides, curve.points.clone())).collect();
-            (loops, curves)
-        })
+    let places = |map: &Map| {
+        let loops: Vec<_> = map.areas.iter().map(|area| (area.loops.clone(), area.middles.clone())).collect();
+        let curves: Vec<_> = map.curves.iter().map(|curve| (curve.sides, curve.points.clone())).collect();
+        (loops, curves)
     };
-    assert_eq!(found(1), found(3));
+    let alone = with(PDW, &inertia(), 0, |model| Map::of(model, Workers { threads: 1, done: &|| () }));
+    assert_eq!(places(&alone), places(&INERTIA), "of one thread and of two");
 }
 
 #[test]
 fn curves_and_areas_have_what_turns_and_what_holds() {
-    with_map(PDW, &inertia(), |model, map| {
+    with(PDW, &inertia(), 0, |model| {
         let mut solver = Solver::new(model);
-        for area in &map.areas {
+        for area in &INERTIA.areas {
             assert!(!area.middles.is_empty());
             for (middle, _) in &area.middles {
                 assert_eq!(solver.regime(middle), area.regime);
             }
             assert!(matches!(*area.regime, Regime::Answered { .. }) && area.refused.is_none());
         }
-        for curve in &map.curves {
+        for curve in &INERTIA.curves {
             assert_ne!(curve.sides[0], curve.sides[1]);
             assert!(!curve.transition.ended.is_empty());
         }
