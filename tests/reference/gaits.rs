@@ -157,7 +157,9 @@ impl Gait<'_> {
     fn feet_that_touch_are_those_of_the_reference(&self, table: &Table) {
         let expected = self.reference();
         for (rule, touching) in [("stance", "slow"), ("5mm", "near:0.005"), ("20mm", "near:0.02")] {
-            for friction in FRICTIONS {
+            // Friction decides how touchdowns end, not which feet touch.
+            let frictions = if table.has_velocities { &FRICTIONS[..] } else { &FRICTIONS[..1] };
+            for &friction in frictions {
                 let found = self.touchdowns(table, &["--friction", friction, "--touching", touching]);
                 for expected in expected.iter().filter(|expected| expected.rule == rule) {
                     let place = format!("{}{}, {rule}, row {}", self.name, table.ending, expected.csv_row);

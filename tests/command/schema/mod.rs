@@ -302,7 +302,7 @@ fn every_form_of_a_report_on_accuracy_is_valid() {
         &["--case", "coincident feet"],
         &["--case", "Hilbert"],
         // A method left out.
-        &["--case", "chain of 1000 links, folded"],
+        &["urdf/five_bar.urdf", "examples/five_bar.json"],
     ] {
         let mut less =
             assert_valid(&schema, &[&["accuracy", "--time", "0"], arguments].concat(), "", "/studies/0").remove(0);

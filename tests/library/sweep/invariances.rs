@@ -58,10 +58,7 @@ fn a_reversed_parameter_has_the_regions_reversed() {
 
 #[test]
 fn threads_do_not_change_a_byte() {
-    for format in ["text", "json", "csv"] {
-        let with = |threads: &str| run(ROBOT, &kneed(), &["--format", format, "--threads", threads]);
-        let (one, four) = (with("1"), with("4"));
-        assert_eq!(one.stdout, four.stdout);
-        assert!(!one.stdout.is_empty());
-    }
+    // Text and tables are written of what JSON has whole.
+    let with = |threads: &str| run(ROBOT, &kneed(), &["--format", "json", "--threads", threads]).well().stdout;
+    assert_eq!(with("1"), with("4"));
 }
