@@ -8,17 +8,13 @@ use crate::support::robots::{ROBOTS, robot_and_reference};
 use crate::support::urdf::{self, HINGE, joint, link};
 use heelstrike::description::Description;
 use heelstrike::planar::Vector;
-use heelstrike::robot::{Axis, Base, Body, LeftOutPart, Link, ParentJoint, Reduction, Rim, Robot};
+use heelstrike::robot::{Axis, Base, LeftOutPart, Link, ParentJoint, Reduction, Rim, Robot};
 use serde_json::Value;
 use std::f64::consts::FRAC_PI_2;
 
 mod base;
 mod plane;
 mod untidy;
-
-fn model(name: &str) -> Robot {
-    load(&read(&format!("urdf/{name}.urdf")))
-}
 
 /// Center and radius of the disc that is a link's only shape.
 fn disc(link: &Link) -> ([f64; 2], f64) {
@@ -135,69 +131,6 @@ fn assert_at(found: Vector, [x, z]: [f64; 2]) {
 
 fn left_out(what: &str, why: &str) -> LeftOutPart {
     LeftOutPart { what: what.into(), why: why.into() }
-}
-
-// The models of the paper.
-
-#[test]
-fn ramone_keeps_the_digits_of_table_1() {
-    for (name, shank) in [("ramone", -0.165235), ("ramone_paper", -0.073265)] {
-        let ramone = model(name);
-        assert_eq!(ramone.base, Base::Floating);
-        assert_eq!(ramone.name, name);
-        let coordinates: Vec<&str> = ramone.coordinates().collect();
-        assert_eq!(coordinates, ["x", "z", "pitch", "left_hip", "left_knee", "right_hip", "right_knee"]);
-
-        let body = |body: &Body| (body.name.clone(), body.mass, body.com.components(), body.moment);
-        let bodies: Vec<_> = ramone.bodies.iter().map(body).collect();
-        let thigh = (0.7887, [0.0, -0.019399], 0.00221);
-        let expected = [
-            ("torso", 7.9026, [0.0, 0.0], 0.0800),
-            ("left_thigh", thigh.0, thigh.1, thigh.2),
-            ("left_shank", 0.510, [0.0, shank], 0.00652),
-            ("right_thigh", thigh.0, thigh.1, thigh.2),
-            ("right_shank", 0.510, [0.0, shank], 0.00652),
-        ];
-        assert_eq!(bodies, expected.map(|(name, mass, com, moment)| (name.to_owned(), mass, com, moment)));
-
-        let joints = ramone.joints.iter().map(|joint| (joint.parent, joint.child, joint.origin.components()));
-        let joints: Vec<_> = joints.collect();
-        let (hip, knee) = ([0.0, -0.137675], [0.0, -0.200]);
-        assert_eq!(joints, [(0, 1, hip), (1, 2, knee), (0, 3, hip), (3, 4, knee)]);
-        assert!(ramone.joints.iter().all(|joint| joint.axis == Axis::Revolute { sign: -1.0 }));
-
-        for foot in ["left_foot", "right_foot"] {
-            let foot = &ramone.links[ramone.link(foot).expect("a foot")];
-            assert!(!foot.has_inertial);
-            assert_eq!(disc(foot), ([0.0, -0.2385], 0.02815));
-            assert_eq!(foot.point::<f64>([0.001, 0.5, 0.0]), [0.001, -0.2385]);
-        }
-        assert_eq!(ramone.links.iter().filter(|link| !link.shapes.is_empty()).count(), 2);
-        let fixed = [
-            left_out("joint \"left_ankle\"", "fixed: welded into left_shank"),
-            left_out("joint \"right_ankle\"", "fixed: welded into right_shank"),
-        ];
-        assert_eq!(ramone.left_out, fixed);
-    }
-}
-
-#[test]
-fn walkers_and_the_block_have_points_for_feet() {
-    for (name, along, moment) in [("minimalistic", 0.5, 0.0), ("pdw", 0.4, 0.04)] {
-        let walker = model(name);
-        assert_eq!(walker.coordinates().collect::<Vec<_>>(), ["x", "z", "pitch", "hip"]);
-        assert_eq!((walker.bodies[0].name.as_str(), walker.bodies[1].name.as_str()), ("left_leg", "right_leg"));
-        for body in &walker.bodies {
-            assert_eq!((body.mass, body.com, body.moment), (1.0, Vector::new(0.0, -along), moment));
-        }
-        assert_eq!((walker.joints[0].origin, walker.joints[0].axis), (Vector::zero(), Axis::Revolute { sign: -1.0 }));
-        assert!(walker.links.iter().all(|link| disc(link) == ([0.0, -1.0], 0.0)));
-        assert_eq!(walker.left_out, []);
-    }
-    let block = model("block");
-    assert_eq!((block.bodies.len(), block.dofs()), (1, 3));
-    assert_eq!((block.bodies[0].mass, block.bodies[0].com, block.bodies[0].moment), (1.0, Vector::new(-1.0, 1.0), 1.0));
-    assert_eq!(disc(&block.links[0]), ([0.0, 0.0], 0.0));
 }
 
 // Robots of others.
