@@ -7,11 +7,11 @@
 //! cargo bolero test --profile release robot::any_urdf_is_answered_or_refused     # guided by coverage: cargo-bolero, nightly
 //! ```
 //!
-//! A failing case prints itself as the tool reads it. Each becomes a test of its own where it is mended.
+//! A failing case prints itself as the tool reads it. Each becomes a test of its own where it is mended, or one of
+//! `tests/library/regression.rs`.
 
 mod answer;
 mod choices;
-mod mended;
 mod open;
 mod problem;
 mod robot;

@@ -1,4 +1,5 @@
-//! What once went wrong, each with what it should be; found by reviews and by comparison with an exact solver.
+//! What once went wrong, each with what it should be; found by reviews, by fuzzing and by comparison with an exact
+//! solver.
 
 use crate::support::impact::{impact, ramone, robot, try_impact};
 use crate::support::urdf::{self, HINGE, POINT, collision, joint, link};
@@ -41,6 +42,10 @@ fn flat_footed() -> Robot {
 /// A single body of 2 kg with a flat side 0.4 m long, 0.1 m below its CoG.
 fn flat_box() -> Robot {
     robot(&urdf::body(0.5, &collision([0.0; 2], r#"box size="0.4 0.1 0.2""#)))
+}
+
+fn block() -> Robot {
+    robot(include_str!("../../urdf/block.urdf"))
 }
 
 // Redundant contacts.
@@ -276,6 +281,43 @@ fn matrices_within_the_range_keep_their_digits() {
         let expected = 1.0 / (1.0 - 0.5 * 0.5 / 3.0) * (1.0 + 0.1 * 0.5 / 3.0);
         assert!((sticking[1] * unit - expected).abs() < 1e-14, "{sticking:?}");
     }
+}
+
+/// The change by the impulse was taken from the sum with a velocity next to which it vanishes, and the contact was
+/// shown to separate and to press at once.
+#[test]
+fn an_impulse_is_not_lost_beside_a_great_velocity() {
+    let state = r#"{"friction": 0.5, "stance": "right_foot",
+        "position": {"base": {"pitch": 0.4}, "joints": {"left_hip": 0.5, "left_knee": 0.4, "right_knee": 2.0}},
+        "velocity": {"base": {"pitch": -3e112}}, "contacts": [{"link": "right_foot"}],
+        "impulse": [{"link": "left_thigh", "offset": [0.8, 0, -2.0], "vector": [-0.9, 1.0]}]}"#;
+    let analysis = impact(&ramone(), state).analysis.expect("outcomes");
+    assert!(analysis.proven && analysis.verdict != Verdict::None);
+    assert_eq!(analysis.index_sum, Some(1));
+}
+
+/// Heights were taken to be rounded as the distance is: whatever the depth, far away every foot touched.
+#[test]
+fn a_far_base_does_not_change_which_feet_touch() {
+    let block = block();
+    let at = |x: f64, z: f64, slope: f64| {
+        let state = format!(
+            r#"{{"friction": 1, "position": {{"base": {{"x": {x:?}, "z": {z:?}}}}}, "ground": {{"slope": {slope}}}}}"#
+        );
+        try_impact(&block, Options::default(), state)
+    };
+    assert_eq!(at(-3e173, 10.0, 0.0).expect("above the ground").contacts.len(), 0);
+    assert!(at(-3e173, -10.0, 0.0).expect_err("in the ground").to_string().contains("deep in the ground"));
+    let lost = at(-3e173, 10.0, 0.1).expect_err("nobody knows where the ground is").to_string();
+    assert!(lost.contains("so far from the world's origin"), "{lost}");
+}
+
+/// Without a contact nobody asked whether the velocity after the impulse is a number.
+#[test]
+fn an_impulse_beyond_all_numbers_is_refused() {
+    let state = r#"{"friction": 1, "position": {"base": {"z": 9}}, "impulse": [{"link": "block", "offset": [9, 0, 0], "vector": [0, 1e308]}]}"#;
+    let refused = try_impact(&block(), Options::default(), state).expect_err("an infinite velocity").to_string();
+    assert!(refused.contains("a velocity after the applied impulses"), "{refused}");
 }
 
 // Stance and detection.
