@@ -143,22 +143,36 @@ fn the_note_of_no_touchdown_says_what_would_count() {
     assert!(milliseconds.ends_with("; rows are 100 s apart: is the time in seconds?\n"), "{milliseconds}");
 }
 
-/// A walk with the columns of a header that begin so multiplied by a factor, and others moved.
-fn changed_walk(change: impl Fn(&str, f64) -> f64) -> String {
+/// The cells of a recorded walk, row by row.
+type Rows = Vec<Vec<String>>;
+
+/// What is done to them.
+type Change<'c> = &'c dyn Fn(&mut Rows);
+
+/// The names of the walk's columns, and its rows.
+fn walk_cells() -> (Vec<String>, Rows) {
     let walk = read("examples/gait/ramone_walk.csv");
-    let mut rows = walk.lines().map(|line| line.split(',').collect::<Vec<_>>());
-    let names = rows.next().expect("a header");
-    let cell =
-        |(name, cell): (&&str, &str)| cell.parse().map_or(cell.to_owned(), |cell| change(name, cell).to_string());
-    let row = |row: Vec<&str>| names.iter().zip(row).map(cell).collect::<Vec<_>>().join(",");
-    [names.join(",")].into_iter().chain(rows.map(row)).map(|row| row + "\n").collect()
+    let mut rows = walk.lines().map(|row| row.split(',').map(str::to_owned).collect());
+    (rows.next().expect("a header"), rows.collect())
+}
+
+/// The notes on touchdowns of the walk whose rows are changed.
+fn notes_of(change: impl Fn(&[String], &mut Rows)) -> String {
+    let (names, mut rows) = walk_cells();
+    change(&names, &mut rows);
+    let table: Vec<String> = [names].iter().chain(&rows).map(|row| row.join(",")).collect();
+    let options = ["batch", RAMONE, "-", "--input-format", "csv", "--touchdowns", "--friction", "0.6", "--brief"];
+    heelstrike_reads(&options, table.join("\n")).well().stderr
 }
 
 #[test]
 fn recordings_in_other_units_or_axes_are_noted() {
     let stderr = |change: fn(&str, f64) -> f64| {
-        let options = ["batch", RAMONE, "-", "--input-format", "csv", "--touchdowns", "--friction", "0.6", "--brief"];
-        heelstrike_reads(&options, changed_walk(change)).well().stderr
+        notes_of(|names, rows| {
+            for (name, cell) in rows.iter_mut().flat_map(|row| names.iter().zip(row)) {
+                *cell = cell.parse().map_or(cell.clone(), |number| change(name, number).to_string());
+            }
+        })
     };
     let misfit = "velocities do not fit positions over time: v of ";
     let as_it_is = stderr(|_, cell| cell);
@@ -185,55 +199,31 @@ fn recordings_in_other_units_or_axes_are_noted() {
 /// A row that is missing or out of place takes the touchdown next to it along, or gives the state after it.
 #[test]
 fn rows_that_are_missing_or_out_of_order_are_noted() {
-    let walk = read("examples/gait/ramone_walk.csv");
-    let rows: Vec<&str> = walk.lines().collect();
-    let stderr = |rows: &[&str]| {
-        let options = ["batch", RAMONE, "-", "--input-format", "csv", "--touchdowns", "--friction", "0.6", "--brief"];
-        heelstrike_reads(&options, rows.join("\n")).well().stderr
-    };
-    let whole = stderr(&rows);
+    let notes = |change: Change| notes_of(|_, rows| change(rows));
+    let whole = notes(&|_| {});
     assert!(!whole.contains("order of time") && !whole.contains("without an impact, as"), "{whole}");
-    let without = |left_out: std::ops::Range<usize>| [&rows[..left_out.start], &rows[left_out.end..]].concat();
-    let after = stderr(&without(51..52));
-    assert!(after.contains("touchdowns without an impact, as their foot does not come down: 1; "), "{after}");
     assert!(!whole.contains("rows seem to be missing"), "{whole}");
-    let gap = stderr(&without(30..31));
-    assert!(gap.contains("note: rows seem to be missing once, first from "), "{gap}");
-    let mut exchanged = rows.clone();
-    exchanged.swap(49, 50);
-    let exchanged = stderr(&exchanged);
-    assert!(exchanged.contains("rows are not in the order of time, which goes back once, first from "), "{exchanged}");
-    let still: Vec<String> = rows
-        .iter()
-        .enumerate()
-        .map(|(at, row)| {
-            let cells: Vec<&str> = row.split(',').collect();
-            if at == 0 { (*row).to_owned() } else { [&[cells[0], "0.5"][..], &cells[2..]].concat().join(",") }
-        })
-        .collect();
-    let still = stderr(&still.iter().map(String::as_str).collect::<Vec<_>>());
-    assert!(still.contains("no touchdown found: the time never rises"), "{still}");
+    let cases: [(&str, Change); 4] = [
+        ("touchdowns without an impact, as their foot does not come down: 1; ", &|rows| drop(rows.remove(50))),
+        ("note: rows seem to be missing once, first from ", &|rows| drop(rows.remove(29))),
+        ("rows are not in the order of time, which goes back once, first from ", &|rows| rows.swap(48, 49)),
+        ("no touchdown found: the time never rises", &|rows| rows.iter_mut().for_each(|row| row[1] = "0.5".to_owned())),
+    ];
+    for (note, change) in cases {
+        let found = notes(change);
+        assert!(found.contains(note), "{note}: {found}");
+    }
 }
 
 /// Recorders repeat frames and lose track of markers; trials are joined, and rounded; the ground is where it is.
 #[test]
 fn rows_that_no_robot_moves_through_are_noted() {
-    /// What is done to the rows of a table.
-    type Change<'c> = &'c dyn Fn(&mut Vec<Vec<String>>);
-    let walk = read("examples/gait/ramone_walk.csv");
-    let names: Vec<&str> = walk.lines().next().expect("a header").split(',').collect();
-    let rows: Vec<Vec<String>> = walk.lines().skip(1).map(|row| row.split(',').map(str::to_owned).collect()).collect();
-    let place = |name: &str| names.iter().position(|known| *known == name).unwrap_or_else(|| panic!("{name}"));
+    let names = walk_cells().0;
+    let place = |name: &str| names.iter().position(|known| known == name).unwrap_or_else(|| panic!("{name}"));
     let (time, x, z, pitch) = (place("time"), place("q_base_x"), place("q_base_z"), place("q_base_pitch"));
     let number = |cell: &String| cell.parse::<f64>().expect("a number");
-    let notes = |change: Change| {
-        let mut rows = rows.clone();
-        change(&mut rows);
-        let table: Vec<String> = rows.iter().map(|row| row.join(",")).collect();
-        let options = ["batch", RAMONE, "-", "--input-format", "csv", "--touchdowns", "--friction", "0.6", "--brief"];
-        heelstrike_reads(&options, format!("{}\n{}", names.join(","), table.join("\n"))).well().stderr
-    };
-    let turn = |rows: &mut Vec<Vec<String>>| {
+    let notes = |change: Change| notes_of(|_, rows| change(rows));
+    let turn = |rows: &mut Rows| {
         let (v_x, v_z) = (place("v_base_x"), place("v_base_z"));
         for row in rows {
             // As if the robot leaned by half a radian, which changes no velocity in the world.
@@ -244,7 +234,7 @@ fn rows_that_no_robot_moves_through_are_noted() {
             row[v_z] = (lean.sin() * along + lean.cos() * up).to_string();
         }
     };
-    let shift = |rows: &mut Vec<Vec<String>>| {
+    let shift = |rows: &mut Rows| {
         let again = rows.clone();
         rows.extend(again);
         rows.iter_mut().for_each(|row| row[z] = (number(&row[z]) - 0.03).to_string());
