@@ -12,14 +12,11 @@ const MINIMALISTIC: [&str; 3] = ["sweep", WALKER, "examples/paper/figures_3_and_
 /// No SVG is larger \[bytes\].
 const LARGEST: usize = 500_000;
 
-/// The SVG, drawn twice.
+/// The SVG, an element per line.
 fn svg(args: &[&str], name: &str) -> String {
-    let [svg, again] = ["a", "b"].map(|time| {
-        let path = place(&format!("{name}_{time}.svg"));
-        heelstrike(&[args, &["--plot", &path]].concat()).text();
-        read(&path)
-    });
-    assert_eq!(svg, again);
+    let path = place(&format!("{name}.svg"));
+    heelstrike(&[args, &["--plot", &path]].concat()).text();
+    let svg = read(&path);
     assert!(svg.len() < LARGEST, "{name}: {} bytes", svg.len());
     svg.replace("><", ">\n<")
 }
@@ -255,7 +252,7 @@ fn curves_of_eight_contacts_fit_on_a_page() {
         [0.0, 0.02].map(|z| legs.map(|leg| contact(&format!("{leg}_{}", if z > 0.0 { "calf" } else { "foot" }), z)));
     let study = json!({"parameters": {"fast": {"from": -0.3, "to": 0.3, "steps": 3}}, "state": {"position": {
         "base": {"z": 0.3}, "joints": {"FR_thigh_joint": 0.7, "FR_calf_joint": -1.5, "RL_thigh_joint": 0.8}},
-        "velocity": {"base": {"x": "fast", "z": -1}}, "contacts": contacts.concat(), "friction": 0.6}});
+        "velocity": {"base": {"x": "fast", "z": -1}}, "contacts": contacts.concat(), "friction": 0}});
     let study = file("eight.json", study.to_string());
     let svg = svg(&["sweep", "tests/data/robots/a1/a1.urdf", &study], "eight");
     let size = |name: &str| {
