@@ -64,26 +64,6 @@ proptest! {
     }
 }
 
-/// A rod of mass m and length l on a floating hub of mass m, and a second rod on its end that follows with multiplier
-/// -2 (a folding leg). By hand, at q = 0 with both rods straight down, rods with their mass in the far end:
-/// with hip rate w, the first turns at w and the second at -w; their ends move forward at -l w and -l w + l w = 0. So
-/// M_qq = m l^2, M_xq = -m l, M_xx = 3 m.
-#[test]
-fn a_folding_leg_by_hand() {
-    let (m, l) = (2.0, 0.5);
-    let mechanism = Mechanism::of(m, [0.0, 0.0], 1.0)
-        .with("hip", "root", [0.0, 0.0], m, [0.0, -l])
-        .but(|rod| rod.moment = 0.0)
-        .with("knee", "hip", [0.0, -l], m, [0.0, -l])
-        .but(|rod| rod.moment = 0.0)
-        .following("hip", -2.0, 0.0);
-    let found = strike(&mechanism, &mechanism.state(0, &[0.0; 5], &[0.0; 5], &[]));
-    let mass = &matrices(&found).mass_matrix;
-    // Pitching the whole at w moves the ends at -l w and -2 l w: M_pitch,q = m (l l + 0).
-    assert_eq!(mass[3], [-m * l, 0.0, m * l * l, m * l * l]);
-    assert_eq!(mass[0][0], 3.0 * m);
-}
-
 #[test]
 fn a_held_mimicked_joint_holds_its_mimic_joints() {
     let mechanism = mechanism();

@@ -56,14 +56,6 @@ fn close(found: &[Vec<f64>], expected: &[Vec<f64>]) {
 }
 
 #[test]
-fn a_walk_toward_the_left_is_one_along_x() {
-    let left = |time: f64| [time, 0.5, 3.0 + time, 0.9, std::f64::consts::FRAC_PI_2, 0.1 * time, 0.0];
-    let rows: Vec<Row> = (0..5).map(|row| left(0.25 * f64::from(row))).collect();
-    let expected: Vec<Vec<f64>> = rows.iter().map(|row| vec![row[2], 0.9, row[5]]).collect();
-    close(&positions(&table(&rows)), &expected);
-}
-
-#[test]
 fn each_clip_has_a_heading_of_its_own() {
     let ahead = [[0.0, 0.0, 0.0, 1.0, 0.2, 0.0, 0.1], [0.1, 1.0, 0.5, 1.0, -0.2, 0.0, 0.0]];
     let back = [[0.0, 0.0, 0.0, 1.0, 3.0, 0.0, 0.0], [0.1, -1.0, 0.0, 1.0, 3.0, 0.0, -0.3]];
