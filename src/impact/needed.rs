@@ -250,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn contacts_that_jam_need_more_than_the_ratio_of_their_sums() {
+    fn contacts_that_jam_need_more_than_their_ratio() {
         // Sums of 1.5 and 2, but what shifts the tangential impulses shifts the normal ones, too: at a = -y the frictions
         // (1.5 + a) / (1 + a) and a / (1 - a) are the same.
         let impulses = [[affine(0.0, &[1.0]), affine(1.0, &[1.0])], [affine(1.5, &[-1.0]), affine(1.0, &[-1.0])]];

@@ -286,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn functions_without_a_common_entry_are_programs_of_their_own() {
+    fn functions_without_a_common_entry_are_separate() {
         // |y1| <= 1/3 or so, y2 >= 1/4 at least by 1/8: in plain balls neither sees the other.
         let third = 1.0 / 3.0;
         let affine = |constant: f64, coefficients: [f64; 3]| LinearFunction {

@@ -86,7 +86,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lists_of_another_length_are_read_as_far_as_they_go() {
+    fn lists_of_another_length_are_read_to_their_end() {
         let robot = Robot::from_urdf(include_str!("../../urdf/minimalistic.urdf")).unwrap();
         let names = |position: Vec<f64>| {
             let state = State { position, ..State::zero(&robot) };

@@ -466,7 +466,7 @@ mod tests {
     }
 
     #[test]
-    fn a_roll_far_from_zero_is_bisected_to_neighboring_numbers() {
+    fn a_roll_far_from_zero_is_bisected_to_its_end() {
         let start = 1.7e9;
         let mut watch = |x: f64| {
             let corners = vec![Some(usize::from(x > start + 0.3))];

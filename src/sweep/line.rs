@@ -254,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn zeros_close_to_the_end_of_a_wide_interval_are_found() {
+    fn zeros_near_the_end_of_a_wide_interval_are_found() {
         let cubic = |x: f64| (x - 0.55) * (x - 0.556) * (x - 0.561);
         let sticks = |at: f64| if cubic(at) > 0.0 { Mode::Stick } else { Mode::SlidePlus };
         let mut line = Made(|at: f64| Some(sticks(at)), |at: f64| (false, vec![cubic(at)], Vec::new()));

@@ -140,7 +140,7 @@ fn colors_come_only_where_they_are_wanted() {
 
 #[cfg(unix)]
 #[test]
-fn an_output_that_is_not_open_for_writing_is_reported() {
+fn an_output_that_is_not_writable_is_reported() {
     for arguments in [
         &["impact", RAMONE, "examples/ramone.json"][..],
         &["batch", WALKER, "examples/keyframes.ndjson", "--friction", "1"],

@@ -110,7 +110,7 @@ fn a_picture_and_the_results_are_two_files() {
 }
 
 #[test]
-fn the_given_friction_is_a_line_if_all_contacts_have_it() {
+fn friction_is_a_line_if_all_contacts_have_the_same() {
     let walk = read("examples/gait/ramone_walk.ndjson");
     let given = "\"friction\": 0.6";
     let with = |mu: &str| given.replace("0.6", mu);

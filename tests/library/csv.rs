@@ -216,7 +216,7 @@ fn rows_that_do_not_fit_are_refused_with_their_place() {
 }
 
 #[test]
-fn columns_of_the_base_are_not_those_of_joints_of_its_names() {
+fn columns_of_the_base_are_not_those_of_joints() {
     let text = leg_urdf().replace("\"knee\"", "\"x\"");
     let columns = Columns::new(&robot(&text), &[], None, Layout { touchdowns: true, ..Layout::default() });
     for name in ["v_after_base_x", "v_after_x", "q_base_x", "q_x", "v_base_x", "v_x"] {

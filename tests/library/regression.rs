@@ -135,7 +135,7 @@ fn a_sign_that_rounding_hides_is_read_exactly() {
 }
 
 #[test]
-fn friction_at_the_end_of_f64_has_its_signs_and_margins() {
+fn friction_at_the_end_of_f64_has_signs_and_margins() {
     // The pivot of a slide overflows, which left no impulse and with it an outcome.
     let found = solve(&[1., 3., 3., 9.], [[-2., 1.]], [mu(1e308)], [0.0]);
     assert_eq!((found.verdict, found.proven), (Verdict::NoImpact, true));

@@ -49,7 +49,7 @@ fn squatting(rates: [f64; 5], friction: &Value) -> Value {
 
 /// Both feet rest while the torso comes down, which five degrees of freedom allow in one way.
 #[test]
-fn a_torso_lands_between_two_feet_that_rest_to_rounding() {
+fn a_torso_lands_between_two_feet_that_rest() {
     let robot = robot(&urdf::robot(&[
         urdf::link("torso", 8.0, [0.0, 0.25], 0.5, ""),
         urdf::link("left_leg", 1.0, [0.0, -0.5], 0.0625, ""),

@@ -147,7 +147,7 @@ fn a_search_finds_what_trying_all_finds() {
 }
 
 #[test]
-fn friction_needed_is_the_least_that_holds_contacts_together() {
+fn friction_needed_is_the_least_that_holds() {
     let [compared, jammed] = total(600, |seed| {
         let mut parts = Parts::dependent(&mut Random::new(seed));
         let count = parts.friction.len();
@@ -211,7 +211,7 @@ fn a_search_trusts_no_velocity_without_a_bound() {
 }
 
 #[test]
-fn combinations_are_listed_only_if_they_are_some_of_the_problem() {
+fn only_combinations_of_the_problem_are_listed() {
     let four = of_four(&mut Random::new(3));
     let some = four.analyze().outcomes[0].modes.clone();
     let rejected = [Mode::Separate, Mode::Separate, Mode::Separate, Mode::Separate].to_vec();

@@ -336,7 +336,7 @@ mod tests {
     }
 
     #[test]
-    fn a_matrix_that_rounding_made_asymmetric_is_its_mean() {
+    fn a_matrix_made_asymmetric_by_rounding_is_its_mean() {
         let solve = |other: f64| {
             let delassus = vec![2.0, 1.0, other, 2.0];
             let problem = ContactProblem::new(delassus, vec![[0.5, -1.0]], vec![Friction::Finite(0.9)], vec![0.0]);

@@ -112,7 +112,7 @@ fn many_refusals_do_not_flood_standard_error() {
 }
 
 #[test]
-fn refusals_are_of_one_kind_if_they_differ_in_numbers_alone() {
+fn refusals_that_differ_in_numbers_are_of_one_kind() {
     let stance = |link: &str| format!("{{\"stance\": \"{link}\"}}\n");
     let deep = |height: u32| format!("{{\"position\": {{\"base\": {{\"z\": 0.{height}}}}}, \"friction\": 1}}\n");
     let input = stance("lef_foot").repeat(4) + &stance("rigt_foot") + &(11..20).map(deep).collect::<String>();
@@ -211,7 +211,7 @@ fn a_full_disk_is_reported_with_what_was_written() {
 }
 
 #[test]
-fn an_output_that_ends_is_seen_while_the_input_is_silent() {
+fn a_silent_batch_sees_that_its_output_has_ended() {
     let full = &["-o", "/dev/full"][..];
     let outputs: &[&[&str]] = if cfg!(target_os = "linux") { &[&[], full] } else { &[&[]] };
     for (threads, output) in ["1", "4"].into_iter().flat_map(|threads| outputs.iter().map(move |own| (threads, *own))) {

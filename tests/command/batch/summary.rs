@@ -70,7 +70,7 @@ fn odd_joints_are_counted_and_the_first_is_named() {
 
 /// The disc slows down to the ground at 10 m/s^2.
 #[test]
-fn early_touchdowns_are_counted_unless_heights_are_true() {
+fn early_touchdowns_are_counted_of_recorded_heights() {
     let path = place("early.json");
     let row = |row: u8| {
         let time = f64::from(row) * 1e-3;

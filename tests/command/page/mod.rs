@@ -104,7 +104,7 @@ fn a_loops_impulse_is_on_the_link_that_it_pushes_up() {
 }
 
 #[test]
-fn pages_of_a_mirror_name_what_happens_at_borders_in_it() {
+fn pages_of_a_mirror_name_what_turns_in_it() {
     let study = file("mirror.json", near_a_border().to_string());
     let sweep = ["sweep", WALKER, &study];
     let [ahead, behind] =

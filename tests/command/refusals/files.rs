@@ -42,7 +42,7 @@ fn what_cannot_be_read_is_refused() {
 }
 
 #[test]
-fn fields_of_problems_and_endings_of_outputs_are_not_passed_over() {
+fn near_fields_and_odd_endings_are_refused() {
     let problem = |field: &str| {
         let text = r#"{"delassus": [[2, 1], [1, 2]], "velocity_before": [[0.5, -1]], "friction": 0.9, "FIELD": "e"}"#;
         heelstrike_reads(&["solve", "-"], text.replace("FIELD", field))

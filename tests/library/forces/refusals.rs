@@ -28,7 +28,7 @@ fn wheel_on_a_corner_may_stand_but_not_roll() {
 }
 
 #[test]
-fn circles_of_other_radii_at_one_place_are_told_apart() {
+fn circles_of_other_radii_at_one_place_are_refused() {
     let circles = |radii: [f64; 2], spin: f64| {
         let shapes = radii.map(|radius| collision([0.0, radius], &format!("sphere radius=\"{radius}\"")));
         try_forces(&robot(&body(0.1, &shapes.concat())), json!({"velocity": {"base": {"pitch": spin}}}))

@@ -58,7 +58,7 @@ fn force_has_no_bound_where_the_paradox_begins() {
 }
 
 #[test]
-fn force_and_acceleration_are_zero_where_the_rod_lifts() {
+fn force_and_acceleration_end_where_the_rod_lifts() {
     // b_n = omega^2 sin(theta) / 2 - g.
     let lifts = (2.0 * GRAVITY / 0.9_f64.sin()).sqrt();
     for (mu, force, acceleration) in [(0.5, Side::Below, Side::Above), (2.0, Side::Above, Side::Above)] {

@@ -134,7 +134,7 @@ fn named_contacts_are_closed_at_any_height_in_order() {
 }
 
 #[test]
-fn a_foot_deep_in_the_ground_besides_named_contacts_is_noted() {
+fn a_deep_foot_besides_named_contacts_is_noted() {
     let notes = |z: f64, brief: bool| {
         let place = r#"{"position": {"base": {"z": PLACE}}, "contacts": [{"link": "body", "offset": [0, 0, -1]}]}"#;
         let options = Options { brief, ..Options::default() };

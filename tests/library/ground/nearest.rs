@@ -118,7 +118,7 @@ fn a_point_mass_falls_and_lands_anywhere() {
 }
 
 #[test]
-fn a_foot_beyond_both_ends_of_the_profile_is_put_on_them() {
+fn a_foot_beyond_both_ends_of_the_ground_is_put_on() {
     let plank =
         robot(&urdf::robot(&[link("plank", 2.0, [0.0; 2], 0.1, &collision([0.0; 2], "box size=\"1 1 0.05\""))]));
     for points in [json!([[-0.2, 0], [0.2, 0]]), json!([[-0.2, 0], [0, -0.3], [0.2, 0]])] {

@@ -243,7 +243,7 @@ fn a_toe_lands_about_a_heel_that_rests_to_rounding() {
 /// The same of a foot with a hinged toe: three points of two bodies, of which the last one lands. If the toe is held, it
 /// is part of the foot, whether its column is left out or not.
 #[test]
-fn a_hinged_toe_lands_while_the_heel_rests_to_rounding() {
+fn a_hinged_toe_lands_about_a_heel_that_rests() {
     let point = |x: f64| urdf::collision([x, -0.05], urdf::POINT);
     let robot = robot(&urdf::robot(&[
         urdf::link("torso", 8.0, [0.0, 0.2], 0.3, ""),

@@ -202,7 +202,7 @@ fn a_mass_in_grams_is_noted() {
 }
 
 #[test]
-fn moments_about_another_axis_and_moving_links_without_mass_are_noted() {
+fn moments_about_another_axis_and_no_mass_are_noted() {
     let inertia = "<inertia ixx=\"0.01\" iyy=\"0.01\" izz=\"0.01\"/>";
     let limb = |name: &str, inertial: &str| format!("<link name=\"{name}\">{inertial}</link>");
     let massive = |inertia: &str| format!("<inertial><mass value=\"1\"/>{inertia}</inertial>");
