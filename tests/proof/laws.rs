@@ -151,6 +151,10 @@ fn friction_needed_is_the_least_that_holds() {
     let [compared, jammed] = total(600, |seed| {
         let mut parts = Parts::dependent(&mut Random::new(seed));
         let count = parts.friction.len();
+        // Of five contacts each takes as long as three of four.
+        if count == 5 && seed % 10 > 0 {
+            return [0; 2];
+        }
         parts.restitution.fill(0.0);
         parts.friction.fill(Friction::Infinite);
         let outcomes = parts.analyze().outcomes;
