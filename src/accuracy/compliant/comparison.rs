@@ -259,12 +259,13 @@ fn by_stiffness_of_moving(
     };
     let frozen = after(&run(problem, PLAIN, TOLERANCE)?.impulse);
     let outcomes: Vec<Vec<f64>> = outcomes.iter().map(|outcome| after(&outcome.impulse)).collect();
-    let Assembly { plan, workspace, points, .. } = &assembly;
+    let Assembly { plan, workspace, .. } = &assembly;
     let apart = |a: &[f64], b: &[f64]| {
         let gap: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
         (kinetic_energy(plan, &gap, workspace, &mut Vec::new()).max(0.0) / energy).sqrt()
     };
-    let moving = Moving { plan, position: state.position, velocity: &before, contacts: points, friction: &friction };
+    let (robot, position) = (state.robot, state.position);
+    let moving = Moving { robot, assembly: &assembly, position, velocity: &before, friction: &friction };
     let mut rows = Vec::new();
     for stiffness in STIFFNESSES {
         // If the integrator gives up, the row is empty and the study goes on.

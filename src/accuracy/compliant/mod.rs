@@ -15,7 +15,6 @@ pub use comparison::{
 };
 pub use frozen::{CompliantRun, TOLERANCE, run};
 pub use ground::{GREATEST_FRICTION, SoftGround};
-pub use moving::Moving;
 
 #[cfg(test)]
 mod tests {

@@ -11,31 +11,26 @@ use super::ground::{SoftGround, Suspension, mean_mobility};
 use super::integrate::{Limits, StiffEquations, integrate};
 use crate::Result;
 use crate::contact::Placement;
-use crate::dynamics::plan::{Configuration, Plan};
-use crate::dynamics::{
-    ContactPoint, PointImpulse, Workspace, add_impulse, bias, contact_jacobian, delassus, factorize, kinematics,
-    mass_matrix,
-};
 use crate::law::Friction;
+use crate::pipeline::assembly::{Assembly, Elimination, Loads};
 use crate::planar::{Pair, Vector};
+use crate::robot::Robot;
+use crate::state::Scene;
 use std::cell::RefCell;
 
-/// Downward, as everywhere on Earth \[m/s^2\].
-const GRAVITY: f64 = 9.81;
 /// The longest run, in units of sqrt(m / k_n) (1 + damping ratio).
 const HORIZON: f64 = 1e2;
 
 /// A robot just before it strikes, ready to be integrated.
 #[derive(Debug)]
-pub struct Moving<'a> {
-    /// The robot.
-    pub plan: &'a Plan,
+pub(super) struct Moving<'a> {
+    pub robot: &'a Robot,
+    /// Its dynamics, with the closed contacts and the factorized M.
+    pub assembly: &'a Assembly,
     /// q \[m, rad\].
     pub position: &'a [f64],
     /// v \[m/s, rad/s\].
     pub velocity: &'a [f64],
-    /// The closed contacts.
-    pub contacts: &'a [ContactPoint],
     /// Friction of each contact.
     pub friction: &'a [Friction],
 }
@@ -49,7 +44,7 @@ impl Moving<'_> {
     pub fn run(&self, ground: SoftGround, stiffness: f64, tolerance: f64) -> Result<Vec<f64>> {
         let dofs = self.position.len();
         let model = Equation::new(self, ground, stiffness);
-        let mut start = vec![0.0; 2 * dofs + self.contacts.len()];
+        let mut start = vec![0.0; 2 * dofs + self.friction.len()];
         for (entry, rate) in start[dofs..].iter_mut().zip(self.velocity) {
             *entry = rate / model.speed;
         }
@@ -63,7 +58,7 @@ impl Moving<'_> {
 /// `speed`, in which all of them are of order one.
 #[derive(Debug)]
 struct Equation<'a> {
-    robot: &'a Moving<'a>,
+    moving: &'a Moving<'a>,
     suspension: Suspension,
     /// The contact points at first.
     start: Vec<Vector<f64>>,
@@ -71,81 +66,69 @@ struct Equation<'a> {
     period: f64,
     /// The greatest rate.
     speed: f64,
-    memory: RefCell<Memory>,
+    /// Where the robot was last.
+    assembly: RefCell<Assembly>,
 }
 
-#[derive(Debug, Default)]
-struct Memory {
-    workspace: Workspace,
-    configuration: Configuration,
-    column: Vec<f64>,
+/// Everything that the equation of motion needs at q and v.
+fn move_to(assembly: &mut Assembly, position: &[f64], velocity: &[f64]) {
+    assembly.configuration.set(&assembly.plan, position);
+    assembly.place();
+    assembly.factorize();
+    assembly.contact_jacobian(velocity, None);
 }
 
-impl Memory {
-    /// Everything that the equation of motion needs at q and v.
-    fn move_to(&mut self, robot: &Moving, position: &[f64], velocity: &[f64]) {
-        let Self { workspace, configuration, .. } = self;
-        configuration.set(robot.plan, position);
-        kinematics(robot.plan, configuration, workspace);
-        mass_matrix(robot.plan, workspace);
-        factorize(robot.plan, workspace);
-        contact_jacobian(robot.plan, robot.contacts, velocity, None, workspace);
-    }
+/// The contact points, with the root's origin at `base`.
+fn places(assembly: &Assembly, base: Vector<f64>) -> Vec<Vector<f64>> {
+    let placement = Placement::new(&assembly.plan, &assembly.workspace, base);
+    let place = |body| placement.world(body, Vector::zero());
+    assembly.points.iter().map(|point| place(point.body) + point.arm(&assembly.workspace)).collect()
 }
 
 impl<'a> Equation<'a> {
-    fn new(robot: &'a Moving<'a>, ground: SoftGround, stiffness: f64) -> Self {
-        let mut memory = Memory::default();
-        memory.move_to(robot, robot.position, robot.velocity);
-        let workspace = &mut memory.workspace;
-        delassus(robot.plan, workspace);
-        let contacts = robot.contacts.len();
-        let mean_mobility = mean_mobility(|row, column| workspace.delassus[row * 2 * contacts + column], contacts);
+    fn new(moving: &'a Moving<'a>, ground: SoftGround, stiffness: f64) -> Self {
+        let mut assembly = moving.assembly.clone();
+        move_to(&mut assembly, moving.position, moving.velocity);
+        assembly.delassus();
+        let contacts = assembly.points.len();
+        let mobility = |row: usize, column: usize| assembly.workspace.delassus[row * 2 * contacts + column];
+        let mean_mobility = mean_mobility(mobility, contacts);
         let damping = 2.0 * ground.damping_ratio * (stiffness / mean_mobility).sqrt();
-        let placement = Placement::new(robot.plan, workspace, Vector::zero());
-        let points = robot.contacts.iter().map(|contact| place(contact, &placement, workspace));
         Self {
-            suspension: Suspension::new(ground, stiffness, damping, robot.friction.iter().copied()),
-            start: points.collect(),
+            suspension: Suspension::new(ground, stiffness, damping, moving.friction.iter().copied()),
+            start: places(&assembly, Vector::zero()),
             period: (1.0 / (stiffness * mean_mobility)).sqrt(),
-            speed: robot.velocity.iter().fold(f64::MIN_POSITIVE, |speed: f64, rate| speed.max(rate.abs())),
-            memory: RefCell::new(memory),
-            robot,
+            speed: moving.velocity.iter().fold(f64::MIN_POSITIVE, |speed: f64, rate| speed.max(rate.abs())),
+            assembly: RefCell::new(assembly),
+            moving,
         }
     }
 
     /// Rates of the state, and for each contact its normal force and speed.
     fn evaluate(&self, state: &[f64]) -> (Vec<f64>, Vec<Pair<f64>>) {
-        let Moving { plan, position, contacts, .. } = *self.robot;
+        let Moving { robot, position, .. } = *self.moving;
         let dofs = position.len();
         let length = self.speed * self.period;
         let moved: Vec<f64> = state[..dofs].iter().map(|entry| entry * length).collect();
         let velocity: Vec<f64> = state[dofs..2 * dofs].iter().map(|entry| entry * self.speed).collect();
-        let memory = &mut *self.memory.borrow_mut();
+        let assembly = &mut *self.assembly.borrow_mut();
         let position: Vec<f64> = position.iter().zip(&moved).map(|(q, moved)| q + moved).collect();
-        memory.move_to(self.robot, &position, &velocity);
-        let Memory { workspace, column, .. } = memory;
+        move_to(assembly, &position, &velocity);
 
-        bias(plan, &velocity, GRAVITY, workspace);
-        let mut free = workspace.bias.clone();
-        workspace.factor.solve(plan, &mut free);
-        let mut accelerations = vec![0.0; dofs];
-        plan.coordinates.iter().zip(&free).for_each(|(&coordinate, own)| accelerations[coordinate] = -own);
-        let base = if plan.floating { Vector::new(moved[0], moved[1]) } else { Vector::zero() };
-        let placement = Placement::new(plan, workspace, base);
-        let mut touching = Vec::with_capacity(contacts.len());
-        let mut stretches = Vec::with_capacity(contacts.len());
-        for (index, contact) in contacts.iter().enumerate() {
-            let axes = contact.axes();
-            let c = workspace.contact_velocity[index];
-            let depth = axes[1].dot(self.start[index] - place(contact, &placement, workspace));
-            let ([tangential, normal], stretch) =
-                self.suspension.force(index, depth, state[2 * dofs + index] * length, c);
-            let force = axes[0] * tangential + axes[1] * normal;
-            let force = PointImpulse { body: contact.body, arm: contact.arm(workspace), vector: force };
-            add_impulse(plan, workspace, force, column, &mut accelerations);
+        // Gravity is all that acts besides the contacts.
+        let loads = Loads { robot, scene: &Scene::default(), position: &position, still: &[] };
+        let (mut accelerations, _) = assembly.acceleration(&velocity, loads);
+        let base = if assembly.plan.floating { Vector::new(moved[0], moved[1]) } else { Vector::zero() };
+        let mut touching = Vec::with_capacity(self.start.len());
+        let mut stretches = Vec::with_capacity(self.start.len());
+        for (index, (start, place)) in self.start.iter().zip(places(assembly, base)).enumerate() {
+            let [_, up] = assembly.points[index].axes();
+            let c = assembly.workspace.contact_velocity[index];
+            let depth = up.dot(*start - place);
+            let (force, stretch) = self.suspension.force(index, depth, state[2 * dofs + index] * length, c);
+            assembly.strike(Elimination::Ltl, index, force, &mut accelerations);
             stretches.push(stretch / self.speed);
-            touching.push([normal, c[1]]);
+            touching.push([force[1], c[1]]);
         }
         let accelerations = accelerations.iter().map(|acceleration| acceleration * self.period / self.speed);
         let rates = state[dofs..2 * dofs].iter().copied().chain(accelerations).chain(stretches).collect();
@@ -162,9 +145,4 @@ impl StiffEquations for Equation<'_> {
     fn has_ended(&self, state: &[f64]) -> bool {
         self.evaluate(state).1.iter().all(|&[normal, speed]| normal == 0.0 && speed >= 0.0)
     }
-}
-
-/// A contact point.
-fn place(contact: &ContactPoint, placement: &Placement, workspace: &Workspace) -> Vector<f64> {
-    placement.world(contact.body, Vector::zero()) + contact.arm(workspace)
 }
