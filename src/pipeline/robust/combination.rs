@@ -21,22 +21,16 @@ pub(super) struct UncertainProblem<T> {
 }
 
 /// A combination's equations and inequalities, all times det A.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct BoxCombination<T> {
     /// det A, up to a sign that it shares with the numerators.
-    pub determinant: Option<T>,
+    pub determinant: T,
     /// What must keep its inequality after a division by det A; without one it is c_t of a frictionless contact that
     /// sticks, and must be zero.
     pub numerators: Vec<(Option<Inequality>, T)>,
     /// Unknowns: row in which the equation stands, contact, and the ray's entries [tangential, normal].
     columns: Vec<(usize, usize, [T; 2])>,
     minors: Vec<T>,
-}
-
-impl<T> Default for BoxCombination<T> {
-    fn default() -> Self {
-        Self { determinant: None, numerators: Vec::new(), columns: Vec::new(), minors: Vec::new() }
-    }
 }
 
 impl<T: Ordered> UncertainProblem<T> {
@@ -130,7 +124,7 @@ impl<T: Ordered> UncertainProblem<T> {
                 Impulse::Free => 2,
             };
         }
-        *determinant = Some(whole);
+        *determinant = whole;
     }
 }
 
@@ -146,9 +140,9 @@ impl<T: Ordered> BoxCombination<T> {
             // If det A = 0, a numerator that is not zero says that the equations contradict each other.
             return Some(false);
         }
-        let (good, bad) = match self.determinant.map(T::sign) {
-            Some(Sign::Positive) => (Sign::Positive, Sign::Negative),
-            Some(Sign::Negative) => (Sign::Negative, Sign::Positive),
+        let (good, bad) = match self.determinant.sign() {
+            Sign::Positive => (Sign::Positive, Sign::Negative),
+            Sign::Negative => (Sign::Negative, Sign::Positive),
             // Whatever the sign of det A: one of two opposite numerators has the other sign.
             _ => return (has(Sign::Positive) && has(Sign::Negative)).then_some(false),
         };
@@ -209,9 +203,8 @@ mod tests {
             for modes in lists() {
                 numbers.combine(&modes, &mut found);
                 let leaf = tableau.leaf(&modes);
-                let determinant = found.determinant.unwrap();
                 let product: f64 = leaf.pivots.iter().product();
-                prop_assert!((determinant.mid - product).abs() <= 1e-9 * (1.0 + product.abs()), "{modes:?}");
+                prop_assert!((found.determinant.mid - product).abs() <= 1e-9 * (1.0 + product.abs()), "{modes:?}");
                 let mut expected = Vec::new();
                 crate::impact::slack::slacks(&leaf, &modes, problem.laws(), |slack| expected.push(slack.number));
                 prop_assert_eq!(expected.len(), found.numerators.len());
@@ -228,22 +221,22 @@ mod tests {
     #[test]
     fn opposite_numerators_reject_across_a_pole() {
         let wide = |mid: f64| crate::scalar::Ball { mid, radius: 0.1 };
-        let mut found = BoxCombination { determinant: Some(wide(0.0)), ..BoxCombination::default() };
+        let mut found = BoxCombination { determinant: wide(0.0), ..BoxCombination::default() };
         found.numerators =
             vec![(Some(Inequality::NormalImpulse), wide(1.0)), (Some(Inequality::NormalVelocity), wide(-1.0))];
         assert_eq!(found.is_valid(), Some(false));
         found.numerators[1].1 = wide(1.0);
         assert_eq!(found.is_valid(), None);
-        found.determinant = Some(wide(1.0));
+        found.determinant = wide(1.0);
         assert_eq!(found.is_valid(), Some(true));
-        found.determinant = Some(wide(-1.0));
+        found.determinant = wide(-1.0);
         assert_eq!(found.is_valid(), Some(false));
     }
 
     #[test]
     fn exact_zeros_count_as_the_strict_modes_have_it() {
         let ball = crate::scalar::Ball::<f64>::from_f64;
-        let mut found = BoxCombination { determinant: Some(ball(1.0)), ..BoxCombination::default() };
+        let mut found = BoxCombination { determinant: ball(1.0), ..BoxCombination::default() };
         for (inequality, valid) in
             [(Some(Inequality::NormalImpulse), true), (None, true), (Some(Inequality::NormalVelocity), false)]
         {

@@ -153,7 +153,7 @@ fn weigh_open<const N: usize>(
     influence: &mut [f64],
     ways: &mut Vec<Vec<f64>>,
 ) {
-    let Some(determinant) = combination.determinant else { return };
+    let determinant = &combination.determinant;
     let sign = if determinant.to_f64() < 0.0 { -1.0 } else { 1.0 };
     // How far each inequality is from being decided: 1 on its border, 0 in its middle.
     let slacks = combination.numerators.iter().filter(|(inequality, _)| inequality.is_some());
@@ -168,9 +168,9 @@ fn weigh_open<const N: usize>(
         }
     };
     let way = |number: &Affine<N>, sign: f64| number.slopes().iter().map(|slope| sign * slope).collect::<Vec<f64>>();
-    if undecided(&determinant) {
-        weigh(&determinant);
-        ways.extend([1.0, -1.0].map(|sign| way(&determinant, sign)));
+    if undecided(determinant) {
+        weigh(determinant);
+        ways.extend([1.0, -1.0].map(|sign| way(determinant, sign)));
     }
     if valid {
         // It ends as soon as any of its slacks does.
