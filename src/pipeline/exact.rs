@@ -4,7 +4,7 @@ use super::Impact;
 use super::assembly::{Assembly, Elimination, Loads};
 use super::still::Still;
 use crate::contact::{Contact, Level};
-use crate::dynamics::plan::{Configuration, Plan};
+use crate::dynamics::plan::Plan;
 use crate::dynamics::{Closed, Constraints, ContactPoint};
 use crate::impact::{ContactProblem, Errors, Source};
 use crate::law::Law;
@@ -50,15 +50,6 @@ pub struct ExactState<'a> {
     pub restitution: &'a [f64],
     pub errors: Errors<'a>,
     pub asked: Asked<'a>,
-}
-
-/// What of a state is a number that may be known inexactly.
-pub struct Inputs<T> {
-    pub configuration: Configuration<T>,
-    /// dq/dt; with a foot x and z are not read.
-    pub velocity: Vec<T>,
-    /// The robot, its rotors' inertia included.
-    pub plan: Plan<T>,
 }
 
 /// G, c- and c_free.
@@ -182,31 +173,19 @@ impl<'a> ExactState<'a> {
         Contacts { delassus: std::mem::take(&mut assembly.workspace.delassus), before, free }
     }
 
-    /// G, and the contacts' accelerations without forces in place of both c.
-    fn collect_accelerations<T: Real>(
-        &self,
-        assembly: &mut Assembly<T>,
-        velocity: &[T],
-        loads: Loads<'_>,
-    ) -> Contacts<T> {
-        let (mut acceleration, drifts) = assembly.acceleration(velocity, loads);
-        assembly.answer_to(Closed::Acceleration(&drifts), &mut acceleration);
-        let free = assembly.contact_accelerations(&acceleration, loads);
-        Contacts { delassus: std::mem::take(&mut assembly.workspace.delassus), before: free.clone(), free }
-    }
-
-    fn inputs<T: Trigonometry>(&self) -> Inputs<T> {
-        let (plan, mut configuration) = (self.plan(), Configuration::default());
-        configuration.set(&plan, self.position);
-        let velocity = self.velocity.iter().map(|&entry| T::from_f64(entry)).collect();
-        Inputs { configuration, velocity, plan }
+    /// The robot in its configuration, and dq/dt.
+    fn given<T: Trigonometry>(&self) -> (Assembly<T>, Vec<T>) {
+        let mut assembly = self.assembly(self.plan());
+        assembly.configuration.set(&assembly.plan, self.position);
+        (assembly, self.velocity.iter().map(|&entry| T::from_f64(entry)).collect())
     }
 
     /// What the velocity by coordinate after these impulses of the contacts is the sum of, or the acceleration under
     /// these forces: that without them, what applied impulses change, what each contact changes. The same of the
     /// impulses of loops follows, [x, z] each.
     pub fn response<T: Trigonometry>(&self, impulse: &[Pair<f64>]) -> Vec<Vec<T>> {
-        let (mut assembly, velocity) = self.assembled(self.inputs());
+        let (mut assembly, mut velocity) = self.given();
+        self.assemble(&mut assembly, &mut velocity);
         let rest = vec![T::zero(); velocity.len()];
         let with = |mut rates: Vec<T>, loops: Vec<Vector<T>>| {
             rates.extend(loops.into_iter().flat_map(Vector::components));
@@ -235,26 +214,28 @@ impl<'a> ExactState<'a> {
         parts
     }
 
-    /// M^-1, J and c for these `inputs`, with the contacts as they are, and the velocity that keeps stance and loops.
-    fn assembled<T: Trigonometry>(&self, inputs: Inputs<T>) -> (Assembly<T>, Vec<T>) {
-        let Inputs { configuration, mut velocity, plan } = inputs;
-        let mut assembly = self.assembly(plan);
-        assembly.configuration = configuration;
+    /// M^-1, J and c in a configuration, with the contacts as they are and a `velocity` that keeps stance and loops.
+    fn assemble<T: Trigonometry>(&self, assembly: &mut Assembly<T>, velocity: &mut [T]) {
         if assembly.has_articulated_bodies() {
             assembly.elimination = Elimination::ArticulatedBodies;
         }
-        self.place(&mut assembly);
+        self.place(assembly);
         assembly.factorize();
-        self.contact_velocities(&mut assembly, &mut velocity);
-        (assembly, velocity)
+        self.contact_velocities(assembly, velocity);
     }
 
-    /// G and c for these `inputs`, with the contacts as they are; accelerations in place of c, if forces are asked for.
-    pub fn contacts<T: Trigonometry>(&self, inputs: Inputs<T>) -> Contacts<T> {
-        let (mut assembly, velocity) = self.assembled(inputs);
+    /// G and both c in a configuration, with the contacts as they are; if forces are asked for, the contacts'
+    /// accelerations without them in place of c. With a foot x and z of the `velocity` are not read.
+    pub fn contacts<T: Trigonometry>(&self, mut assembly: Assembly<T>, mut velocity: Vec<T>) -> Contacts<T> {
+        self.assemble(&mut assembly, &mut velocity);
         assembly.delassus();
         match self.asked {
-            Asked::Forces(loads) => self.collect_accelerations(&mut assembly, &velocity, loads),
+            Asked::Forces(loads) => {
+                let (mut acceleration, drifts) = assembly.acceleration(&velocity, loads);
+                assembly.answer_to(Closed::Acceleration(&drifts), &mut acceleration);
+                let free = assembly.contact_accelerations(&acceleration, loads);
+                Contacts { delassus: assembly.workspace.delassus, before: free.clone(), free }
+            }
             Asked::Impact | Asked::Shock(_) => self.collect(&mut assembly),
         }
     }
@@ -262,7 +243,8 @@ impl<'a> ExactState<'a> {
 
 impl Source for ExactState<'_> {
     fn problem<T: Ordered + Trigonometry>(&self) -> ContactProblem<T> {
-        let Contacts { delassus, before, free } = self.contacts(self.inputs());
+        let (assembly, velocity) = self.given();
+        let Contacts { delassus, before, free } = self.contacts(assembly, velocity);
         ContactProblem::of_parts(delassus, before, free, self.laws.to_vec(), self.restitution.to_vec())
     }
 
@@ -278,9 +260,7 @@ impl Source for ExactState<'_> {
         if !(is_free && matches!(self.asked, Asked::Impact)) {
             return None;
         }
-        let Inputs { configuration, mut velocity, plan } = self.inputs();
-        let mut assembly = self.assembly(plan);
-        assembly.configuration = configuration;
+        let (mut assembly, mut velocity) = self.given();
         self.place(&mut assembly);
         self.contact_velocities(&mut assembly, &mut velocity);
         Some(self.before(&mut assembly))

@@ -1,6 +1,6 @@
 //! A state whose numbers vary in a box while its contacts are kept.
 
-use super::super::exact::{Contacts, ExactState, Inputs};
+use super::super::exact::{Contacts, ExactState};
 use super::super::{Answer, Impact, Pipeline, Prepared};
 use super::Counterexample;
 use super::combination::UncertainProblem;
@@ -101,12 +101,9 @@ impl KeptContacts<'_, '_> {
         let (robot, scene) = (self.pipeline.robot, &self.state.scene);
         // Where angles vary a sole is not level.
         let exact = ExactState::of(robot, self.state, (impact, foot.as_ref()), still, Constraints { kept: &[], rows });
-        let plan = whole.plan::<N>(robot, &scene.braked, &scene.rotor_inertia);
-        let Contacts { delassus, before, free } = exact.contacts(Inputs {
-            configuration: whole.configuration(&plan, &self.state.position),
-            velocity: whole.velocity(&self.state.velocity),
-            plan,
-        });
+        let mut assembly = exact.assembly(whole.plan::<N>(robot, &scene.braked, &scene.rotor_inertia));
+        assembly.configuration = whole.configuration(&assembly.plan, &self.state.position);
+        let Contacts { delassus, before, free } = exact.contacts(assembly, whole.velocity(&self.state.velocity));
         let row = |(contact, link): (usize, &usize)| {
             let restitution = Affine::from_f64(scene.restitution.of(*link).unwrap_or(0.0));
             let bounce = restitution * before[contact][1].min_zero();
