@@ -15,7 +15,7 @@ pub fn kinematics<T: Real>(plan: &Plan<T>, configuration: &Configuration<T>, wor
     direction.clear();
     for body in &plan.bodies {
         let Some(parent) = body.parent else {
-            rotation.push(if plan.floating { configuration.turn(2) } else { Rotation::identity() });
+            rotation.push(if plan.floating { configuration.turns[2] } else { Rotation::identity() });
             arm.push(Vector::zero());
             direction.push(Vector::zero());
             continue;
@@ -29,7 +29,7 @@ pub fn kinematics<T: Real>(plan: &Plan<T>, configuration: &Configuration<T>, wor
         }));
         rotation.push(match body.motion {
             JointMotion::Revolute { sign, .. } => {
-                let Rotation { cos, sin } = configuration.turn(body.place);
+                let Rotation { cos, sin } = configuration.turns[body.place];
                 base.then(Rotation { cos, sin: sign * sin })
             }
             _ => base,

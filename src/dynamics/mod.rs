@@ -323,7 +323,7 @@ mod tests {
                 for body in exact_plan.bodies.iter().filter(|body| plan.floating || body.parent.is_some()) {
                     let rate = case.velocity.get(body.coordinate).copied().unwrap_or(0.0);
                     let shift = time * rate * body.mimic.map_or(1.0, |mimic| mimic.multiplier);
-                    configuration.turn_on(body.place, Rotation::by(shift));
+                    configuration.turns[body.place] = configuration.turns[body.place].then(Rotation::by(shift));
                     configuration.displacement[body.place] = configuration.displacement[body.place] + Exact::from_f64(shift);
                 }
                 kinematics(&exact_plan, &configuration, &mut workspace);

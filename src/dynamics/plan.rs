@@ -86,12 +86,11 @@ pub(crate) struct MimicRatio {
     pub offset: f64,
 }
 
-/// Cosines, sines and displacements of a configuration: one entry per coordinate of q, then one per mimic joint of the
-/// robot: of pitch and turning joints cosine and sine, of x, z and sliding joints the displacement \[m\].
+/// Turns and displacements of a configuration: one entry per coordinate of q, then one per mimic joint of the robot: of
+/// pitch and turning joints the turn, of x, z and sliding joints the displacement \[m\].
 #[derive(Debug, Clone, Default)]
 pub struct Configuration<T = f64> {
-    pub cos: Vec<T>,
-    pub sin: Vec<T>,
+    pub turns: Vec<Rotation<T>>,
     pub displacement: Vec<T>,
 }
 
@@ -101,32 +100,18 @@ impl<T: Trigonometry> Configuration<T> {
         self.displacement.clear();
         self.displacement.extend(position.iter().map(|&entry| T::from_f64(entry)));
         self.displacement.resize(plan.places, T::zero());
-        self.cos.clear();
-        self.cos.resize(plan.places, T::one());
-        self.sin.clear();
-        self.sin.resize(plan.places, T::zero());
+        self.turns.clear();
+        self.turns.resize(plan.places, Rotation::identity());
         for body in &plan.bodies {
             let place = body.place;
             if let Some(turn) = plan.turn::<T>(body, position) {
-                (self.cos[place], self.sin[place]) = (turn.cos, turn.sin);
+                self.turns[place] = turn;
             } else if let (JointMotion::Prismatic { .. }, Some(mimic)) = (body.motion, body.mimic) {
                 let value = position.get(body.coordinate).copied().unwrap_or(0.0);
                 let [multiplier, value, offset] = [mimic.multiplier, value, mimic.offset].map(T::from_f64);
                 self.displacement[place] = multiplier * value + offset;
             }
         }
-    }
-}
-
-impl<T: Real> Configuration<T> {
-    pub(crate) fn turn(&self, place: usize) -> Rotation<T> {
-        Rotation { cos: self.cos[place], sin: self.sin[place] }
-    }
-
-    /// Turns one angle on `by` another.
-    pub(crate) fn turn_on(&mut self, place: usize, by: Rotation<T>) {
-        let Rotation { cos, sin } = self.turn(place).then(by);
-        (self.cos[place], self.sin[place]) = (cos, sin);
     }
 }
 

@@ -134,7 +134,7 @@ impl StateBox {
         }
     }
 
-    /// Cosines, sines and displacements of all positions in the box, by a motion from its middle.
+    /// Turns and displacements of all positions in the box, by a motion from its middle.
     pub fn configuration<const N: usize>(&self, plan: &Plan<Affine<N>>, position: &[f64]) -> Configuration<Affine<N>> {
         let mut middle = position.to_vec();
         for (index, quantity) in self.quantities.iter().enumerate() {
@@ -152,7 +152,8 @@ impl StateBox {
                 JointMotion::Root if !plan.floating => {}
                 JointMotion::Root | JointMotion::Revolute { .. } => {
                     let [cos, sin] = by.cos_sin_near_zero();
-                    configuration.turn_on(body.place, Rotation { cos, sin });
+                    let turn = &mut configuration.turns[body.place];
+                    *turn = turn.then(Rotation { cos, sin });
                 }
                 JointMotion::Prismatic { .. } => {
                     let displacement = &mut configuration.displacement[body.place];
