@@ -1,7 +1,7 @@
 //! The families of a problem and their corners, which several of them may share.
 
 use super::collected::{Collected, Corner, FoundFamilies, Pending};
-use super::linear::{Unsettled, settled};
+use super::linear::{Unsettled, are_zero};
 use super::problem::{ContactProblem, Precision, PrecisionTask};
 use super::singular::{Equations, FamilyVelocities, modes_of};
 use super::slack::Scale;
@@ -67,7 +67,7 @@ impl FamiliesPass<'_, '_> {
             let modes = modes_of(&velocity, exact.laws())?;
             let mut place = None;
             for (at, (other, same)) in known.iter().enumerate() {
-                if *other == modes && is_same(&velocity, same)? {
+                if *other == modes && are_zero(velocity.iter().zip(same).map(|(&own, &same)| own - same))? {
                     place = Some(at);
                 }
             }
@@ -96,13 +96,4 @@ struct FamilyCorners<T> {
     is_sharp: bool,
     places: Vec<usize>,
     new: Vec<(Vec<Mode>, Vec<T>, Corner)>,
-}
-
-fn is_same<T: Ordered>(a: &[T], b: &[T]) -> Result<bool, Unsettled> {
-    for (&a, &b) in a.iter().zip(b) {
-        if settled(a - b)?.is_ne() {
-            return Ok(false);
-        }
-    }
-    Ok(true)
 }

@@ -25,6 +25,16 @@ pub fn settled<T: Ordered>(number: T) -> Result<Ordering, Unsettled> {
     }
 }
 
+/// Whether all numbers are zero; none is asked for behind the first that is not.
+pub fn are_zero<T: Ordered>(numbers: impl IntoIterator<Item = T>) -> Result<bool, Unsettled> {
+    for number in numbers {
+        if settled(number)?.is_ne() {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
 /// An affine function of y: `constant + coefficients . y`.
 #[derive(Debug, Clone)]
 pub struct LinearFunction<T> {
@@ -69,12 +79,7 @@ pub fn extended<T: Real>(list: &[T], last: T) -> Vec<T> {
 
 impl<T: Ordered> LinearFunction<T> {
     pub fn is_constant(&self) -> Result<bool, Unsettled> {
-        for &coefficient in &self.coefficients {
-            if settled(coefficient)?.is_ne() {
-                return Ok(false);
-            }
-        }
-        Ok(true)
+        are_zero(self.coefficients.iter().copied())
     }
 }
 
@@ -149,10 +154,8 @@ pub fn solve<T: Ordered>(unknowns: usize, mut equations: Vec<Vec<T>>) -> Result<
         }
         pivots.push(column);
     }
-    for equation in &equations[pivots.len()..] {
-        if settled(equation[unknowns])?.is_ne() {
-            return Ok(None);
-        }
+    if !are_zero(equations[pivots.len()..].iter().map(|equation| equation[unknowns]))? {
+        return Ok(None);
     }
     let mut origin = vec![T::zero(); unknowns];
     for (equation, &column) in equations.iter().zip(&pivots) {

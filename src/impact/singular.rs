@@ -21,7 +21,7 @@ use super::digits::{Numbers, is_known, is_known_range};
 use super::generators::Generators;
 use super::index::index;
 use super::least_impulse::least_impulse;
-use super::linear::{LinearFunction, Solutions, Unsettled, extended, settled, solve};
+use super::linear::{LinearFunction, Solutions, Unsettled, are_zero, extended, settled, solve};
 use super::needed::friction_needed;
 use super::outcome::{Range, Rejection, RejectionReason};
 use super::problem::ContactProblem;
@@ -87,12 +87,7 @@ pub struct Space<T> {
 
 impl<T: Ordered> Space<T> {
     fn is_one_velocity(&self) -> Result<bool, Unsettled> {
-        for row in &self.velocity {
-            if !row.is_constant()? {
-                return Ok(false);
-            }
-        }
-        Ok(true)
+        are_zero(self.velocity.iter().flat_map(|row| row.coefficients.iter().copied()))
     }
 
     fn functions(&self) -> Vec<LinearFunction<T>> {
@@ -334,12 +329,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
 
     /// Whether the only velocity of `space` is that without impulses.
     fn is_free(&self, space: &Space<T>) -> Result<bool, Unsettled> {
-        for (row, velocity) in space.velocity.iter().enumerate() {
-            if settled(velocity.constant - self.problem.free_row(row))?.is_ne() {
-                return Ok(false);
-            }
-        }
-        Ok(true)
+        are_zero(space.velocity.iter().enumerate().map(|(row, own)| own.constant - self.problem.free_row(row)))
     }
 
     /// The only velocity of `space`, with its impulses; at `inside` the smallest inequality is `least`, not negative.

@@ -2,7 +2,7 @@
 
 use super::ContactProblem;
 use super::source::{Precision, PrecisionTask, Remembered, escalate};
-use crate::impact::linear::{Unsettled, settled};
+use crate::impact::linear::{Unsettled, are_zero, settled};
 use crate::scalar::{Ordered, Real, dot};
 
 /// Rows Z of G = Z Z^T, taken exactly.
@@ -76,10 +76,8 @@ fn semidefinite<T: Ordered>(problem: &ContactProblem<T>) -> Result<bool, Unsettl
         let (above, below) = rest.split_at_mut(pivot + 1);
         let row = &above[pivot];
         if standing.is_eq() {
-            for &entry in &row[pivot + 1..] {
-                if settled(entry)?.is_ne() {
-                    return Ok(false);
-                }
+            if !are_zero(row[pivot + 1..].iter().copied())? {
+                return Ok(false);
             }
             continue;
         }
