@@ -6,7 +6,7 @@
 
 use super::workspace::Workspace;
 use crate::dynamics::plan::{JointMotion, Plan};
-use crate::planar::{Pair, Rotation, Vector};
+use crate::planar::{Rotation, Vector};
 use crate::scalar::Real;
 
 /// A body's rate of turn \[rad/s\], and the velocity of its origin in the world's axes \[m/s\].
@@ -72,27 +72,16 @@ pub fn contact_jacobian<T: Real>(
     }
     if let Some(stance) = stance {
         let rest = contacts[stance];
+        let turning = spin(plan, rest.body, velocity);
         for (contact, speed) in contacts.iter().zip(&mut speeds).filter(|(contact, _)| contact.body == rest.body) {
-            *speed = about(plan, &rest, contact, velocity, workspace);
+            let across = (contact.arm(workspace) - rest.arm(workspace)).perpendicular() * turning;
+            *speed = contact.axes().map(|axis| axis.dot(across));
         }
         speeds[stance] = [T::zero(); 2];
     }
     workspace.contact_jacobian = jacobian;
     workspace.branch = branches;
     workspace.contact_velocity = speeds;
-}
-
-/// c of a contact whose body turns about `rest`, a contact of the same body \[m/s\].
-fn about<T: Real>(
-    plan: &Plan<T>,
-    rest: &ContactPoint<T>,
-    contact: &ContactPoint<T>,
-    velocity: &[T],
-    workspace: &Workspace<T>,
-) -> Pair<T> {
-    let arm = contact.arm(workspace) - rest.arm(workspace);
-    let across = arm.perpendicular() * spin(plan, rest.body, velocity);
-    contact.axes().map(|axis| axis.dot(across))
 }
 
 /// Velocity of the point at `arm` from the origin of `body`, in the world's axes \[m/s\].
