@@ -76,7 +76,8 @@ pub fn articulated_delassus<T: Real>(plan: &Plan<T>, contacts: &[ContactPoint<T>
     }
     workspace.half = half;
     workspace.half_by_d = half_by_d;
-    from_half(contacts.len(), workspace, |a, b| shared_columns(plan, contacts[a].body, contacts[b].body));
+    let outermost = |contact: usize| plan.way_to_root(contacts[contact].body).find_map(|(_, body)| body.column);
+    from_half(contacts.len(), workspace, |a, b| plan.branch(plan.shared(outermost(a), outermost(b))));
 }
 
 /// Adds to `velocity` (dq/dt by coordinate) what an impulse p does to it: M^-1 J^T p; `rates` and `motions` are
@@ -232,16 +233,4 @@ fn through_joint<T: Real>(
         }
     }
     force
-}
-
-/// The columns that move both bodies, from the outermost inward.
-fn shared_columns<T: Real>(plan: &Plan<T>, a: usize, b: usize) -> impl Iterator<Item = usize> + use<'_, T> {
-    let (mut a, mut b) = (a, b);
-    // A parent's number is less than its child's.
-    while a != b {
-        let outer = if a > b { &mut a } else { &mut b };
-        *outer = plan.bodies[*outer].parent.unwrap_or(0);
-    }
-    let outermost = plan.way_to_root(a).find_map(|(_, body)| body.column);
-    plan.branch(outermost)
 }
