@@ -64,7 +64,7 @@ pub fn read<T: Ordered>(
     }
     slacks(leaf, modes, laws, |entry| {
         let (sign, scaled) = (entry.number.sign(), scale.scaled(&entry, entry.number.to_f64()));
-        let (contact, inequality) = (entry.contact, entry.condition.inequality);
+        let (contact, inequality) = (entry.contact, entry.inequality);
         let violated = match sign {
             Sign::Negative => Some(RejectionReason::Violated { contact, inequality }),
             Sign::Zero if inequality.is_strict() => Some(RejectionReason::OnBorder),

@@ -27,7 +27,7 @@ use super::outcome::{Range, Rejection, RejectionReason};
 use super::problem::ContactProblem;
 use super::simplex::{Program, vanishing, widest};
 use super::slack::Scale;
-use crate::law::{Condition, Impulse, Inequality, Law, Mode};
+use crate::law::{Impulse, Inequality, Law, Mode};
 use crate::scalar::{Ordered, dot};
 use std::cmp::Ordering;
 
@@ -299,7 +299,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
                     (false, None) => solutions.origin[place(which)],
                     (false, Some(at)) => solutions.directions[at][place(which)],
                 };
-                let factor = T::from_f64(scale.factor(contact, &Condition { inequality, function })) * by_speed;
+                let factor = T::from_f64(scale.factor(contact, inequality, function)) * by_speed;
                 let scaled = |part| factor * function.at(|which| number(which, part), |mu, own: T| own.scaled(mu));
                 let coefficients = (0..solutions.directions.len()).map(|at| scaled(Some(at))).collect();
                 let function = LinearFunction { constant: scaled(None), coefficients };

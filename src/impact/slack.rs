@@ -2,7 +2,7 @@
 
 use super::enumerate::Leaf;
 use super::problem::{ContactProblem, Errors};
-use crate::law::{Condition, Law, Mode};
+use crate::law::{Function, Inequality, Law, Mode};
 use crate::planar::Pair;
 use crate::scalar::{Ball, Ordered, Real, Rounded};
 
@@ -10,7 +10,8 @@ use crate::scalar::{Ball, Ordered, Real, Rounded};
 #[derive(Debug, Clone, Copy)]
 pub struct Slack<T> {
     pub contact: usize,
-    pub condition: Condition,
+    pub inequality: Inequality,
+    pub function: Function,
     /// Its value, with its unit.
     pub number: T,
 }
@@ -21,14 +22,14 @@ pub fn slacks<T: Real>(leaf: &Leaf<'_, T>, modes: &[Mode], laws: &[Law], mut vis
         let numbers = leaf.numbers(contact);
         law.conditions(mode, |inequality, function| {
             let number = function.at(|which| numbers[which], |mu, own| own.scaled(mu));
-            visitor(Slack { contact, condition: Condition { inequality, function }, number });
+            visitor(Slack { contact, inequality, function, number });
         });
     }
 }
 
 /// The problem's own magnitudes, which make slacks free of units.
 ///
-/// With S = max |c_free| / sqrt(G_ii) \[sqrt J\]; see [`Condition::scale`].
+/// With S = max |c_free| / sqrt(G_ii) \[sqrt J\]; see [`Function::scale`].
 #[derive(Debug, Clone, Default)]
 pub struct Scale {
     /// S \[sqrt J\]; 1 if nothing moves.
@@ -160,12 +161,12 @@ impl Scale {
     /// A slack's value free of units; `number` is the nearest f64.
     #[inline]
     pub fn scaled<T>(&self, slack: &Slack<T>, number: f64) -> f64 {
-        number / self.speed * self.factor(slack.contact, &slack.condition)
+        number / self.speed * self.factor(slack.contact, slack.inequality, slack.function)
     }
 
     /// What the value of a contact's inequality, divided by S, is multiplied by to be free of units.
     #[inline]
-    pub fn factor(&self, contact: usize, condition: &Condition) -> f64 {
-        condition.scale([self.mobility[2 * contact], self.mobility[2 * contact + 1]])
+    pub fn factor(&self, contact: usize, inequality: Inequality, function: Function) -> f64 {
+        function.scale(inequality, [self.mobility[2 * contact], self.mobility[2 * contact + 1]])
     }
 }

@@ -17,12 +17,12 @@
 //! ```
 
 mod inequality;
-mod condition;
+mod function;
 mod mode;
 mod friction;
 
-pub use condition::{Condition, Function};
 pub use friction::Friction;
+pub use function::Function;
 pub use inequality::Inequality;
 pub use mode::Mode;
 

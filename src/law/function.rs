@@ -17,13 +17,6 @@ pub enum Function<T = f64> {
     ConePlus(T),
 }
 
-/// An inequality of a mode: `function >= 0`, or `> 0` if it is strict.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Condition<T = f64> {
-    pub inequality: Inequality,
-    pub function: Function<T>,
-}
-
 impl<T: Real> Function<T> {
     /// The value at the contact's numbers, first (0) and second (1), which are `scaled` by the law's coefficients.
     #[inline]
@@ -38,19 +31,19 @@ impl<T: Real> Function<T> {
     }
 }
 
-impl Condition {
-    /// What the value is multiplied by to be free of units, once divided by S; `mobility` is sqrt(G_ii) of the
-    /// contact's rows \[1/sqrt(kg)\]. A velocity counts c_i / sqrt(G_ii), an impulse L_i sqrt(G_ii), a cone (mu L_n -
+impl Function {
+    /// What the value of an `inequality` is multiplied by to be free of units, once divided by S; `mobility` is
+    /// sqrt(G_ii) of the contact's rows \[1/sqrt(kg)\]. A velocity counts c_i / sqrt(G_ii), an impulse L_i sqrt(G_ii), a cone (mu L_n -
     /// |L_t|) / sqrt(mu^2 / G_nn + 1 / G_tt).
     #[inline]
-    pub fn scale(&self, mobility: [f64; 2]) -> f64 {
-        let own = mobility[self.inequality.row()];
-        match self.function {
-            Function::ConeMinus(mu) | Function::ConePlus(mu) => {
+    pub fn scale(self, inequality: Inequality, mobility: [f64; 2]) -> f64 {
+        let own = mobility[inequality.row()];
+        match self {
+            Self::ConeMinus(mu) | Self::ConePlus(mu) => {
                 let size = libm::hypot(mu / mobility[1], 1.0 / mobility[0]);
                 if size.is_finite() { 1.0 / size } else { mobility[1] / mu }
             }
-            _ if self.inequality.is_strict() => 1.0 / own,
+            _ if inequality.is_strict() => 1.0 / own,
             _ => own,
         }
     }
