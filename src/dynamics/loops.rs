@@ -18,11 +18,10 @@ use super::bias::point_drift;
 use super::bounds::Reach;
 use super::delassus::from_half;
 use super::jacobian::{ContactPoint, point_velocity, walk};
-use super::ltl::subtract;
 use super::workspace::{LoopRows, Workspace};
 use crate::dynamics::plan::Plan;
 use crate::planar::Vector;
-use crate::scalar::{Ordered, Real, Sign, dot};
+use crate::scalar::{Ordered, Real, Sign, dot, subtract};
 use std::ops::Add;
 
 /// Two material points that stay together; impulses act on `a` and, reversed, on `b`.

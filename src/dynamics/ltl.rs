@@ -4,7 +4,7 @@
 //! needs no root, so any [`Real`] works. Cost: O(nv depth^2), and O(nv depth) per solve.
 
 use super::plan::Plan;
-use crate::scalar::Real;
+use crate::scalar::{Real, subtract};
 
 /// L below the diagonal (its own diagonal is one) and D on it, by rows. nv x nv
 #[derive(Debug, Clone, Default)]
@@ -72,13 +72,5 @@ impl<T: Real> LtlFactor<T> {
             *entry = *entry / self.pivot(i);
         }
         self.other_half_solve(plan, x);
-    }
-}
-
-/// y := y - factor z.
-#[inline]
-pub(super) fn subtract<T: Real>(y: &mut [T], z: &[T], factor: T) {
-    for (y, &z) in y.iter_mut().zip(z) {
-        *y = *y - factor * z;
     }
 }

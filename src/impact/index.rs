@@ -10,7 +10,7 @@ use super::linear::{Unsettled, settled};
 use super::problem::ContactProblem;
 use crate::law::{Impulse, Mode};
 use crate::planar::Pair;
-use crate::scalar::Ordered;
+use crate::scalar::{Ordered, subtract};
 use std::cmp::Ordering;
 
 /// The sign of det B, or if it is zero that of the lowest coefficient of det(B + s I) that is not, if any.
@@ -50,9 +50,7 @@ pub fn index<T: Ordered>(problem: &ContactProblem<T>, modes: &[Mode]) -> Result<
         let pivot_row = whole[place].clone();
         for row in (0..whole.len()).filter(|row| open.contains(row) || *row >= stuck.len()) {
             let factor = whole[row][place] * inverse;
-            for (entry, &above) in whole[row].iter_mut().zip(&pivot_row) {
-                *entry = *entry - factor * above;
-            }
+            subtract(&mut whole[row], &pivot_row, factor);
         }
     }
     let schur: Vec<Vec<T>> = whole[stuck.len()..].iter().map(|row| row[stuck.len()..].to_vec()).collect();

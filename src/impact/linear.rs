@@ -5,7 +5,7 @@
 //! that is spent: every loop here and in the rooms above asks for a sign in each round.
 
 use crate::budget::is_spent;
-use crate::scalar::{Ordered, Real, Sign, dot};
+use crate::scalar::{Ordered, Real, Sign, dot, subtract};
 use std::cmp::Ordering;
 
 /// A sign that needs more digits than the numbers have, or more time than there is.
@@ -146,9 +146,7 @@ pub fn solve<T: Ordered>(unknowns: usize, mut equations: Vec<Vec<T>>) -> Result<
         for (other, equation) in equations.iter_mut().enumerate() {
             let factor = equation[column];
             if other != rank {
-                for (entry, &above) in equation[column..].iter_mut().zip(&pivot[column..]).skip(1) {
-                    *entry = *entry - factor * above;
-                }
+                subtract(&mut equation[column + 1..], &pivot[column + 1..], factor);
                 equation[column] = T::zero();
             }
         }

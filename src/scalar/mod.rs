@@ -106,6 +106,14 @@ pub fn dot<T: Real>(a: &[T], b: &[T]) -> T {
     a.iter().zip(b).fold(T::zero(), |sum, (&a, &b)| sum + a * b)
 }
 
+/// y := y - factor z.
+#[inline]
+pub fn subtract<T: Real>(y: &mut [T], z: &[T], factor: T) {
+    for (y, &z) in y.iter_mut().zip(z) {
+        *y = *y - factor * z;
+    }
+}
+
 /// The sign of a number that may be known inexactly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sign {

@@ -5,7 +5,7 @@ use super::{ContactProblem, Origin};
 use crate::error::{Error, Reason, Result, finite};
 use crate::law::Law;
 use crate::planar::Pair;
-use crate::scalar::{Real, dot};
+use crate::scalar::{Real, dot, subtract};
 
 /// M, J and v as they were given, every digit meant; of M only what is on and below its diagonal.
 #[derive(Debug, Clone)]
@@ -31,9 +31,7 @@ impl Dynamics {
             for i in k + 1..dofs {
                 let factor = mass[i][k] / mass[k][k];
                 let (above, below) = mass.split_at_mut(i);
-                for (entry, &pivot) in below[0][k..].iter_mut().zip(&above[k][k..]) {
-                    *entry = *entry - factor * pivot;
-                }
+                subtract(&mut below[0][k..], &above[k][k..], factor);
                 for right in &mut solved {
                     right[i] = right[i] - factor * right[k];
                 }

@@ -3,7 +3,7 @@
 use super::ContactProblem;
 use super::source::{Precision, PrecisionTask, Remembered, escalate};
 use crate::impact::linear::{Unsettled, are_zero, settled};
-use crate::scalar::{Ordered, Real, dot};
+use crate::scalar::{Ordered, Real, dot, subtract};
 
 /// Rows Z of G = Z Z^T, taken exactly.
 #[derive(Debug, Clone)]
@@ -29,9 +29,7 @@ impl FactorRows {
             let column: Vec<f64> = rest.iter().map(|row| row[pivot] / diagonal.sqrt()).collect();
             for (i, line) in rest.iter_mut().enumerate() {
                 rows[i].push(column[i]);
-                for (entry, other) in line.iter_mut().zip(&column) {
-                    *entry -= column[i] * other;
-                }
+                subtract(line, &column, column[i]);
                 // What is left of the pivot is zero by construction, and its rounding must not count as rank again.
                 line[pivot] = 0.0;
             }
@@ -84,9 +82,7 @@ fn semidefinite<T: Ordered>(problem: &ContactProblem<T>) -> Result<bool, Unsettl
         let inverse = T::one() / row[pivot];
         for line in below {
             let factor = line[pivot] * inverse;
-            for (entry, &over) in line[pivot..].iter_mut().zip(&row[pivot..]) {
-                *entry = *entry - factor * over;
-            }
+            subtract(&mut line[pivot..], &row[pivot..], factor);
         }
     }
     Ok(true)
