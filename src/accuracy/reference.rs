@@ -5,7 +5,7 @@
 
 use super::computation::{Computation, Factorization};
 use super::number::Number;
-use crate::dynamics::plan::{JointMotion, Plan};
+use crate::dynamics::plan::JointMotion;
 use crate::pipeline::assembly::Elimination;
 use crate::pipeline::exact::{Contacts, ExactState};
 use crate::planar::{Inertia, Vector};
@@ -114,21 +114,17 @@ impl<'a> Reference<'a> {
     /// Entry of M for two columns, the second one below the first or the same.
     fn inertia<T: Real>(&self, upper: &[UnitMotion<T>], lower: &[UnitMotion<T>]) -> T {
         let plan = &self.computation.assembly.plan;
+        let carries = |body: usize, outer: usize| plan.way_to_root(outer).any(|(at, _)| at == body);
         let pairs = upper.iter().flat_map(|one| lower.iter().map(move |other| (one, other)));
         let parts = pairs.filter_map(|(one, other)| {
-            if !plan.has_mimics || carries(plan, other.body, one.body) {
+            if !plan.has_mimics || carries(other.body, one.body) {
                 Some(one.inertia(other))
             } else {
-                carries(plan, one.body, other.body).then(|| other.inertia(one))
+                carries(one.body, other.body).then(|| other.inertia(one))
             }
         });
         parts.reduce(|sum, part| sum + part).unwrap_or(T::zero())
     }
-}
-
-/// Whether `outer` is `body` or beyond it.
-fn carries(plan: &Plan<Interval>, body: usize, outer: usize) -> bool {
-    std::iter::successors(Some(outer), |&at| plan.bodies[at].parent).any(|at| at == body)
 }
 
 impl UnitMotion<Interval> {

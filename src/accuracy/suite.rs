@@ -234,13 +234,8 @@ impl Suite {
 
 /// At rest, coordinates zero, without friction's bound.
 fn blank(robot: &Robot) -> State {
-    State {
-        id: None,
-        position: vec![0.0; robot.dofs()],
-        velocity: vec![0.0; robot.dofs()],
-        scene: Scene { friction: ByLink::everywhere(Friction::Infinite), ..Scene::default() },
-        uncertainty: None,
-    }
+    let scene = Scene { friction: ByLink::everywhere(Friction::Infinite), ..Scene::default() };
+    State { scene, ..State::zero(robot) }
 }
 
 /// The scene of a robot that stands on `link`.
