@@ -6,7 +6,7 @@ use super::clip::{Clock, ClockStep};
 use super::noise::MEASURED;
 use super::points::Points;
 use super::seen::Seen;
-use super::strike::{CLEAN, Strike, Way};
+use super::strike::{Strike, Way};
 use super::window::{Frame, SMOOTH, Window};
 use super::{At, Heights, Landing, Sample, Sampled, Thresholds, Touching};
 use crate::contact::Feet;
@@ -178,23 +178,26 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
             let Descent { from, falling } = self.descents[point];
             let [last, height] = [row, row + 1].map(|row| self.window.height(point, row));
             let strike = Strike { point, row, height: Some(0.0), smooth: row, onward: Way::Through(SMOOTH) };
-            if from - last.min(height) >= self.thresholds.drop && last > 0.0 {
-                if height <= 0.0 {
+            if from - last.min(height) >= self.thresholds.drop && last > -self.level {
+                if height < -self.level {
                     strikes.push(strike);
                 } else if falling && height >= last {
-                    // It has bounced since the row before or the one before that, or it stops a rounding above the
-                    // ground: in a row to which those before lead it has not been stopped yet.
-                    let stops = last <= self.level;
-                    let fall = row.checked_sub(1).map_or(0.0, |before| self.window.height(point, before) - last);
-                    let over = if stops { self.level + CLEAN * fall } else { 0.0 };
-                    let mut rows = [row.checked_sub(1), (!stops).then_some(row)].into_iter().flatten();
-                    let bounced = rows.find(|&row| self.onward_height(point, row) <= -over);
-                    let stops = stops.then_some(Strike { height: None, ..strike });
-                    strikes.extend(bounced.map(|row| Strike { row, smooth: row, ..strike }).or(stops));
+                    // It has bounced or stopped since the row before or the one before that.
+                    let before = row.checked_sub(1);
+                    let found = if last > self.level {
+                        let mut rows = [before, Some(row)].into_iter().flatten();
+                        rows.find(|&row| self.onward_height(point, row) <= 0.0).map(|row| (row, Some(0.0)))
+                    } else if self.window.frames[row].before_impact {
+                        Some((row, None))
+                    } else {
+                        // In a row on the ground it may have been stopped already.
+                        Some((before.unwrap_or(row), Some(0.0)))
+                    };
+                    strikes.extend(found.map(|(row, height)| Strike { row, smooth: row, height, ..strike }));
                 }
             }
             let falling = height < last;
-            let from = if falling && height > 0.0 { from } else { height };
+            let from = if falling && height > -self.level { from } else { height };
             self.descents[point] = Descent { from, falling };
         }
         self.strike(strikes);
@@ -244,17 +247,18 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
 
     /// Ends the clip: a point that is still falling has reached the ground if it is at z = 0.
     fn end_clip(&mut self) {
-        if self.heights == Heights::True {
-            self.descents.clear();
-        }
-        let Thresholds { drop, above, .. } = self.thresholds;
+        let (Thresholds { drop, above, .. }, is_true) = (self.thresholds, self.heights == Heights::True);
         let end = self.window.frames.len().saturating_sub(1);
         // Of two rows with the same time the first.
-        let before_impact = end.checked_sub(1).filter(|&before| self.window.frames[before].before_impact);
+        let before = end.checked_sub(1);
+        let before_impact = before.filter(|&before| self.window.frames[before].before_impact);
         let strike = |(point, &Descent { from, falling }): (usize, &Descent)| {
             let last = self.window.height(point, end);
-            if !falling || from - last < drop || last > above {
+            if !falling || from - last < drop || last > if is_true { self.level } else { above } {
                 None
+            } else if is_true {
+                let row = before?;
+                Some(Strike { point, row, height: Some(0.0), smooth: row, onward: Way::Through(SMOOTH) })
             } else if last >= -above {
                 Some(Strike { point, row: before_impact.unwrap_or(end), height: None, smooth: end, onward: Way::Soft })
             } else {

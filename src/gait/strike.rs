@@ -5,7 +5,7 @@ use super::window::{BEFORE, SMOOTH, Window};
 use super::{At, Thresholds};
 
 /// A point without noise: that is so small a part of its fall from row to row.
-pub(super) const CLEAN: f64 = 1e-4;
+const CLEAN: f64 = 1e-4;
 
 /// When a point's descent becomes a touchdown.
 #[derive(Debug, Clone, Copy)]
