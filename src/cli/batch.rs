@@ -25,7 +25,7 @@ use crate::read::table::Header;
 use crate::read::table::Parts;
 use crate::state::NamedContact;
 use crate::write::{self, Columns, Layout, notes};
-use crate::{Detail, Error, Reason, Robot};
+use crate::{Error, Reason, Robot};
 use indicatif::ProgressBar;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -194,14 +194,12 @@ impl Args {
         let input = RecordFormat::of((Some(&self.states), false), self.input_format, "--input-format")?;
         let output = RecordFormat::of((self.output.as_deref(), true), self.output_format, "--output-format")?;
         self.csv.check(matches!(output, RecordFormat::Csv | RecordFormat::Tsv))?;
-        let Detail { explain, matrices, .. } = self.detail.detail();
+        if output != RecordFormat::Ndjson {
+            self.detail.check_table("--output-format")?;
+        }
         let refuse = |reason: &str, hint: &str| {
             Err(Failure::Usage(Error::new(Reason::Inconsistent(reason.to_owned())).hint(hint)))
         };
-        if output != RecordFormat::Ndjson && (explain || matrices) {
-            let reason = "a table has a row per outcome and no room for --explain or --matrices";
-            return refuse(reason, "write JSON: --output-format ndjson, or -o with that ending");
-        }
         if self.resume && !(input.is_text() && output.is_text()) {
             return refuse("--resume continues text, and not Parquet or Arrow", "leave it out");
         }

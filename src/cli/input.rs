@@ -93,5 +93,5 @@ fn neighbors(path: &Path) -> Vec<String> {
 
 /// Whether the file's name says that it holds one JSON object per line.
 pub(super) fn is_ndjson(path: &Path) -> bool {
-    path.extension().is_some_and(|ending| ending == "ndjson" || ending == "jsonl")
+    path.extension().is_some_and(|ending| ["ndjson", "jsonl"].iter().any(|own| ending.eq_ignore_ascii_case(own)))
 }

@@ -144,6 +144,16 @@ impl DetailOptions {
     pub fn detail(self) -> Detail {
         Detail { explain: self.explain, matrices: self.matrices, brief: self.brief }
     }
+
+    /// Refuses what a table has no room for; `option` chooses another format.
+    pub fn check_table(self, option: &str) -> Result<(), Failure> {
+        if !(self.explain || self.matrices) {
+            return Ok(());
+        }
+        let reason = "a table has a row per outcome and no room for --explain or --matrices";
+        let hint = format!("write JSON: {option} ndjson, or -o with that ending");
+        Err(Failure::Usage(Error::new(Reason::Inconsistent(reason.into())).hint(hint)))
+    }
 }
 
 /// Whether impacts are followed.

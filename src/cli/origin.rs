@@ -8,7 +8,7 @@
 //! The record of the input is renewed whenever more of it was read, before anything of that is answered.
 
 use super::VERSION;
-use super::output::{beside, named};
+use super::output::{RUN, beside, named};
 use crc32fast::Hasher;
 use serde::{Deserialize, Serialize};
 use std::fmt::Debug;
@@ -124,7 +124,7 @@ pub(super) struct Origin {
 impl Origin {
     /// For the output at `path`; with `resume`, what an earlier run left.
     pub fn of(path: Option<&Path>, resume: bool) -> Self {
-        let path = path.filter(|path| *path != Path::new("-")).map(|path| beside(path, ".run"));
+        let path = path.filter(|path| *path != Path::new("-")).map(|path| beside(path, RUN));
         let bytes = path.as_ref().filter(|_| resume).and_then(|path| std::fs::read(path).ok()).unwrap_or_default();
         let earlier = serde_json::Deserializer::from_slice(&bytes).into_iter::<Record>().next().and_then(Result::ok);
         let known = earlier.as_ref().map(|record| record.input);

@@ -34,7 +34,7 @@ pub(super) enum Format {
 impl OutputOptions {
     /// The form chosen by option or by the output's ending; `None` if neither says.
     pub fn chosen(&self) -> Option<Format> {
-        let by_ending = |path: &PathBuf| match path.extension()?.to_str()? {
+        let by_ending = |path: &PathBuf| match &*path.extension()?.to_str()?.to_ascii_lowercase() {
             "json" | "ndjson" | "jsonl" => Some(Format::Json),
             "txt" => Some(Format::Text),
             _ => None,
@@ -90,12 +90,16 @@ pub(super) fn check_ending(
     Err(Failure::Usage(error.hint(format!("name a file with one of these endings, or say {option}"))))
 }
 
-/// Refuses an `output` that is one of the `inputs`, even under another name; `-` and `None` are standard input and
-/// output.
+/// Refuses an `output` that is one of the `inputs`, even under another name, or next to which one is named like what is
+/// written there meanwhile; `-` and `None` are standard input and output.
 pub(super) fn spare(output: Option<&Path>, inputs: &[Option<&PathBuf>]) -> crate::Result<()> {
     let output = output.unwrap_or(Path::new("-"));
-    let Some(written) = file_of(output, io::stdout()) else { return Ok(()) };
-    if inputs.iter().flatten().all(|input| file_of(input, io::stdin()).as_ref() != Some(&written)) {
+    let places = match output == Path::new("-") {
+        true => vec![output.to_owned()],
+        false => ["", PART, RUN].map(|ending| beside(output, ending)).to_vec(),
+    };
+    let written: Vec<_> = places.iter().filter_map(|place| file_of(place, io::stdout())).collect();
+    if inputs.iter().flatten().all(|input| file_of(input, io::stdin()).is_none_or(|file| !written.contains(&file))) {
         return Ok(());
     }
     let reason = Reason::Io("is an input of this command, and the output would replace it".into());
@@ -109,7 +113,8 @@ pub(super) fn apart(
     option: &'static str,
 ) -> Result<(), Failure> {
     let (one, Some(other)) = (one.unwrap_or(Path::new("-")), other) else { return Ok(()) };
-    let same_name = one != Path::new("-") && std::path::absolute(one).ok() == std::path::absolute(other).ok();
+    let place = |path: &Path| Some(path.parent()?.join(".").canonicalize().ok()?.join(path.file_name()?));
+    let same_name = one != Path::new("-") && place(one).is_some_and(|one| place(other) == Some(one));
     let same_file = file_of(one, io::stdout()).is_some_and(|file| file_of(other, io::stdout()) == Some(file));
     if !same_name && !same_file {
         return Ok(());
@@ -127,8 +132,12 @@ pub(super) fn writable(path: Option<&Path>) -> io::Result<()> {
         return Ok(());
     }
     OpenOptions::new().append(true).create(true).open(path).map_err(|error| named(path, error))?;
-    known.map_or_else(|| std::fs::remove_file(path).map_err(|error| named(path, error)), |_| Ok(()))
+    known.map_or_else(|| std::fs::remove_file(beside(path, "")).map_err(|error| named(path, error)), |_| Ok(()))
 }
+
+/// What is added to the name of an output that is not whole yet, and to that of its record.
+const PART: &str = ".part";
+pub(super) const RUN: &str = ".run";
 
 /// Device and inode of the file, of `standard` for `-`; `None` for devices and pipes, which are never replaced.
 #[cfg(unix)]
@@ -205,7 +214,7 @@ impl NewFile {
 
     /// The names while the file is written and at last.
     fn places(path: &Path) -> [PathBuf; 2] {
-        [beside(path, ".part"), beside(path, "")]
+        [beside(path, PART), beside(path, "")]
     }
 
     /// The name of what is written so far, if the file has not taken its own yet.
@@ -243,8 +252,9 @@ impl Drop for NewFile {
 
 /// The file at `path`, with this added to its name.
 pub(super) fn beside(path: &Path, ending: &str) -> PathBuf {
-    // The file that a link names is replaced, not the link.
-    let mut name = path.canonicalize().unwrap_or_else(|_| path.to_owned()).into_os_string();
+    // The file that a link names is replaced, not the link, also if it is not there yet.
+    let linked = || Some(path.parent()?.join(path.read_link().ok()?));
+    let mut name = path.canonicalize().ok().or_else(linked).unwrap_or_else(|| path.to_owned()).into_os_string();
     name.push(ending);
     name.into()
 }

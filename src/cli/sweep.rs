@@ -100,6 +100,9 @@ pub(super) fn run(args: &Args) -> Completion {
     writable(args.output.as_deref())?;
     let format = format(args)?;
     args.csv.check(matches!(format, Some(RecordFormat::Csv | RecordFormat::Tsv)))?;
+    if format.is_some_and(|format| format != RecordFormat::Ndjson) {
+        args.detail.check_table("--format")?;
+    }
     let (description, reduction, robot) = args.robot.described()?;
     caution(&robot);
     let feet = args.robot.feet(&robot)?;

@@ -4,6 +4,7 @@ use super::support::urdf;
 use super::{RAMONE, Run, WALKER, file, heelstrike, heelstrike_reads, parsed, place, read};
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Read, Write};
+use std::path::Path;
 use std::process::{Child, ChildStdin, Command, Stdio};
 
 #[cfg(feature = "columnar")]
@@ -252,11 +253,34 @@ fn no_input_or_other_output_is_replaced() {
     for arguments in [[&states, "-o", &states], [&states, "--summary", &states]] {
         assert_eq!(batch(&arguments, "").status, 1, "{arguments:?}");
     }
-    let both = file("both.ndjson", "");
-    assert_eq!(batch(&[&states, "-o", &both, "--summary", &both], "").status, 2);
+    // Nor through what is written next to the output until it is whole.
+    for ending in [".part", ".run"] {
+        let input = file(&format!("whole.ndjson{ending}"), strike(1, 0.0));
+        let output = place("whole.ndjson");
+        batch(&[&input, "-o", &output], "").refusal_with(1, "is an input of this command");
+        assert_eq!(read(&input), strike(1, 0.0));
+    }
+    let both = place("both.ndjson");
+    let folder = Path::new(&both).parent().expect("a folder");
+    let around = folder.join("..").join(folder.file_name().expect("a name")).join("both.ndjson");
+    for summary in [&both, around.to_str().expect("UTF-8")] {
+        assert_eq!(batch(&[&states, "-o", &both, "--summary", summary], "").status, 2);
+    }
     assert_eq!(read(&states), strike(1, 0.0));
     let dash = batch(&["-", "--summary", "-"], "");
     assert!(dash.status == 2 && dash.stderr.contains("--summary: "), "{}", dash.stderr);
+}
+
+#[cfg(unix)]
+#[test]
+fn what_a_link_will_name_is_written() {
+    let (link, target) = (place("link.ndjson"), place("target.ndjson"));
+    for path in [&link, &target] {
+        let _ = std::fs::remove_file(path);
+    }
+    std::os::unix::fs::symlink("target.ndjson", &link).expect("linked");
+    batch(&["-", "--friction", "1", "-o", &link], strike(1, 0.0)).well();
+    assert!(std::fs::symlink_metadata(&link).expect("it is there").is_symlink() && read(&target).starts_with('{'));
 }
 
 #[cfg(unix)]

@@ -75,6 +75,8 @@ fn options_that_need_a_table_are_refused_without_one() {
     }
     // A table has no room for matrices.
     batch(&["-", "--output-format", "csv", "--matrices"], strike(1, 0.0)).refusal(2);
+    let study = "examples/paper/figure_7.json";
+    heelstrike(&["sweep", WALKER, study, "--format", "csv", "--explain"]).refusal_with(2, "no room for --explain");
     for (options, table, words) in [
         (&["--touchdowns"][..], "q_base_z,v_base_z\n0.5,-1\n", "error: <stdin>:1:1: a column \"time\" is missing"),
         (
