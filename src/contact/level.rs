@@ -4,11 +4,11 @@
 //!     p_b = p_a + tangent (tangent . (p_b - p_a))      if normal . (p_b - p_a) is within rounding
 //! ```
 //!
-//! The angles of a pose are rounded, so a flat sole is tilted by some 1e-16 rad, and so is the line between two feet whose
-//! joints are braked. Contacts that bounce, or whose friction is infinite, may then balance on that tilt with impulses of
-//! 1e16 N s. What only digits below those of the pose say is not read from it: all numbers beyond f64 take such contacts
-//! as exactly level. Points that are given by name are meant where they are; of these only those of one body count that
-//! are level in all digits.
+//! The angles of a pose are rounded, so a flat sole is tilted by some 1e-16 rad, and so is the line between two feet
+//! whose joints are braked. Contacts that bounce, or whose friction is infinite, may then balance on that tilt with
+//! impulses of 1e16 N s. What only digits below those of the pose say is not read from it: all numbers beyond f64 take
+//! such contacts as exactly level. Points that are given by name are meant where they are; of these only those of one
+//! body count that are level in all digits.
 
 use super::Contact;
 use crate::dynamics::Workspace;
@@ -43,8 +43,8 @@ pub struct RigidParts<'a> {
     pub velocity: &'a [f64],
 }
 
-/// Which contacts are level with which, up to rounding; none of those behind the last entry. The foot of a `stance` keeps
-/// its place.
+/// Which contacts are level with which, up to rounding; none of those behind the last entry. The foot of a `stance`
+/// keeps its place.
 pub fn level(contacts: &[Contact], parts: RigidParts<'_>, stance: Option<usize>) -> Vec<Option<Level>> {
     let mut levels: Vec<Option<Level>> = Vec::new();
     for (index, contact) in contacts.iter().enumerate() {
@@ -87,8 +87,8 @@ impl RigidParts<'_> {
         })
     }
 
-    /// Where a contact's center is from the origin of its rigid part \[m\], the lengths of the arms to its body \[m\], and
-    /// whether all joints there are at rest.
+    /// Where a contact's center is from the origin of its rigid part \[m\], the lengths of the arms to its body \[m\],
+    /// and whether all joints there are at rest.
     fn way(&self, contact: &Contact) -> (Vector<f64>, f64, bool) {
         let center = self.workspace.rotation[contact.body].apply(contact.center);
         let joints = self.bodies(contact.body).zip(self.bodies(contact.body).skip(1)).map(|(body, _)| body);

@@ -33,8 +33,8 @@ impl<T: Real> Function<T> {
 
 impl Function {
     /// What the value of an `inequality` is multiplied by to be free of units, once divided by S; `mobility` is
-    /// sqrt(G_ii) of the contact's rows \[1/sqrt(kg)\]. A velocity counts c_i / sqrt(G_ii), an impulse L_i sqrt(G_ii), a cone (mu L_n -
-    /// |L_t|) / sqrt(mu^2 / G_nn + 1 / G_tt).
+    /// sqrt(G_ii) of the contact's rows \[1/sqrt(kg)\]. A velocity counts c_i / sqrt(G_ii), an impulse L_i sqrt(G_ii), a
+    /// cone (mu L_n - |L_t|) / sqrt(mu^2 / G_nn + 1 / G_tt).
     #[inline]
     pub fn scale(self, inequality: Inequality, mobility: [f64; 2]) -> f64 {
         let own = mobility[inequality.row()];

@@ -13,9 +13,10 @@ pub(super) fn vertices(bytes: &[u8]) -> Result<Vec<[f64; 3]>, String> {
     Ok(scene.meshes.iter().flat_map(|mesh| &mesh.vertices).map(|vertex| vertex.map(f64::from)).collect())
 }
 
-/// ASCII in small letters, as some programs write it in capitals, and with a name, which mesh-loader wants; binary without what follows its last triangle, and not
-/// beginning with "solid", by which mesh-loader takes it for ASCII if a byte of its number of triangles is a line break
-/// (the feet of Solo and Bolt). A binary file that is cut short is refused: mesh-loader would read what is there.
+/// ASCII in small letters, as some programs write it in capitals, and with a name, which mesh-loader wants; binary
+/// without what follows its last triangle, and not beginning with "solid", by which mesh-loader takes it for ASCII if
+/// a byte of its number of triangles is a line break (the feet of Solo and Bolt). A binary file that is cut short is
+/// refused: mesh-loader would read what is there.
 fn tidied(bytes: &[u8]) -> Result<Cow<'_, [u8]>, String> {
     let begin = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
     let begins_as_text = begin.len() >= 5 && begin[..5].eq_ignore_ascii_case(b"solid");
