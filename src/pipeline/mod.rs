@@ -283,10 +283,13 @@ impl<'r> Pipeline<'r> {
         within(self.options.budget, || {
             let mut answer = self.strike(state, None)?;
             if let Some(uncertainty) = &state.uncertainty {
-                answer.impact.holds = Some(self.robustness(state, uncertainty, &answer));
-                if is_spent() && answer.impact.analysis.as_ref().is_some_and(|analysis| analysis.open.is_none()) {
-                    answer.impact.notes.push(UNKNOWN_IN_TIME.to_owned());
+                let holds = self.robustness(state, uncertainty, &answer);
+                let impact = &mut answer.impact;
+                let is_closed = impact.analysis.as_ref().is_some_and(|analysis| analysis.open.is_none());
+                if matches!(holds, robust::Robustness::Unknown) && is_spent() && is_closed {
+                    impact.notes.push(UNKNOWN_IN_TIME.to_owned());
                 }
+                impact.holds = Some(holds);
             }
             Ok(self.finished(answer))
         })
@@ -303,8 +306,8 @@ impl<'r> Pipeline<'r> {
         }
     }
 
-    /// As [`Pipeline::answer`], whatever the state's uncertainty is; of all rejected combinations those with `chosen`
-    /// modes are listed.
+    /// As [`Pipeline::answer`], whatever the state's uncertainty is, and without the friction needed; of all rejected
+    /// combinations those with `chosen` modes are listed.
     ///
     /// # Errors
     /// As [`Pipeline::answer`].
@@ -315,12 +318,11 @@ impl<'r> Pipeline<'r> {
         })
     }
 
-    /// As [`Pipeline::answer`], whatever the state's uncertainty is, in brief and without the friction needed.
+    /// As [`Pipeline::answer_explaining`] without chosen modes, in brief.
     pub(crate) fn outcomes(&mut self, state: &State) -> Result<Box<Impact>> {
-        let Options { brief, friction_needed, .. } = self.options;
-        (self.options.brief, self.options.friction_needed) = (true, false);
+        let brief = replace(&mut self.options.brief, true);
         let answer = self.answer_explaining(state, &[]);
-        (self.options.brief, self.options.friction_needed) = (brief, friction_needed);
+        self.options.brief = brief;
         answer
     }
 
@@ -348,7 +350,7 @@ impl<'r> Pipeline<'r> {
             is_decided && analysis.no_slip_consistent == Some(false)
         };
         let (mut friction_needed, mut slides_regardless) = (None, false);
-        if self.options.friction_needed && analysis.as_ref().is_some_and(slides) {
+        if self.options.friction_needed && chosen.is_none() && analysis.as_ref().is_some_and(slides) {
             let rough = problem.under(Law::Unbounded);
             let source = ExactState { laws: rough.laws(), ..source };
             let asked = AnalysisOptions { rejections: ListedRejections::Nothing, ..asked };
