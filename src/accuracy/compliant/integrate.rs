@@ -9,6 +9,7 @@
 use crate::budget::{ROUNDS, is_spent_after};
 use crate::{Error, Reason, Result};
 use differential_equations::control::ControlFlag;
+use differential_equations::error::Error as IntegrationError;
 use differential_equations::interpolate::Interpolation;
 use differential_equations::linalg::Matrix;
 use differential_equations::methods::ImplicitRungeKutta;
@@ -100,10 +101,14 @@ fn integrate_array<const N: usize>(model: &dyn StiffEquations, start: &[f64], li
     Ok(run.end)
 }
 
-fn gave_up(error: &impl std::fmt::Debug) -> Error {
-    let why: String =
-        format!("the integration of the compliant contact ended early: {error:?}").chars().take(200).collect();
-    Error::new(Reason::Unsupported(why)).hint("take another tolerance, or damping and friction that are less extreme")
+fn gave_up<const N: usize>(error: &IntegrationError<f64, [f64; N]>) -> Error {
+    let why = match error {
+        IntegrationError::MaxSteps { .. } => "it takes too many steps",
+        IntegrationError::StepSize { .. } => "its steps became too small",
+        _ => "its equations have no solution in f64",
+    };
+    let reason = Reason::Unsupported(format!("the integration of the compliant contact ended early: {why}"));
+    Error::new(reason).hint("take another tolerance, or damping and friction that are less extreme")
 }
 
 /// A model as the integrator takes it.
