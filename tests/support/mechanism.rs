@@ -337,7 +337,6 @@ impl Poses {
     }
 }
 
-// What is drawn, in this order, is what `tests/proptest-regressions` repeats.
 prop_compose! {
     fn link()(
         mass in prop_oneof![1 => Just(0.0), 4 => 0.2..2.0f64],
