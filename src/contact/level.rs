@@ -19,6 +19,9 @@ use crate::planar::Vector;
 /// f64, [`RoundingBounds`](crate::dynamics::RoundingBounds), count 48 units and more of it for each point.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
+/// So many bodies at most are taken for one: of longer ways the bounds count too few roundings.
+const MOST_BODIES: usize = 8;
+
 /// Where a contact is on the line of another of its rigid part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Level {
@@ -26,31 +29,32 @@ pub struct Level {
     pub with: usize,
     /// How far along the tangent it is taken to be from there \[m\]; `None` if its place is exactly level by itself.
     pub along: Option<f64>,
-    /// The lengths of the arms between both bodies \[m\].
+    /// What the arms between both bodies were added up from \[m\].
     pub way: f64,
-    /// Whether both move as points of one body do: no joint between them has a rate.
-    pub moves_alike: bool,
 }
 
-/// A robot in a pose, whose bodies between joints without a column or with a `kept` coordinate are rigid parts.
+/// A robot in a pose, whose bodies move as one between joints that keep a rate of zero: each such part is rigid.
 #[derive(Clone, Copy)]
 pub struct RigidParts<'a> {
     pub plan: &'a Plan,
     /// After `kinematics`.
     pub workspace: &'a Workspace,
+    /// Coordinates that keep their rates although they have columns.
     pub kept: &'a [usize],
     /// dq/dt.
     pub velocity: &'a [f64],
 }
 
 /// Which contacts are level with which, up to rounding; none of those behind the last entry. The foot of a `stance`
-/// keeps its place.
-pub fn level(contacts: &[Contact], parts: RigidParts<'_>, stance: Option<usize>) -> Vec<Option<Level>> {
+/// keeps its place, and contacts that are `named` are level with those of their own body alone.
+pub fn level(contacts: &[Contact], parts: RigidParts<'_>, stance: Option<usize>, named: bool) -> Vec<Option<Level>> {
     let mut levels: Vec<Option<Level>> = Vec::new();
     for (index, contact) in contacts.iter().enumerate() {
         let is_own = |&other: &usize| levels.get(other).is_none_or(Option::is_none);
         let others = stance.into_iter().chain((0..index).filter(is_own));
-        let found = others.filter(|_| stance != Some(index)).find_map(|with| parts.level(contact, contacts, with));
+        let mut others = others.filter(|&with| !named || contact.body == contacts[with].body);
+        let found =
+            if stance == Some(index) { None } else { others.find_map(|with| parts.level(contact, contacts, with)) };
         if found.is_some() {
             levels.resize(index, None);
             levels.push(found);
@@ -60,42 +64,56 @@ pub fn level(contacts: &[Contact], parts: RigidParts<'_>, stance: Option<usize>)
 }
 
 impl RigidParts<'_> {
+    /// Whether two bodies move as one.
+    pub fn are_one(self, a: usize, b: usize) -> bool {
+        a == b || self.bodies(a).last() == self.bodies(b).last()
+    }
+
     /// How a contact is level `with` another, if it is.
     fn level(self, contact: &Contact, contacts: &[Contact], with: usize) -> Option<Level> {
         let other = &contacts[with];
-        let parts = [contact, other].map(|own| self.bodies(own.body).last());
-        if parts[0] != parts[1] || contact.ground != other.ground {
+        if contact.ground != other.ground || !self.are_one(contact.body, other.body) {
             return None;
         }
-        let (arm, way, moves_alike) = if contact.body == other.body {
-            (self.workspace.rotation[contact.body].apply(contact.center - other.center), 0.0, true)
+        let (arm, way) = if contact.body == other.body {
+            (self.workspace.rotation[contact.body].apply(contact.center - other.center), 0.0)
         } else {
-            let [own, others] = [contact, other].map(|own| self.way(own));
-            (own.0 - others.0, own.1 + others.1, own.2 && others.2)
+            let [own, others] = [contact, other].map(|own| self.place(own));
+            (own.0 - others.0, own.1 + others.1)
         };
         let rise = contact.normal().dot(arm) - (contact.radius - other.radius);
         let length = |own: &Contact| size(own.center) + own.radius;
         let is_level = rise.abs() <= ROUNDING * (length(contact) + length(other) + way);
-        is_level.then(|| Level { with, along: Some(contact.tangent().dot(arm)), way, moves_alike })
+        is_level.then(|| Level { with, along: Some(contact.tangent().dot(arm)), way })
     }
 
     /// A body and those below it in its rigid part.
     fn bodies(&self, body: usize) -> impl Iterator<Item = usize> {
-        std::iter::successors(Some(body), |&body| {
+        let parts = std::iter::successors(Some(body), |&body| {
             let own = &self.plan.bodies[body];
-            own.parent.filter(|_| own.column.is_none() || self.kept.contains(&own.coordinate))
-        })
+            let keeps = || own.column.is_none() || self.kept.contains(&own.coordinate);
+            let is_rigid = match own.motion {
+                JointMotion::Root => false,
+                JointMotion::Fixed => true,
+                JointMotion::Revolute { .. } | JointMotion::Prismatic { .. } => {
+                    self.velocity[own.coordinate] == 0.0 && keeps()
+                }
+            };
+            own.parent.filter(|_| is_rigid)
+        });
+        parts.take(MOST_BODIES)
     }
 
-    /// Where a contact's center is from the origin of its rigid part \[m\], the lengths of the arms to its body \[m\],
-    /// and whether all joints there are at rest.
-    fn way(&self, contact: &Contact) -> (Vector<f64>, f64, bool) {
+    /// Where a contact's center is from the origin of its rigid part \[m\], and what the arms to its body were added up
+    /// from \[m\].
+    fn place(&self, contact: &Contact) -> (Vector<f64>, f64) {
         let center = self.workspace.rotation[contact.body].apply(contact.center);
         let joints = self.bodies(contact.body).zip(self.bodies(contact.body).skip(1)).map(|(body, _)| body);
-        joints.fold((center, 0.0, true), |(place, length, rests), body| {
+        joints.fold((center, 0.0), |(place, length), body| {
             let (arm, own) = (self.workspace.arm[body], &self.plan.bodies[body]);
-            let has_rate = !matches!(own.motion, JointMotion::Fixed) && self.velocity[own.coordinate] != 0.0;
-            (place + arm, length + size(arm), rests && !has_rate)
+            // A displacement is no longer than the arm and the origin together.
+            let slid = if let JointMotion::Prismatic { .. } = own.motion { 2.0 * size(own.origin) } else { 0.0 };
+            (place + arm, length + size(arm) + slid)
         })
     }
 }

@@ -121,10 +121,15 @@ impl<'a> ExactState<'a> {
             own.center = if own.body == other.body {
                 other.center + back.apply(arm)
             } else {
-                let ways = [other.body, own.body]
-                    .map(|body| plan.way_to_root(body).fold(Vector::zero(), |sum, (at, _)| sum + workspace.arm[at]));
+                // Where the one's origin is from the body that both are beyond.
+                let beyond = |body: usize, other: usize| {
+                    let is_shared = |at: usize| plan.way_to_root(other).any(|(shared, _)| shared == at);
+                    let way = plan.way_to_root(body).take_while(|&(at, _)| !is_shared(at));
+                    way.fold(Vector::zero(), |sum, (at, _)| sum + workspace.arm[at])
+                };
+                let between = beyond(other.body, own.body) - beyond(own.body, other.body);
                 let center = workspace.rotation[other.body].apply(other.center);
-                back.apply(ways[0] - ways[1] + center + arm)
+                back.apply(between + center + arm)
             };
         }
     }
@@ -275,7 +280,7 @@ impl Source for ExactState<'_> {
     }
 
     fn shared_tangent(&self, contact: usize) -> Option<usize> {
-        let &Level { with, moves_alike: true, .. } = self.levels.get(contact)?.as_ref()? else { return None };
+        let &Level { with, .. } = self.levels.get(contact)?.as_ref()?;
         let still = |contact: usize| self.still.contacts.get(contact);
         let is_alike = still(contact) == still(with) || !self.still.rows.is_empty();
         // Accelerations differ by what the body's turn brings along.

@@ -372,10 +372,11 @@ impl Pipeline<'_> {
         sum.abs() > plan.bodies.len() as f64 * f64::EPSILON * size
     }
 
-    /// Which contacts are on a body that does not turn, because another of its contacts on the same straight ground
-    /// takes part, too. Contacts that move over a corner of the ground, where the normal turns, are refused.
+    /// Which contacts are on a body, or on several that move as one, that does not turn, because another of its contacts
+    /// on the same straight ground takes part, too. Contacts that move over a corner of the ground, where the normal turns, are refused.
     fn still(&self, state: &State, prepared: &Prepared, slips: &[Ordering]) -> Result<Vec<bool>> {
         let contacts = &prepared.impact.contacts;
+        let parts = self.rigid_parts(&prepared.velocity);
         let still: Vec<bool> = contacts
             .iter()
             .map(|own| {
@@ -385,7 +386,8 @@ impl Pipeline<'_> {
                     let rounding = CONTACT_TOLERANCE * (own.arm(self.robot).length + other.arm(self.robot).length);
                     place > rounding || (place > 0.0 && !self.turns(own.body, &prepared.velocity))
                 };
-                contacts.iter().any(|other| (other.body, other.ground) == (own.body, own.ground) && is_apart(other))
+                let is_beside = |other: &Contact| other.ground == own.ground && parts.are_one(own.body, other.body);
+                contacts.iter().any(|other| is_beside(other) && is_apart(other))
             })
             .collect();
         let surface = Surface::new(&state.scene.ground);

@@ -385,9 +385,9 @@ impl Pipeline<'_> {
         velocity: &[f64],
         stance: Option<usize>,
     ) -> Vec<Option<Level>> {
-        let Assembly { plan, workspace, kept, .. } = &self.assembly;
-        let mut levels = level(contacts, RigidParts { plan, workspace, kept, velocity }, stance);
-        if state.scene.contacts.is_some() {
+        let is_named = state.scene.contacts.is_some();
+        let mut levels = level(contacts, self.rigid_parts(velocity), stance, is_named);
+        if is_named {
             for (index, own) in levels.iter_mut().enumerate() {
                 let is_level = |own: &Level| self.is_exactly_level(state, &contacts[index], &contacts[own.with]);
                 *own = own.filter(is_level).map(|own| Level { along: None, ..own });
@@ -396,11 +396,14 @@ impl Pipeline<'_> {
         levels
     }
 
-    /// Whether two points are of one body and have the same height above the ground in all digits of the pose.
+    /// The bodies that move as one at this `velocity`, in the pose of the assembly.
+    pub(super) fn rigid_parts<'a>(&'a self, velocity: &'a [f64]) -> RigidParts<'a> {
+        let Assembly { plan, workspace, kept, .. } = &self.assembly;
+        RigidParts { plan, workspace, kept, velocity }
+    }
+
+    /// Whether two points of one body have the same height above the ground in all digits of the pose.
     fn is_exactly_level(&self, state: &State, a: &Contact, b: &Contact) -> bool {
-        if a.body != b.body {
-            return false;
-        }
         let ground = |own: &Contact| state.scene.ground.axes(own.ground);
         let [a, b] = [a, b].map(|own| own.exact_point::<Residue>(self.robot, ground(own)));
         let turn = self.assembly.plan.rotation::<Residue>(a.body, &state.position);
