@@ -177,27 +177,30 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
         for point in 0..self.descents.len() {
             let Descent { from, falling } = self.descents[point];
             let [last, height] = [row, row + 1].map(|row| self.window.height(point, row));
-            let strike = Strike { point, row, height: Some(0.0), smooth: row, onward: Way::Through(SMOOTH) };
-            if from - last.min(height) >= self.thresholds.drop && last > -self.level {
-                if height < -self.level {
-                    strikes.push(strike);
-                } else if falling && height >= last {
-                    // It has bounced or stopped since the row before or the one before that.
-                    let before = row.checked_sub(1);
-                    let found = if last > self.level {
-                        let mut rows = [before, Some(row)].into_iter().flatten();
-                        rows.find(|&row| self.onward_height(point, row) <= 0.0).map(|row| (row, Some(0.0)))
-                    } else if self.window.frames[row].before_impact {
-                        Some((row, None))
-                    } else {
-                        // In a row on the ground it may have been stopped already.
-                        Some((before.unwrap_or(row), Some(0.0)))
-                    };
-                    strikes.extend(found.map(|(row, height)| Strike { row, smooth: row, height, ..strike }));
-                }
+            if from - last.min(height) >= self.thresholds.drop {
+                let before = row.checked_sub(1);
+                let found = if last > self.level && height < -self.level {
+                    Some((row, Some(0.0)))
+                } else if last > self.level && falling && height >= last {
+                    // It has bounced since the row before or the one before that.
+                    let mut rows = [before, Some(row)].into_iter().flatten();
+                    rows.find(|&row| self.onward_height(point, row) <= 0.0).map(|row| (row, Some(0.0)))
+                } else if last.abs() <= self.level && falling && self.window.frames[row].before_impact {
+                    Some((row, None))
+                } else if last.abs() <= self.level && falling {
+                    // In the first row on the ground it may have been stopped already, and where heights are rounded
+                    // as much as that, also in the row before.
+                    let mut rows = [row.checked_sub(2), before].into_iter().flatten();
+                    let found = rows.find(|&row| self.onward_height(point, row) <= self.level);
+                    Some((found.or(before).unwrap_or(row), Some(0.0)))
+                } else {
+                    None
+                };
+                let strike = |(row, height)| Strike { point, row, height, smooth: row, onward: Way::Through(SMOOTH) };
+                strikes.extend(found.map(strike));
             }
             let falling = height < last;
-            let from = if falling && height > -self.level { from } else { height };
+            let from = if falling && last > self.level { from } else { height };
             self.descents[point] = Descent { from, falling };
         }
         self.strike(strikes);

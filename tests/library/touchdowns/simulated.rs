@@ -199,7 +199,20 @@ fn a_row_at_the_impact_may_be_before_or_after_it() {
     for z in [0.1, 0.1_f64.next_up(), 0.1_f64.next_down(), 0.1 + 1e-9, 0.1 - 1e-9] {
         let [before, after] = [row(time, z, -speed), row(time, z, 0.5 * speed)];
         let bounced = after.clone() + &row(time + 0.03, 0.1 + 0.03 * (0.5 * speed - 0.015 * G), 0.5 * speed - 0.03 * G);
-        for (case, end) in [("both", before.clone() + &bounced), ("end", before), ("after", bounced)] {
+        // At rest it sinks by drift, or jitters.
+        let stays = |lower: fn(f64) -> f64| -> String {
+            let rests = (0..60).map(f64::from).map(|at| row(time + 1e-3 * at, z + lower(at), 0.0));
+            rests.collect()
+        };
+        let [sinks, jitters] = [stays(|at| -1e-12 * at), stays(|at| [1e-15, -1e-15, 0.0][at as usize % 3])];
+        for (case, end) in [
+            ("both", before.clone() + &bounced),
+            ("both", before.clone() + &sinks),
+            ("end", before),
+            ("after", bounced),
+            ("after", sinks),
+            ("after", jitters),
+        ] {
             let table = format!("time,q_base_z,v_base_z\n{fall}{end}");
             let found = motion.found(&table, true, At::Crossing);
             let [Sample { time: found, state, .. }] = &found[..] else { panic!("{case} {z:?}: {}", found.len()) };
