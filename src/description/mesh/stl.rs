@@ -22,7 +22,9 @@ fn tidied(bytes: &[u8]) -> Result<Cow<'_, [u8]>, String> {
     let begins_as_text = begin.len() >= 5 && begin[..5].eq_ignore_ascii_case(b"solid");
     if begins_as_text && begin.is_ascii() && !begin.contains(&0) {
         let mut text = begin.to_ascii_lowercase();
-        if text[5..].trim_ascii_start().starts_with(b"facet") {
+        let name = text[5..].split(|byte| matches!(byte, b'\n' | b'\r')).next().unwrap_or_default().trim_ascii();
+        let is_facet = name.strip_prefix(b"facet").is_some_and(|rest| rest.trim_ascii_start().starts_with(b"normal"));
+        if name.is_empty() || is_facet {
             text.splice(5..5, *b" unnamed\n");
         }
         return Ok(text.into());

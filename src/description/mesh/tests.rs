@@ -96,6 +96,7 @@ fn every_format_gives_the_same_vertices() {
         ("foot.stl", ascii_stl().into()),
         ("foot.stl", ascii_stl().to_ascii_uppercase().into()),
         ("foot.stl", format!("\u{feff}{}", ascii_stl().replace("solid foot", "solid")).into()),
+        ("foot.stl", ascii_stl().replace("solid foot", "solid facet").into()),
         ("foot.STL", binary_stl(b"by hand")),
         ("foot.STL", [binary_stl(b"by hand"), vec![7; 60]].concat()),
         // Many programs begin a binary file as if it were a text.
