@@ -99,11 +99,14 @@ pub(super) fn spare(output: Option<&Path>, inputs: &[Option<&PathBuf>]) -> crate
         false => ["", PART, RUN].map(|ending| beside(output, ending)).to_vec(),
     };
     let written: Vec<_> = places.iter().filter_map(|place| file_of(place, io::stdout())).collect();
-    if inputs.iter().flatten().all(|input| file_of(input, io::stdin()).is_none_or(|file| !written.contains(&file))) {
-        return Ok(());
-    }
+    let is_written = |input: &&&PathBuf| file_of(input, io::stdin()).is_some_and(|file| written.contains(&file));
+    let Some(input) = inputs.iter().flatten().find(is_written) else { return Ok(()) };
     let reason = Reason::Io("is an input of this command, and the output would replace it".into());
-    let name = if output == Path::new("-") { "<stdout>".to_owned() } else { output.display().to_string() };
+    let name = match (input.as_path() == Path::new("-"), output == Path::new("-")) {
+        (_, true) => "<stdout>".to_owned(),
+        (true, false) => output.display().to_string(),
+        (false, false) => input.display().to_string(),
+    };
     Err(Error::new(reason).in_file(name).hint("write to another file"))
 }
 
@@ -113,7 +116,10 @@ pub(super) fn apart(
     option: &'static str,
 ) -> Result<(), Failure> {
     let (one, Some(other)) = (one.unwrap_or(Path::new("-")), other) else { return Ok(()) };
-    let place = |path: &Path| Some(path.parent()?.join(".").canonicalize().ok()?.join(path.file_name()?));
+    let place = |path: &Path| {
+        let last = beside(path, "");
+        Some(last.parent()?.join(".").canonicalize().ok()?.join(last.file_name()?))
+    };
     let same_name = one != Path::new("-") && place(one).is_some_and(|one| place(other) == Some(one));
     let same_file = file_of(one, io::stdout()).is_some_and(|file| file_of(other, io::stdout()) == Some(file));
     if !same_name && !same_file {
