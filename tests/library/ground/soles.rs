@@ -6,7 +6,6 @@ use crate::support::mechanism::turned;
 use crate::support::random::Random;
 use crate::support::scaled::largest;
 use heelstrike::description::Description;
-use heelstrike::impact::Mode;
 use heelstrike::reductions::Reductions;
 use heelstrike::robot::Reduction;
 
@@ -352,13 +351,19 @@ fn feet_of_held_legs_are_level_as_one_body_is() {
         let mut held = state(torso);
         held["position"]["joints"] = json!({"left_hip": left - torso, "right_hip": right - torso});
         held["held"] = json!(["left_hip", "right_hip"]);
-        let robot = biped(torso, [left, right], urdf::HINGE);
-        let [posed, welded] = [impact(&robot, &held), impact(&biped(0.0, [0.0; 2], urdf::Axis::Fixed), state(0.0))];
+        let struck = |robot: &Robot, state: &Value| {
+            try_impact(robot, Options { next: true, ..Options::default() }, state).expect("an answer")
+        };
+        let welded = biped(0.0, [0.0; 2], urdf::Axis::Fixed);
+        let [posed, welded] = [struck(&biped(torso, [left, right], urdf::HINGE), &held), struck(&welded, &state(0.0))];
         assert!(is_proven(&posed) && is_proven(&welded), "seed {seed}");
         assert_eq!((modes(&posed), posed.contacts.len()), (modes(&welded), 2), "seed {seed}");
         for (one, other) in velocities_after(&posed).iter().zip(velocities_after(&welded)) {
             assert!(near(&one[..3], &other, 1e-12 * largest(one).max(1.0)), "seed {seed}: {one:?} is not {other:?}");
         }
+        let next =
+            |impact: &Impact| -> Vec<_> { outcomes(impact).iter().map(|outcome| outcome.next.clone()).collect() };
+        assert_eq!(next(&posed), next(&welded), "seed {seed}");
         for impulse in outcomes(&posed).iter().flat_map(|outcome| &outcome.impulse) {
             assert!(impulse.iter().all(|own| own.abs() < 1e3), "seed {seed}: {impulse:?}");
         }
