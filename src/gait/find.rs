@@ -200,7 +200,7 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
                 strikes.extend(found.map(strike));
             }
             let falling = height < last;
-            let from = if falling && last > self.level { from } else { height };
+            let from = if falling && last > self.level && height >= -self.level { from } else { height };
             self.descents[point] = Descent { from, falling };
         }
         self.strike(strikes);

@@ -196,7 +196,7 @@ fn a_row_at_the_impact_may_be_before_or_after_it() {
     let row = |time: f64, z: f64, v: f64| format!("{time:?},{z:?},{v:?}\n");
     let fall: String =
         [0.0, 0.05, 0.11, 0.18, 0.24, 0.33, 0.41].map(|t| row(t, 1.1 - 0.5 * G * t * t, -G * t)).concat();
-    for z in [0.1, 0.1_f64.next_up(), 0.1_f64.next_down(), 0.1 + 1e-9, 0.1 - 1e-9] {
+    for z in [0.1, 0.1_f64.next_up(), 0.1_f64.next_down(), 0.1 + 1e-9, 0.1 - 1e-9, 0.1 - 5e-7] {
         let [before, after] = [row(time, z, -speed), row(time, z, 0.5 * speed)];
         let bounced = after.clone() + &row(time + 0.03, 0.1 + 0.03 * (0.5 * speed - 0.015 * G), 0.5 * speed - 0.03 * G);
         // At rest it sinks by drift, or jitters.
@@ -218,8 +218,9 @@ fn a_row_at_the_impact_may_be_before_or_after_it() {
             let [Sample { time: found, state, .. }] = &found[..] else { panic!("{case} {z:?}: {}", found.len()) };
             assert!((found - time).abs() < 1e-8, "{case} {z:?}: {found}");
             assert!((state.velocity[1] + speed).abs() < 1e-7, "{case} {z:?}: {}", state.velocity[1]);
-            // Of two rows the first is taken as it is.
-            assert!(case != "both" || state.velocity[1] == -speed, "{z:?}: {:?}", state.velocity[1]);
+            // Of two rows on the ground the first is taken as it is.
+            let is_given = case != "both" || z < 0.1 - 1e-8 || state.velocity[1] == -speed;
+            assert!(is_given, "{z:?}: {:?}", state.velocity[1]);
         }
     }
 }
