@@ -64,9 +64,14 @@ pub fn level(contacts: &[Contact], parts: RigidParts<'_>, stance: Option<usize>,
 }
 
 impl RigidParts<'_> {
+    /// The first of the bodies that move as one with this one.
+    pub fn first(self, body: usize) -> usize {
+        self.bodies(body).last().unwrap_or(body)
+    }
+
     /// Whether two bodies move as one.
     pub fn are_one(self, a: usize, b: usize) -> bool {
-        a == b || self.bodies(a).last() == self.bodies(b).last()
+        a == b || self.first(a) == self.first(b)
     }
 
     /// How a contact is level `with` another, if it is.

@@ -90,11 +90,12 @@ pub(super) fn point_drift<T: Real>(body: usize, arm: Vector<T>, workspace: &Work
 }
 
 impl<T: Real> ContactPoint<T> {
-    /// sigma, in the world's axes \[m/s^2\], after [`bias`]; of a body that is `still` without its rate of turn.
-    pub fn drift(&self, still: bool, workspace: &Workspace<T>) -> Vector<T> {
+    /// sigma, in the world's axes \[m/s^2\], after [`bias`]; of a body that does not turn that of the `still` one of all
+    /// that move with it.
+    pub fn drift(&self, still: Option<usize>, workspace: &Workspace<T>) -> Vector<T> {
         match still {
-            true => workspace.drift[self.body],
-            false => point_drift(self.body, workspace.rotation[self.body].apply(self.center), workspace),
+            Some(body) => workspace.drift[body],
+            None => point_drift(self.body, workspace.rotation[self.body].apply(self.center), workspace),
         }
     }
 }

@@ -241,7 +241,7 @@ mod tests {
             plan.coordinates.iter().zip(&column).for_each(|(&coordinate, &own)| acceleration[coordinate] = own);
             let of_contact = |point: &ContactPoint<T>| {
                 let total = point_velocity(plan, point.body, point.arm(&workspace), &acceleration, &workspace);
-                point.axes().map(|axis| axis.dot(total + point.drift(still, &workspace)))
+                point.axes().map(|axis| axis.dot(total + point.drift(still.then_some(point.body), &workspace)))
             };
             let contacts = points.iter().map(of_contact).collect();
             (loads, acceleration, contacts)
@@ -344,7 +344,7 @@ mod tests {
             for (index, body) in case.robot.bodies.iter().enumerate() {
                 let com = accelerated(index, body.com);
                 let point = ContactPoint { body: index, center: body.com, radius: 0.5, ground: Rotation::identity() };
-                let off = point.drift(false, &workspace) - com;
+                let off = point.drift(None, &workspace) - com;
                 prop_assert!(off.length() < tolerance * com.length().max(1.0), "{off:?} {com:?}");
                 let arm = workspace.rotation[index].apply(body.com);
                 walk(&plan, index, arm, &case.velocity, &workspace, |column, unit| {

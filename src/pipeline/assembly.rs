@@ -30,8 +30,9 @@ pub struct Loads<'a> {
     pub scene: &'a Scene,
     /// q, with the base where it is placed.
     pub position: &'a [f64],
-    /// Contacts of a body that does not turn, because several of its points stay on the ground.
-    pub still: &'a [bool],
+    /// Of contacts of bodies that do not turn, because several of their points stay on the ground, the first of the bodies
+    /// that move as one.
+    pub still: &'a [Option<usize>],
 }
 
 /// How M^-1 is applied.

@@ -53,8 +53,8 @@ pub struct Sustained {
 
 /// A state in sustained contact without contact forces.
 struct Unforced {
-    /// Which contacts are on a body that does not turn.
-    still: Vec<bool>,
+    /// As in [`Loads`].
+    still: Vec<Option<usize>>,
     /// q, with the base where it is placed.
     position: Vec<f64>,
     driven: Driven,
@@ -372,12 +372,12 @@ impl Pipeline<'_> {
         sum.abs() > plan.bodies.len() as f64 * f64::EPSILON * size
     }
 
-    /// Which contacts are on a body, or on several that move as one, that does not turn, because another of its contacts
-    /// on the same straight ground takes part, too. Contacts that move over a corner of the ground, where the normal turns, are refused.
-    fn still(&self, state: &State, prepared: &Prepared, slips: &[Ordering]) -> Result<Vec<bool>> {
+    /// The first of the bodies that move as one with that of a contact, if they do not turn because another of their
+    /// contacts on the same straight ground takes part, too. Contacts that move over a corner of the ground, where the normal turns, are refused.
+    fn still(&self, state: &State, prepared: &Prepared, slips: &[Ordering]) -> Result<Vec<Option<usize>>> {
         let contacts = &prepared.impact.contacts;
         let parts = self.rigid_parts(&prepared.velocity);
-        let still: Vec<bool> = contacts
+        let still: Vec<Option<usize>> = contacts
             .iter()
             .map(|own| {
                 // At one place, up to rounding, they keep nothing from turning.
@@ -387,14 +387,14 @@ impl Pipeline<'_> {
                     place > rounding || (place > 0.0 && !self.turns(own.body, &prepared.velocity))
                 };
                 let is_beside = |other: &Contact| other.ground == own.ground && parts.are_one(own.body, other.body);
-                contacts.iter().any(|other| is_beside(other) && is_apart(other))
+                contacts.iter().any(|other| is_beside(other) && is_apart(other)).then(|| parts.first(own.body))
             })
             .collect();
         let surface = Surface::new(&state.scene.ground);
         for ((contact, slip), still) in contacts.iter().zip(slips).zip(&still) {
             let center = ContactPoint { radius: 0.0, ..contact.point_of() };
             let rolls = || {
-                !still
+                still.is_none()
                     && contact.radius != 0.0
                     && self.assembly.velocity_of(&center, &prepared.velocity) != Vector::zero()
             };

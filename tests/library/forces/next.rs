@@ -93,3 +93,22 @@ fn next_is_forces_at_the_velocities_after() {
     }
     assert!(verdicts.iter().all(|&count| count > 2), "{verdicts:?}");
 }
+
+/// Rounding leaves the robot a rate of turn of 1e-16 rad/s, by which no foot of held legs moves against the other.
+#[test]
+fn held_legs_stand_on_both_feet_after_an_impact() {
+    let ramone = robot(include_str!("../../../urdf/ramone.urdf"));
+    for (x, friction) in [0.0, 0.02, 0.05].into_iter().flat_map(|x| [(x, json!(0.8)), (x, json!("infinite"))]) {
+        let state = json!({
+            "position": {"joints": {"left_hip": 0.4, "left_knee": -0.3, "right_hip": -0.4, "right_knee": 0.3}},
+            "velocity": {"base": {"x": x, "z": -0.5}}, "place": "lowest", "friction": friction,
+            "held": ["left_hip", "left_knee", "right_hip", "right_knee"],
+        });
+        let both = vec![vec![Some(Stick); 2]];
+        assert_eq!(
+            nexts(&ramone, state),
+            [Next { verdict: Verdict::Unique, proven: true, modes: both }],
+            "{x} {friction}"
+        );
+    }
+}
