@@ -139,7 +139,9 @@ proptest! {
             let own: Vec<f64> = one.velocity().collect();
             let units = case.moving().into_iter().map(|k| units_of_q[k] / time);
             let found: Vec<f64> = other.velocity().zip(units).map(|(rate, unit)| rate / unit).collect();
-            prop_assert!(near(&found, &own, 1e-12 * largest(&own)), "{found:?} {own:?}");
+            // All may stop, and what is left then is rounding of the motion before.
+            let size = largest(&own).max(largest(&case.v));
+            prop_assert!(near(&found, &own, 1e-12 * size), "{found:?} {own:?}");
             for (own, unit, found) in [
                 (one.impulse.concat(), mass * length / time, other.impulse.concat()),
                 (one.velocity_after.concat(), length / time, other.velocity_after.concat()),
