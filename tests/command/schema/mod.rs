@@ -326,4 +326,13 @@ fn the_command_prints_every_schema() {
         assert_eq!(printed["$schema"], "https://json-schema.org/draft/2020-12/schema");
     }
     assert_eq!(heelstrike_reads(&["schema", "gait"], "").stdout, "");
+    // A field that may be absent is not null instead.
+    let mut waiting = vec![schema::result()];
+    let mut holds = Vec::new();
+    while let Some(value) = waiting.pop() {
+        holds.extend(value.pointer("/properties/holds/enum").cloned());
+        let within: Vec<Value> = value.as_object().into_iter().flat_map(|own| own.values().cloned()).collect();
+        waiting.extend(value.as_array().cloned().unwrap_or(within));
+    }
+    assert!(!holds.is_empty() && holds.iter().all(|own| *own == json!([true, false, "unknown"])), "{holds:?}");
 }
