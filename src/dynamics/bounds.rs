@@ -186,8 +186,7 @@ impl RoundingBounds {
     /// What moves `end` against a point of the body `other`: joints on its way to the root that are not on the other's.
     pub fn reach(&self, plan: &Plan, end: Arm, other: usize) -> Reach {
         let mut reach = Reach { columns: vec![0.0; plan.columns()], shortest: f64::INFINITY, longest: end.length };
-        let is_shared = |index: usize| plan.way_to_root(other).any(|(shared, _)| shared == index);
-        for (index, body) in plan.way_to_root(end.body).take_while(|&(index, _)| !is_shared(index)) {
+        for (index, body) in plan.way_beyond(end.body, other) {
             match (body.motion, body.column) {
                 (JointMotion::Revolute { rate, .. }, Some(column)) => {
                     reach.columns[column] += reach.longest * rate.abs();

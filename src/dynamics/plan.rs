@@ -331,6 +331,12 @@ impl<T: Real> Plan<T> {
         std::iter::successors(Some(body), |&body| self.bodies[body].parent).map(|body| (body, &self.bodies[body]))
     }
 
+    /// As [`Plan::way_to_root`], without the bodies that carry `other`, too.
+    pub(crate) fn way_beyond(&self, body: usize, other: usize) -> impl Iterator<Item = (usize, &PlanBody<T>)> {
+        let carries_both = move |at: usize| self.way_to_root(other).any(|(shared, _)| shared == at);
+        self.way_to_root(body).take_while(move |&(at, _)| !carries_both(at))
+    }
+
     /// Number of columns: the coordinates whose joints are not braked.
     pub fn columns(&self) -> usize {
         self.coordinates.len()

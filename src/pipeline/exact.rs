@@ -13,6 +13,7 @@ use crate::robot::Robot;
 use crate::scalar::{Ball, DoubleDouble, Ordered, Real, Trigonometry};
 use crate::state::{Scene, State};
 use std::cmp::Ordering;
+use std::ops::Add;
 
 /// What is asked about a state.
 #[derive(Debug, Clone, Copy)]
@@ -121,13 +122,10 @@ impl<'a> ExactState<'a> {
             own.center = if own.body == other.body {
                 other.center + back.apply(arm)
             } else {
-                // Where the one's origin is from the body that both are beyond.
-                let beyond = |body: usize, other: usize| {
-                    let is_shared = |at: usize| plan.way_to_root(other).any(|(shared, _)| shared == at);
-                    let way = plan.way_to_root(body).take_while(|&(at, _)| !is_shared(at));
-                    way.fold(Vector::zero(), |sum, (at, _)| sum + workspace.arm[at])
-                };
-                let between = beyond(other.body, own.body) - beyond(own.body, other.body);
+                let arms = |body: usize, other: usize| plan.way_beyond(body, other).map(|(at, _)| workspace.arm[at]);
+                let [to_other, to_own] = [(other.body, own.body), (own.body, other.body)]
+                    .map(|(body, other)| arms(body, other).fold(Vector::zero(), Vector::add));
+                let between = to_other - to_own;
                 let center = workspace.rotation[other.body].apply(other.center);
                 back.apply(between + center + arm)
             };
