@@ -27,7 +27,8 @@ impl<S: Clone> Arrival<'_, '_, S> {
             (Way::Through(rows), height) => return self.through(point, row, rows, height),
             (Way::Along(rows), Some(level)) => {
                 if let Some((time, rows)) = self.window.along(point, row, rows, level) {
-                    return self.on_line_of(&rows, time);
+                    let next = self.window.frames.get(row + 1).map_or(time, |next| next.sample.time);
+                    return self.on_line_of(&rows, time.min(next));
                 }
             }
             _ => {}
@@ -62,21 +63,21 @@ impl<S: Clone> Arrival<'_, '_, S> {
     /// is before the next row, by the polynomial through `most` rows.
     fn through(&mut self, point: usize, row: usize, most: usize, level: Option<f64>) -> Sample<S> {
         let mut sample = self.window.frames[row].sample.clone();
-        let rows = self.window.smooth_rows(row, most);
+        let motion = self.window.motion(row, most, self.heights == Heights::True);
         if let (Some(level), At::Crossing) = (level, self.at) {
             let [start, end] = [row, row + 1].map(|row| self.window.frames[row].sample.time);
-            let down = self.window.onward_position(&rows, end);
+            let down = self.window.onward_position(&motion, end);
             if self.points.at(&down)[point].z <= level + self.level {
                 let (mut above, mut below) = (start, end);
                 for _ in 0..HALVINGS {
                     let middle = 0.5 * (above + below);
-                    let position = self.window.onward_position(&rows, middle);
+                    let position = self.window.onward_position(&motion, middle);
                     *(if self.points.at(&position)[point].z > level { &mut above } else { &mut below }) = middle;
                 }
-                (sample.time, sample.state.position) = (below, self.window.onward_position(&rows, below));
+                (sample.time, sample.state.position) = (below, self.window.onward_position(&motion, below));
             } else {
                 let [from, to] = [row, row + 1].map(|row| self.window.height(point, row) - level);
-                let part = (from / (from - to)).clamp(0.0, 1.0);
+                let part = if to < from { (from / (from - to)).clamp(0.0, 1.0) } else { 0.0 };
                 sample.time += part * (end - start);
                 let next = &self.window.frames[row + 1].sample.state.position;
                 for (own, next) in sample.state.position.iter_mut().zip(next) {
@@ -84,11 +85,16 @@ impl<S: Clone> Arrival<'_, '_, S> {
                 }
             }
         }
-        if rows.len() > 1 {
-            let times = self.window.times(rows.iter().copied());
-            // Recorded rates may have noise that heights do not show.
-            let used = if self.heights == Heights::Recorded && !is_difference(&sample) { 2 } else { rows.len() };
-            self.carry_velocity(&rows, &Interpolation::at(sample.time, &times[..used]), &mut sample);
+        if motion.rows.len() > 1 {
+            let onward = self.window.onward(&motion, sample.time);
+            let used = |entry: usize| match (is_difference(&sample), self.heights) {
+                (true, _) => motion.position[entry].max(2),
+                // Recorded rates may have noise that heights do not show.
+                (false, Heights::Recorded) => 2,
+                (false, Heights::True) => motion.velocity[entry],
+            };
+            let used: Vec<usize> = (0..sample.state.velocity.len()).map(used).collect();
+            self.carry_velocity(&motion.rows, |entry| &onward[used[entry]], &mut sample);
         }
         sample
     }
@@ -104,18 +110,19 @@ impl<S: Clone> Arrival<'_, '_, S> {
                 *own = line.value(|at| self.window.frames[rows[at]].sample.state.position[entry]);
             }
         }
-        self.carry_velocity(rows, &Interpolation::along(sample.time, &times), &mut sample);
+        let line = Interpolation::along(sample.time, &times);
+        self.carry_velocity(rows, |_| &line, &mut sample);
         sample
     }
 
-    /// Gives a sample the velocity of `rows`: as recorded, or the rate of their positions.
-    fn carry_velocity(&self, rows: &[usize], onward: &Interpolation, sample: &mut Sample<S>) {
+    /// Gives a sample the velocity of `rows`: as recorded, or the rate of their positions; each entry by its own way.
+    fn carry_velocity<'i>(&self, rows: &[usize], onward: impl Fn(usize) -> &'i Interpolation, sample: &mut Sample<S>) {
         let state = |at: usize| &self.window.frames[rows[at]].sample.state;
         let differences = is_difference(sample);
         for (entry, own) in sample.state.velocity.iter_mut().enumerate() {
             *own = match differences {
-                true => onward.rate(|at| state(at).position[entry]),
-                false => onward.value(|at| state(at).velocity[entry]),
+                true => onward(entry).rate(|at| state(at).position[entry]),
+                false => onward(entry).value(|at| state(at).velocity[entry]),
             };
         }
     }
@@ -150,6 +157,6 @@ impl<S: Clone> Arrival<'_, '_, S> {
 }
 
 /// Whether the velocity of a sample was taken from rows.
-fn is_difference<S>(sample: &Sample<S>) -> bool {
+pub(super) fn is_difference<S>(sample: &Sample<S>) -> bool {
     sample.rate_over[0] < sample.rate_over[1]
 }

@@ -1,7 +1,7 @@
 //! A motion carried on from its last rows, to a moment at which there is no row.
 
 /// A motion is carried on by so many times the distance of its last rows at most.
-const REACH: f64 = 2.5;
+pub(super) const REACH: f64 = 2.5;
 
 /// How the motion of two or three rows goes on after the last of them.
 #[derive(Debug, Clone, Copy)]

@@ -1,13 +1,13 @@
 //! Finds the touchdowns of a recording, sample by sample, in memory for the last moments alone.
 
-use super::arrival::Arrival;
-use super::carry::Interpolation;
+use super::arrival::{Arrival, is_difference};
+use super::carry::{Interpolation, REACH};
 use super::clip::{Clock, ClockStep};
 use super::noise::MEASURED;
 use super::points::Points;
 use super::seen::Seen;
 use super::strike::{Strike, Way};
-use super::window::{Frame, SMOOTH, Window};
+use super::window::{FORETOLD, Frame, SMOOTH, Window};
 use super::{At, Heights, Landing, Sample, Sampled, Thresholds, Touching};
 use crate::contact::Feet;
 use crate::pipeline::CONTACT_TOLERANCE;
@@ -19,6 +19,8 @@ use std::sync::Mutex;
 
 /// Heights have no noise that is a greater part of [`Thresholds::above`].
 const EXACT: f64 = 1e-3;
+/// Noise hides an impact for no more rows.
+const HIDDEN: usize = 8;
 /// Feet do not sink by more times the usual [`Thresholds::ground`].
 const DEEP: f64 = 5.0;
 
@@ -157,7 +159,7 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
         }
         // A point that falls at `slow` or faster was `above` its level no longer ago than this; twice that is kept.
         let oldest = sample.time - 2.0 * self.thresholds.above / self.thresholds.slow;
-        let kept = if self.heights == Heights::True { SMOOTH + 1 } else { 3 * MEASURED };
+        let kept = if self.heights == Heights::True { SMOOTH + FORETOLD + 1 } else { 3 * MEASURED };
         while self.window.frames.get(kept).is_some_and(|frame| frame.sample.time < oldest) {
             self.window.frames.pop_front();
         }
@@ -208,8 +210,8 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
 
     /// How high a point would be at the row after `row` \[m\].
     fn onward_height(&mut self, point: usize, row: usize) -> f64 {
-        let (rows, next) = (self.window.smooth_rows(row, SMOOTH), self.window.frames[row + 1].sample.time);
-        let position = self.window.onward_position(&rows, next);
+        let (motion, next) = (self.window.motion(row, SMOOTH, true), self.window.frames[row + 1].sample.time);
+        let position = self.window.onward_position(&motion, next);
         self.points.at(&position)[point].z
     }
 
@@ -245,7 +247,28 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
             descent.from = descent.from.max(height);
         }
         let stopped = |(point, rows, end)| self.window.stopped(point, rows, end, self.at, self.thresholds);
-        self.strike(ended.into_iter().filter_map(stopped).collect());
+        let strikes: Vec<Strike> = ended.into_iter().filter_map(stopped).collect();
+        let strikes = strikes.into_iter().map(|strike| self.before_stop(strike)).collect();
+        self.strike(strikes);
+    }
+
+    /// A strike with no row after the impact, where recorded velocities show that its point was stopped at once: noise of
+    /// its height may hide that for some rows.
+    fn before_stop(&mut self, strike: Strike) -> Strike {
+        let Strike { point, row, smooth, .. } = strike;
+        if strike.height.is_none() || is_difference(&self.window.frames[row].sample) {
+            return strike;
+        }
+        let rows = self.window.smooth_rows(smooth, HIDDEN + 2);
+        let rates: Vec<f64> =
+            rows.iter().map(|&row| self.points.rate(point, &self.window.frames[row].sample.state)).collect();
+        let times = self.window.times(rows.iter().copied());
+        let is_stopped = |&after: &usize| {
+            let is_near = times[after] - times[after + 1] <= REACH * (times[after + 1] - times[after + 2]);
+            is_near && rates[after + 1] < -2.0 * self.thresholds.slow && rates[after] > 0.5 * rates[after + 1]
+        };
+        let last = (0..rows.len().saturating_sub(2)).find(is_stopped).map_or(smooth, |after| rows[after + 1]);
+        Strike { row: row.min(last), smooth: last, ..strike }
     }
 
     /// Ends the clip: a point that is still falling has reached the ground if it is at z = 0.

@@ -93,7 +93,7 @@ impl<'r> Points<'r> {
             Touching::Strike => {}
             Touching::Slow { speed, height } => {
                 let stands = |point: usize, height: f64| {
-                    above(point) <= height && self.speed(point, &placement, &state.velocity) < speed
+                    above(point) <= height && self.velocity(point, &placement, &state.velocity).length() < speed
                 };
                 let mut feet = self.lowest_of_other_bodies(&closed, &places);
                 feet.retain(|&point| stands(point, height));
@@ -152,12 +152,17 @@ impl<'r> Points<'r> {
         (0..self.points.len()).filter(move |&point| self.body(point) == body)
     }
 
-    /// Speed of a point after `at` \[m/s\].
-    fn speed(&self, point: usize, placement: &Placement, velocity: &[f64]) -> f64 {
+    /// How fast a point rises \[m/s\].
+    pub fn rate(&mut self, point: usize, state: &State) -> f64 {
+        let placement = self.placement(&state.position);
+        self.velocity(point, &placement, &state.velocity).z
+    }
+
+    /// The velocity of a point after `placement` \[m/s\].
+    fn velocity(&self, point: usize, placement: &Placement, velocity: &[f64]) -> Vector<f64> {
         let Circle { body, center, radius, .. } = HalfPlane::LEVEL.circle(placement, self.points[point].1);
         let arm = ContactPoint { body, center, radius, ground: Rotation::identity() }.arm(&self.workspace);
-        let Vector { x, z } = point_velocity(&self.plan, body, arm, velocity, &self.workspace);
-        libm::hypot(x, z)
+        point_velocity(&self.plan, body, arm, velocity, &self.workspace)
     }
 
     fn named(&self, point: usize, placement: &Placement) -> NamedContact {

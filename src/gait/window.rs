@@ -10,6 +10,13 @@ pub(super) const BEFORE: usize = 3;
 /// The same where rows have no noise.
 pub(super) const SMOOTH: usize = 6;
 
+/// So many rows show how well rows before them foretell a motion.
+pub(super) const FORETOLD: usize = 2;
+/// Fewer rows than this show nothing of that.
+const LEAST: usize = 4;
+/// Fewer rows are used if they are off by no more times what more are off by.
+const NEARLY: f64 = 1.5;
+
 /// The last rows of a clip.
 #[derive(Debug)]
 pub(super) struct Window<S> {
@@ -50,11 +57,59 @@ impl<S> Window<S> {
         std::iter::once(row).chain(before).take(most).collect()
     }
 
-    /// q at `time` if the motion of these rows goes on.
-    pub fn onward_position(&self, rows: &[usize], time: f64) -> Vec<f64> {
+    /// How the motion goes on after `row`, by `most` rows at most; of rows without noise (`exact`) by as many as
+    /// have foretold each coordinate best.
+    pub fn motion(&self, row: usize, most: usize, exact: bool) -> Motion {
+        let rows = self.smooth_rows(row, if exact { most + FORETOLD } else { most });
+        let state = |at: usize| &self.frames[rows[at]].sample.state;
+        let coordinates = state(0).position.len();
+        if !exact || rows.len() < LEAST {
+            let used = vec![rows.len().min(most); coordinates];
+            return Motion { position: used.clone(), velocity: used, rows };
+        }
         let times = self.times(rows.iter().copied());
-        let interpolation = Interpolation::at(time, &times);
-        let position = |at: usize| &self.frames[rows[at]].sample.state.position;
-        (0..position(0).len()).map(|entry| interpolation.value(|at| position(at)[entry])).collect()
+        // By how many rows, and each of which row, counted back.
+        let foretelling: Vec<Vec<(usize, Interpolation)>> = (1..=most.min(rows.len() - 1))
+            .map(|used| {
+                let of = (0..FORETOLD).filter(|back| back + used < times.len());
+                of.map(|back| (back, Interpolation::at(times[back], &times[back + 1..][..used]))).collect()
+            })
+            .collect();
+        let used = |value: &dyn Fn(usize) -> f64| {
+            let off = |(back, by): &(usize, Interpolation)| (by.value(|at| value(back + 1 + at)) - value(*back)).abs();
+            let off: Vec<f64> = foretelling.iter().map(|of| of.iter().map(off).fold(0.0, f64::max)).collect();
+            let least = off.iter().copied().fold(f64::INFINITY, f64::min);
+            let used = off.iter().position(|&off| off <= NEARLY * least).map_or(1, |place| place + 1);
+            // What more rows would have foretold is not known.
+            if used == foretelling.len() { (used + 1).min(most) } else { used }
+        };
+        let position = (0..coordinates).map(|entry| used(&|at| state(at).position[entry])).collect();
+        let velocity = (0..coordinates).map(|entry| used(&|at| state(at).velocity[entry])).collect();
+        Motion { position, velocity, rows }
     }
+
+    /// By how many rows what `motion` says is carried on to `time`.
+    pub fn onward(&self, motion: &Motion, time: f64) -> Vec<Interpolation> {
+        let times = self.times(motion.rows.iter().copied());
+        (0..=times.len()).map(|used| Interpolation::at(time, &times[..used])).collect()
+    }
+
+    /// q at `time` if a motion goes on.
+    pub fn onward_position(&self, motion: &Motion, time: f64) -> Vec<f64> {
+        let onward = self.onward(motion, time);
+        let value = |(entry, &used): (usize, &usize)| {
+            onward[used].value(|at| self.frames[motion.rows[at]].sample.state.position[entry])
+        };
+        motion.position.iter().enumerate().map(value).collect()
+    }
+}
+
+/// How a motion goes on after a row.
+#[derive(Debug)]
+pub(super) struct Motion {
+    /// That row and those before it, the last one first.
+    pub rows: Vec<usize>,
+    /// By how many of them each coordinate goes on, and its rate.
+    pub position: Vec<usize>,
+    pub velocity: Vec<usize>,
 }

@@ -1,11 +1,15 @@
 //! Touchdowns of recordings with noise: a walk of two feet whose moments of contact are known.
 
 use super::{samples, touchdowns};
+use crate::support::impact::robot;
 use crate::support::random::Random;
+use crate::support::urdf::{self, collision};
 use heelstrike::gait::{At, Difference, Heights, Landing, Touching, rates};
 use heelstrike::read::table::Rates;
 use std::fmt::Write;
 
+/// Gravity \[m/s^2\].
+const G: f64 = 9.81;
 /// A foot swings for so long \[s\], on a parabola, and stands for the rest of a stride.
 const SWING: f64 = 0.35;
 const STRIDE: f64 = 0.8;
@@ -22,6 +26,11 @@ fn height(time: f64) -> f64 {
     if time < SWING { STRIKES * (SWING - time) * time / SWING } else { 0.0 }
 }
 
+/// Normal to three digits: the sum of twelve uniform ones.
+fn normal(random: &mut Random) -> f64 {
+    (0..12).map(|_| random.uniform()).sum::<f64>() - 6.0
+}
+
 /// A table of the walk with rows of so many Hz, of which the base has a noise of this standard deviation \[m\], and its
 /// strikes.
 fn walk(hertz: u32, noise: f64, seed: u64) -> (String, Vec<Strike>) {
@@ -32,8 +41,7 @@ fn walk(hertz: u32, noise: f64, seed: u64) -> (String, Vec<Strike>) {
     let end = f64::from(STRIDES) * STRIDE + 0.3;
     for time in (0..).map(|row| first + f64::from(row) * step).take_while(|time| *time < end) {
         let b = if time < 0.5 * STRIDE { 0.0 } else { height(time - 0.5 * STRIDE) };
-        // Normal to three digits: the sum of twelve uniform ones.
-        let shaken = noise * ((0..12).map(|_| random.uniform()).sum::<f64>() - 6.0);
+        let shaken = noise * normal(&mut random);
         // The lowest point of a foot is its radius below its link.
         let [a, b] = [height(time), b].map(|height| height + level);
         writeln!(table, "{time:?},{:?},{a:?},{b:?}", 0.1 + shaken).expect("a string takes all");
@@ -81,6 +89,39 @@ fn noise_leaves_every_touchdown() {
         assert!(most < moment, "{case}: {most} s");
         let mean = all.iter().map(|[_, speed]| speed).sum::<f64>() / all.len() as f64;
         assert!(mean.abs() < speed, "{case}: {mean} m/s");
+    }
+}
+
+#[test]
+fn recorded_velocities_show_an_impact_that_noise_hides() {
+    for (hertz, noise, bounces) in [(500, 3e-4, false), (200, 1e-3, false), (100, 3e-3, false), (500, 3e-4, true)] {
+        let mut random = Random::new(5);
+        // A ball is thrown up so fast, and then again and again after it has stopped, or bounces.
+        let throws: Vec<f64> = (0..40).map(|_| random.between(1.5, 2.5)).collect();
+        let mut table = "time,q_base_z,v_base_z\n".to_owned();
+        let (mut row, mut start) = (0, 0.0);
+        for speed in &throws {
+            let flight = 2.0 * speed / G;
+            let end = start + flight + if bounces { 0.0 } else { 0.3 };
+            for time in (row..).map(|row| f64::from(row) / f64::from(hertz)).take_while(|time| *time < end) {
+                let since = time - start;
+                let [height, rate] =
+                    if since < flight { [(speed - 0.5 * G * since) * since, speed - G * since] } else { [0.0; 2] };
+                writeln!(table, "{time:?},{:?},{rate:?}", 0.3 + height + noise * normal(&mut random)).unwrap();
+                row += 1;
+            }
+            start = end;
+        }
+        let robot = robot(&urdf::body(1.0, &collision([0.0; 2], "sphere radius=\"0.3\"")));
+        let samples = samples(&table, &robot, Rates::Columns);
+        let found = touchdowns(Heights::Recorded, &robot, &[], samples, At::Crossing, Touching::Strike);
+        let case = format!("{hertz} Hz, {noise} m");
+        // The last one may end the clip.
+        assert!(found.len() + 1 >= throws.len() && found.len() <= throws.len(), "{case}: {} found", found.len());
+        for (touchdown, speed) in found.iter().zip(&throws) {
+            let rate = touchdown.state.velocity[1];
+            assert!((rate + speed).abs() < 0.15 * speed, "{case}: {rate} m/s is not -{speed}");
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 use super::{samples, touchdowns};
 use crate::support::command::{file, heelstrike, heelstrike_reads};
 use crate::support::impact::{impact, robot};
+use crate::support::random::Random;
 use crate::support::urdf::{self, HINGE, POINT, collision, joint, link};
 use heelstrike::Robot;
 use heelstrike::gait::{At, Difference, Heights, Sample, Sampled, Touching, rates};
@@ -152,6 +153,43 @@ fn the_moment_is_that_of_the_motion() {
                     assert!(contact.gap.abs() < 1e-9 * step, "{case}: {:e} m", contact.gap);
                 }
             }
+        }
+    }
+}
+
+#[test]
+fn accelerations_may_jump_at_every_row() {
+    let step = 0.002;
+    for seed in 0..40 {
+        let mut random = Random::new(seed);
+        // A ball that controllers push and turn, each row anew.
+        let [mut height, mut turn, mut falls, mut turns] = [0.5, 0.0, 0.0, random.between(-1.0, 1.0)];
+        let mut table = "time,q_base_z,q_base_pitch,v_base_z,v_base_pitch\n".to_owned();
+        let mut row = 0;
+        let [speed, rate] = loop {
+            let time = f64::from(row) * step;
+            writeln!(table, "{time:?},{:?},{turn:?},{falls:?},{turns:?}", 0.1 + height).unwrap();
+            row += 1;
+            let [a, b] = [-G + random.between(-20.0, 20.0), random.between(-20.0, 20.0)];
+            let next = height + (falls + 0.5 * a * step) * step;
+            if next < 0.0 {
+                let left = 2.0 * height / ((falls * falls - 2.0 * a * height).sqrt() - falls);
+                let strikes = [falls + a * left, turns + b * left];
+                writeln!(table, "{:?},0.1,{:?},0,0", time + step, turn + turns * left).unwrap();
+                writeln!(table, "{:?},0.1,{:?},0,0", time + 2.0 * step, turn + turns * left).unwrap();
+                break strikes;
+            }
+            (height, turn) = (next, turn + (turns + 0.5 * b * step) * step);
+            (falls, turns) = (falls + a * step, turns + b * step);
+        };
+        let ball = ball().robot;
+        let samples = samples(&table, &ball, Rates::Columns);
+        let found = touchdowns(Heights::True, &ball, &[], samples, At::Crossing, Touching::Strike);
+        let [touchdown] = &found[..] else { panic!("{} touchdowns of seed {seed}", found.len()) };
+        // Within a row a velocity changes by so much at most.
+        let most = (G + 20.0) * step;
+        for (own, truth) in touchdown.state.velocity[1..].iter().zip([speed, rate]) {
+            assert!((own - truth).abs() < 2.0 * most, "{own} is not {truth}, seed {seed}");
         }
     }
 }
