@@ -29,6 +29,10 @@ const SLIGHT: f64 = 1e-3;
 const ROUNDED: f64 = 1e-9;
 /// A link with a smaller radius of gyration \[m\] is a point.
 const POINT: f64 = 1e-4;
+/// Limits that exclude zero by no more than this are taken to hold it \[rad or m\].
+const AT_ZERO: f64 = 0.02;
+/// So many hinges are tried that could bring an axis into line.
+const TRIED: usize = 3;
 /// The most joints or links that are named.
 const NAMED: usize = 3;
 
@@ -56,7 +60,10 @@ pub(super) fn about_frozen(seen: &Seen, frozen: &[(usize, FrozenJoint)], kept: u
     let names = |joints: &[&(usize, FrozenJoint)]| names(joints.iter().map(|(_, joint)| &joint.name));
     let mut cautions = Vec::new();
     if !nearly.is_empty() {
-        cautions.push(about_tilted(seen, &nearly, movable.len() + kept));
+        let mut stays = vec![true; seen.description.joints.len()];
+        frozen.iter().for_each(|&(joint, _)| stays[joint] = false);
+        nearly.iter().for_each(|&&(joint, _)| stays[joint] = true);
+        cautions.push(about_tilted(seen, &nearly, (movable.len() + kept, &stays)));
     } else if let Some(movable) = names(&movable).filter(|_| kept == 0 && movable.len() > hidden.len()) {
         cautions.push(format!(
             "no joint moves in this plane, so the robot is one rigid body ({movable} frozen): choose another plane (`plane`), or \
@@ -166,22 +173,30 @@ pub(super) fn about_mass(mass: f64, size: f64) -> Option<String> {
     })
 }
 
-/// The caution about joints that are held where they cannot be, as in degrees.
-pub(super) fn about_held(description: &Description, frozen: &[(usize, FrozenJoint)]) -> Option<String> {
-    let odd = frozen.iter().filter_map(|(index, joint)| {
-        let FreezeReason::Asked { value } = joint.reason else { return None };
+/// The cautions about joints that are held where they cannot be, as in degrees, or frozen at zero, where they cannot be.
+pub(super) fn about_held(description: &Description, frozen: &[(usize, FrozenJoint)]) -> impl Iterator<Item = String> {
+    let (mut held, mut at_zero) = (Vec::new(), Vec::new());
+    for (index, joint) in frozen {
         let UrdfJoint { kind, limits, .. } = &description.joints[*index];
-        match limits {
-            Some([lower, upper]) if value < *lower || value > *upper => {
-                Some(format!("{} = {value} is outside [{lower}, {upper}]", joint.name))
+        let name = &joint.name;
+        match (&joint.reason, limits) {
+            (&FreezeReason::Asked { value }, &Some([lower, upper])) if value < lower || value > upper => {
+                held.push(format!("{name} = {value} is outside [{lower}, {upper}]"));
             }
-            None if *kind != JointKind::Prismatic && value.abs() > TAU => {
-                Some(format!("{} = {value} rad is more than a turn", joint.name))
+            (&FreezeReason::Asked { value }, None) if *kind != JointKind::Prismatic && value.abs() > TAU => {
+                held.push(format!("{name} = {value} rad is more than a turn"));
             }
-            _ => None,
+            (FreezeReason::OffPlane { .. }, &Some([lower, upper])) if lower > AT_ZERO || upper < -AT_ZERO => {
+                at_zero.push(format!("{name} in [{lower}, {upper}]"));
+            }
+            _ => {}
         }
+    }
+    let held = names(held).map(|held| format!("held beyond limits, or in degrees: {held}"));
+    let at_zero = names(at_zero).map(|joints| {
+        format!("frozen at zero, which is beyond their limits: {joints}; give the values (`hold: NAME=VALUE`)")
     });
-    Some(format!("held beyond limits, or in degrees: {}", names(odd)?))
+    held.into_iter().chain(at_zero)
 }
 
 /// The caution about joints that follow one that moves, but turn or slide out of the plane.
@@ -309,8 +324,9 @@ pub(super) fn about_shapes(description: &Description) -> impl Iterator<Item = St
     })
 }
 
-/// The caution about joints whose axes are nearly parallel to the normal, out of `all` that could move.
-fn about_tilted(seen: &Seen, nearly: &[&(usize, FrozenJoint)], all: usize) -> String {
+/// The caution about joints whose axes are nearly parallel to the normal, out of `all` that could move; with them each
+/// joint `stays` that is kept.
+fn about_tilted(seen: &Seen, nearly: &[&(usize, FrozenJoint)], (all, stays): (usize, &[bool])) -> String {
     let angles = nearly.iter().filter_map(|(_, joint)| match joint.reason {
         FreezeReason::OffPlane { angle, .. } => Some(angle),
         _ => None,
@@ -325,7 +341,7 @@ fn about_tilted(seen: &Seen, nearly: &[&(usize, FrozenJoint)], all: usize) -> St
         let is_slight = seen.plane.off_normal(seen.pose.axes[joint]) <= SLIGHTLY;
         let remedy = match is_slight {
             true => ("axis_tolerance", 0, format!("`axis_tolerance: {:.1e}`", 1.1 * slightly)),
-            false => remedy(seen, joint),
+            false => remedy(seen, joint, stays),
         };
         // One for each joint: a hinge has one value.
         if !remedies.iter().any(|(kind, of, _)| (*kind, *of) == (remedy.0, remedy.1)) {
@@ -345,9 +361,9 @@ fn about_tilted(seen: &Seen, nearly: &[&(usize, FrozenJoint)], all: usize) -> St
 /// What keeps a joint whose axis is off the normal: what is to be set, of which joint, and in words how.
 type Remedy = (&'static str, usize, String);
 
-/// What brings the axis of a joint into line: a frozen hinge before it that can turn it there, or else the joint whose
-/// origin tilts it.
-fn remedy(seen: &Seen, joint: usize) -> Remedy {
+/// What brings the axis of a joint into line: a frozen hinge before it that can turn it there and whatever `stays`
+/// beyond it, or else the joint whose origin tilts it.
+fn remedy(seen: &Seen, joint: usize, stays: &[bool]) -> Remedy {
     let Seen { description, pose, plane, .. } = seen;
     let axis = pose.axes[joint];
     let before = || {
@@ -362,8 +378,11 @@ fn remedy(seen: &Seen, joint: usize) -> Remedy {
             && plane.off_normal(pose.axes[before]) > OBLIQUE
     });
     let into_line = |hinge: usize| angle_into_line(axis, pose.axes[hinge], *plane, pose.tolerance);
-    let mut turned = turned.filter_map(|hinge| Some((hinge, into_line(hinge)?)));
-    if let Some((hinge, angle)) = turned.next() {
+    let turned = turned.filter_map(|hinge| Some((hinge, into_line(hinge)?))).filter(|&(hinge, angle)| {
+        let limits = description.joints[hinge].limits;
+        limits.is_none_or(|[lower, upper]| (lower..=upper).contains(&angle))
+    });
+    if let Some((hinge, angle)) = turned.take(TRIED).find(|&turn| serves_all(seen, turn, stays)) {
         return ("hold", hinge, format!("`hold: {}={angle:.6}`", description.joints[hinge].name));
     }
     let in_line = |axes: &Matrix| {
@@ -376,6 +395,22 @@ fn remedy(seen: &Seen, joint: usize) -> Remedy {
     };
     let (part, of) = std::iter::once(joint).chain(before()).find(tilts).map_or(("axis", joint), |own| ("rpy", own));
     (part, of, format!("straighten the {part} of {}", description.joints[of].name))
+}
+
+/// Whether a turn of a hinge by this angle leaves whatever `stays` beyond it in line, or brings it there; what is off by
+/// the digits of the file may be so as before.
+fn serves_all(seen: &Seen, (hinge, angle): (usize, f64), stays: &[bool]) -> bool {
+    let Seen { description, pose, plane, .. } = seen;
+    let turned = turn(pose.axes[hinge], angle);
+    description.outward(description.joints[hinge].child).into_iter().filter(|&joint| stays[joint]).all(|joint| {
+        let off = |axis| match description.joints[joint].kind {
+            JointKind::Prismatic => plane.off_plane(axis),
+            _ => plane.off_normal(axis),
+        };
+        let before = off(pose.axes[joint]);
+        let most = if before <= SLIGHTLY { before.max(pose.tolerance) } else { pose.tolerance };
+        !description.joints[joint].kind.has_axis() || off(apply(&turned, pose.axes[joint])) <= most
+    })
 }
 
 /// The angle \[rad\] by which a turn about `hinge` brings `axis` to the plane's normal, if one does; both of length

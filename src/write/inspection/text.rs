@@ -16,8 +16,9 @@ const WIDTH: usize = 118;
 const INDENT: usize = 15;
 /// The room for a list of names, in characters.
 const NAMES: usize = 300;
-/// The room for the feet of one shape, in characters.
+/// The room for the feet of one shape, and for all of them, in characters.
 const FEET: usize = 200;
+const SHAPES: usize = 600;
 /// The lines that fit a screen.
 const SCREEN: usize = 40;
 /// The lines of a part that are always shown: a blank one, its title, the names of its columns, two rows.
@@ -28,7 +29,7 @@ const LINKS: usize = 50;
 impl Inspection<'_> {
     /// The same as text, with a line break at its end: all of it, or what fits a screen.
     pub fn text(&self, palette: &Palette, all: bool) -> String {
-        let head = written(|out| self.head(palette, out));
+        let head = written(|out| self.head(palette, all, out));
         let bodies = written(|out| self.bodies(palette, out));
         let joints = written(|out| self.joints(palette, out));
         let left_out = written(|out| self.left_out(palette, out));
@@ -48,7 +49,7 @@ impl Inspection<'_> {
         format!("{head}{sections}{rest}")
     }
 
-    fn head(&self, palette: &Palette, out: &mut String) -> std::fmt::Result {
+    fn head(&self, palette: &Palette, all: bool, out: &mut String) -> std::fmt::Result {
         let Palette { strong, plain, .. } = *palette;
         writeln!(out, "{strong}{}{plain}", visible(self.name))?;
         for caution in self.cautions {
@@ -66,7 +67,7 @@ impl Inspection<'_> {
         entry("base", &base, out)?;
         entry("joints", &self.joints_in_words(), out)?;
         entry("coordinates", &format!("{}: {}", self.coordinates.len(), self.coordinates.join(", ")), out)?;
-        entry("feet", &self.feet_in_words(), out)
+        entry("feet", &self.feet_in_words(all), out)
     }
 
     fn hinges(&self) -> impl Iterator<Item = &JointRecord<'_>> + Clone {
@@ -160,8 +161,8 @@ impl Inspection<'_> {
         parts.map(|(count, what)| format!("{count} {what}")).collect::<Vec<_>>().join(", ")
     }
 
-    /// The feet of one shape together, in the order of the first.
-    fn feet_in_words(&self) -> String {
+    /// The feet of one shape together, in the order of the first: all of them, or what fits.
+    fn feet_in_words(&self, all: bool) -> String {
         if self.feet.is_empty() {
             return "none: name them by `feet`, or in each state by \"contacts\"".to_owned();
         }
@@ -175,7 +176,8 @@ impl Inspection<'_> {
             };
             format!("{} ({shape})", words::list(&links.map(counted).collect::<Vec<_>>(), FEET))
         });
-        groups.collect::<Vec<_>>().join(", ")
+        let groups: Vec<String> = groups.collect();
+        if all { groups.join(", ") } else { words::list(&groups, SHAPES) }
     }
 
     /// What was left out, that of one reason together; of joints without the bodies that they are welded into.

@@ -246,6 +246,45 @@ fn each_hinge_has_one_remedy() {
 }
 
 #[test]
+fn a_hinge_is_held_only_where_that_serves_all_beyond_it() {
+    // tan 5 degrees.
+    let tilted = ("revolute", "0 1 0.087488663525924");
+    let within = |limits: &str| {
+        let limits = format!("<limit {limits} effort=\"1\" velocity=\"1\"/></joint>");
+        only_caution(&load(&massive(&[ROLL, tilted, tilted]).replacen("</joint>", &limits, 1))).to_owned()
+    };
+    assert!(within("lower=\"-0.1\" upper=\"0.1\"").ends_with(": `hold: j=-0.087266`"));
+    assert!(within("lower=\"-0.05\" upper=\"0.1\"").ends_with(": straighten the axis of k, straighten the axis of l"));
+    // What is in line already would be turned out of it.
+    let robot = load(&massive(&[ROLL, tilted, tilted, PITCH]));
+    assert_eq!(names(&robot), ["m"]);
+    assert!(only_caution(&robot).ends_with("(k, l); to keep them: straighten the axis of k, straighten the axis of l"));
+    // Two shoulders that are tilted to both sides behind one hinge.
+    let place = "<origin xyz=\"0 0 -1\"/>";
+    let side = |parent: &str, tilt: f64| format!("<parent link=\"{parent}\"/>@<origin rpy=\"{tilt} 0 0\"/>");
+    let text = massive(&[ROLL, PITCH, PITCH]);
+    let [left, right] = [("b", "c", 0.3), ("c", "d", -0.3)].map(|(parent, child, tilt)| {
+        let from = format!("<parent link=\"{parent}\"/><child link=\"{child}\"/>{place}");
+        (from, side("b", tilt).replace('@', &format!("<child link=\"{child}\"/>")))
+    });
+    let robot = load(&text.replace(&left.0, &left.1).replace(&right.0, &right.1));
+    assert!(only_caution(&robot).ends_with("(k, l); to keep them: straighten the rpy of k, straighten the rpy of l"));
+}
+
+#[test]
+fn a_joint_frozen_outside_its_limits_is_named() {
+    let limited = |limits: &str| {
+        let axis = "<axis xyz=\"1 0 0\"/>";
+        let limits = format!("{axis}<limit {limits} effort=\"1\" velocity=\"1\"/>");
+        load(&massive(&[PITCH, PITCH, ROLL]).replace(axis, &limits)).reading.cautions
+    };
+    let expected =
+        "frozen at zero, which is beyond their limits: l in [0.3, 0.8]; give the values (`hold: NAME=VALUE`)";
+    assert_eq!(limited("lower=\"0.3\" upper=\"0.8\""), [expected]);
+    assert_eq!(limited("lower=\"0.008\" upper=\"0.8\""), [""; 0], "by the digits of the file");
+}
+
+#[test]
 fn axis_tolerance_keeps_axes_that_are_off_by_digits() {
     let text = massive(&[PITCH, ("revolute", "0 1 0.0016"), PITCH]);
     let robot = load(&text);
