@@ -200,7 +200,7 @@ pub(super) fn run(args: &Args) -> Completion {
         // Of a line or a point of the parameters, which is no region.
         let reason = Reason::Inconsistent(format!("{refused} of {} samples are refused", SampleRecord::count(&model)));
         let hint = match format {
-            None => "`format: ndjson` lists the samples with the error of each",
+            None => "`format: json` lists the samples with the error of each",
             Some(_) => "the `error` of each is in the output",
         };
         report(&Error::new(reason).in_file(&input.name).hint(hint));

@@ -70,6 +70,10 @@ fn geometry(geometry: Node<'_, '_>) -> Result<Geometry> {
         "sphere" => Geometry::Sphere { radius: size("radius")? },
         "mesh" => {
             let scale = optional(shape, "scale", ANY)?.unwrap_or([1.0; 3]);
+            if scale == [0.0; 3] {
+                let reason = "scale of <mesh> is zero, so the mesh is a point".into();
+                return Err(xml::refuse(shape, Reason::Inconsistent(reason)).hint("without a scale it is 1 1 1"));
+            }
             let file = xml::required_attribute(shape, "filename")?.into();
             Geometry::Mesh { file, scale, mesh: Mesh::Unread }
         }

@@ -68,7 +68,9 @@ impl Typed {
                     (TableColumn::Ignored, _) => Column::Unread,
                     (TableColumn::Carried, _) if field.name().trim() != "time" => Column::Unread,
                     (TableColumn::Id, DataType::Int64) => {
-                        Column::Integers(to(DataType::Int64)?.as_primitive::<Int64Type>().clone())
+                        let numbers =
+                            to(DataType::Int64).map_err(|error| error.hint("give it as int64, or as text"))?;
+                        Column::Integers(numbers.as_primitive::<Int64Type>().clone())
                     }
                     (_, DataType::Int64 | DataType::Float64) => {
                         Column::Numbers(to(DataType::Float64)?.as_primitive::<Float64Type>().clone())

@@ -5,7 +5,7 @@ use super::*;
 use arrow_array::types::Int8Type;
 use arrow_array::{
     Array, ArrayRef, BooleanArray, DictionaryArray, Float32Array, Float64Array, Int64Array, NullArray, RecordBatch,
-    StringArray, TimestampSecondArray,
+    StringArray, TimestampSecondArray, UInt64Array,
 };
 use arrow_cast::cast;
 use arrow_cast::display::array_value_to_string;
@@ -263,6 +263,14 @@ fn columns_that_do_not_fit_are_refused_as_a_whole() {
         ("truth.arrow", vec![z.clone(), ("v_base_z", Arc::clone(&truths))]),
         ("stance.arrow", vec![("v_base_z", Arc::clone(&numbers)), ("stance", Arc::clone(&numbers))]),
         ("id.parquet", vec![("id", truths), z.clone(), ("v_base_z", Arc::clone(&numbers))]),
+        (
+            "ids.parquet",
+            vec![
+                ("id", Arc::new(UInt64Array::from(vec![1, u64::MAX])) as ArrayRef),
+                z.clone(),
+                ("v_base_z", Arc::clone(&numbers)),
+            ],
+        ),
         ("missing.arrows", vec![z.clone()]),
         ("unknown.parquet", vec![z.clone(), ("v_base_z", Arc::clone(&numbers)), ("q_kne", numbers)]),
         (

@@ -92,6 +92,7 @@ const SHAPES: &str = r#"
 <cylinder radius="1" length="-1"/>
 <cylinder radius="1"/>
 <box size="1 1 1"/><sphere radius="1"/>
+<mesh filename="a.stl" scale="0 -0 0e9"/>
 "#;
 
 /// A joint's type and what it holds besides parent a and child b, a line each.

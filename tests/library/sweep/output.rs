@@ -125,7 +125,7 @@ fn samples_refused_outside_regions_are_counted() {
     // The text has no samples.
     let Run { status, stderr, .. } = run("urdf/pdw.urdf", &study, &["--quiet"]);
     assert_eq!(status, 1);
-    assert!(stderr.contains("1 of 5 samples are refused\nhint: --format ndjson lists"), "{stderr}");
+    assert!(stderr.contains("1 of 5 samples are refused\nhint: --format json lists"), "{stderr}");
 }
 
 #[test]
