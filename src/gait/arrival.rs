@@ -94,7 +94,7 @@ impl<S: Clone> Arrival<'_, '_, S> {
                 (false, Heights::True) => motion.velocity[entry],
             };
             let used: Vec<usize> = (0..sample.state.velocity.len()).map(used).collect();
-            self.carry_velocity(&motion.rows, |entry| &onward[used[entry]], &mut sample);
+            self.carry_velocity(&motion.rows, |entry| &onward[used[entry] - 1], &mut sample);
         }
         sample
     }

@@ -19,8 +19,9 @@ use std::sync::Mutex;
 
 /// Heights have no noise that is a greater part of [`Thresholds::above`].
 const EXACT: f64 = 1e-3;
-/// Noise hides an impact for no more rows.
+/// Noise hides an impact for no more rows, and is no more times its standard deviation.
 const HIDDEN: usize = 8;
+const NOISE: f64 = 5.0;
 /// Feet do not sink by more times the usual [`Thresholds::ground`].
 const DEEP: f64 = 5.0;
 
@@ -247,25 +248,28 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
             descent.from = descent.from.max(height);
         }
         let stopped = |(point, rows, end)| self.window.stopped(point, rows, end, self.at, self.thresholds);
-        let strikes: Vec<Strike> = ended.into_iter().filter_map(stopped).collect();
-        let strikes = strikes.into_iter().map(|strike| self.before_stop(strike)).collect();
-        self.strike(strikes);
+        self.strike(ended.into_iter().filter_map(stopped).collect());
     }
 
-    /// A strike with no row after the impact, where recorded velocities show that its point was stopped at once: noise of
-    /// its height may hide that for some rows.
+    /// A strike with no row after the impact, where recorded velocities show that its point was stopped at once on its
+    /// level: noise of its height may hide that for some rows.
     fn before_stop(&mut self, strike: Strike) -> Strike {
-        let Strike { point, row, smooth, .. } = strike;
-        if strike.height.is_none() || is_difference(&self.window.frames[row].sample) {
-            return strike;
-        }
+        let Strike { point, row, height, smooth, onward } = strike;
+        let Some(height) = height.filter(|_| !is_difference(&self.window.frames[row].sample)) else { return strike };
+        let Thresholds { above, slow, .. } = self.thresholds;
+        let level = if onward == Way::Soft { height - above } else { height };
+        let level = level + NOISE * self.window.deviation(point) + EXACT * above;
         let rows = self.window.smooth_rows(smooth, HIDDEN + 2);
         let rates: Vec<f64> =
             rows.iter().map(|&row| self.points.rate(point, &self.window.frames[row].sample.state)).collect();
         let times = self.window.times(rows.iter().copied());
         let is_stopped = |&after: &usize| {
-            let is_near = times[after] - times[after + 1] <= REACH * (times[after + 1] - times[after + 2]);
-            is_near && rates[after + 1] < -2.0 * self.thresholds.slow && rates[after] > 0.5 * rates[after + 1]
+            let [now, last, earlier] = [0, 1, 2].map(|back| rates[after + back]);
+            let [step, before] = [0, 1].map(|back| times[after + back] - times[after + back + 1]);
+            let falls = last + (last - earlier).min(0.0) * (step / before);
+            let reaches = self.window.height(point, rows[after + 1]) + falls * step <= level;
+            let stays = now > 0.0 || self.window.height(point, rows[after]) <= level;
+            last < -2.0 * slow && now > 0.5 * last && step <= REACH * before && reaches && stays
         };
         let last = (0..rows.len().saturating_sub(2)).find(is_stopped).map_or(smooth, |after| rows[after + 1]);
         Strike { row: row.min(last), smooth: last, ..strike }
@@ -302,12 +306,14 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
     fn strike(&mut self, mut strikes: Vec<Strike>) {
         let (together, at, touching) = (self.thresholds.together, self.at, self.touching);
         strikes.retain(|strike| self.points.is_free(strike.point, &self.window.frames[strike.row].places, together));
-        let last = strikes.iter().map(|strike| self.window.frames[strike.row].row).max();
+        let mut last = None;
         while !strikes.is_empty() {
             let first = strikes.remove(0);
             let (also, later): (Vec<_>, Vec<_>) =
                 strikes.into_iter().partition(|other| self.window.together(&first, other, together));
             strikes = later;
+            let first = if self.heights == Heights::Recorded { self.before_stop(first) } else { first };
+            last = last.max(Some(self.window.frames[first.row].row));
             let also: Vec<usize> = also.iter().map(|strike| strike.point).collect();
             let (window, heights, level) = (&self.window, self.heights, self.level);
             let mut sample = Arrival { window, points: &mut self.points, at, heights, level }.sample(&first);

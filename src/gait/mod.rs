@@ -39,9 +39,10 @@
 //! With [`At::Row`] the state is the last row before that moment; without noise, before the third of these moments.
 //! With [`At::Crossing`] it is the state at the moment. In the first two cases positions are those of line and
 //! polynomial, and velocities their rates if they are differences; recorded velocities are on a line through the same
-//! rows with noise, else through the last two. Noise may put the moment behind the impact. So no row counts after one in
-//! which the point's recorded velocity says that it has lost more than half of its fall since the row before, at more
-//! than twice [`Thresholds::slow`], and the moment is not after that row. In the last case:
+//! rows with noise, else through the last two. Noise may put the moment up to eight rows behind the impact. So where a
+//! point's recorded velocity loses more than half of a fall that is faster than twice [`Thresholds::slow`] from one row
+//! to the next, on its level or rebounding from it, the row before that is the last one that counts, in each of the
+//! three cases. In the last case:
 //!
 //! * If the next row is before the impact too (the point goes on falling after it), positions lie on the line between
 //!   the two rows.
@@ -63,8 +64,9 @@
 //! A simulation without noise can be taken at its word ([`Heights::True`]): a point touches the ground when it crosses
 //! z = 0, or stops within a millionth of the robot's size of it, after a descent of [`Thresholds::drop`] or more. The
 //! moment is where its height is zero if all coordinates go on as the polynomial through up to six rows before it, none
-//! of them from before the last touchdown or from before two rows of one time. Each coordinate and each rate goes on by
-//! as many rows as have foretold its last two values best: accelerations may jump from row to row, as a controller's do.
+//! of them from before the last touchdown or from before two rows of one time. With six rows and more each coordinate and
+//! each rate goes on by the fewest that have foretold its last two values nearly as well as any: accelerations may jump
+//! from row to row, as a controller's do.
 //! Velocities go on as recorded; differences are replaced by the rates of the polynomial. If that does not reach the ground before the next row, time
 //! and positions lie on the line between both rows. A clip that ends aloft ends without a touchdown.
 //!

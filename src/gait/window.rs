@@ -13,7 +13,7 @@ pub(super) const SMOOTH: usize = 6;
 /// So many rows show how well rows before them foretell a motion.
 pub(super) const FORETOLD: usize = 2;
 /// Fewer rows than this show nothing of that.
-const LEAST: usize = 4;
+const LEAST: usize = 6;
 /// Fewer rows are used if they are off by no more times what more are off by.
 const NEARLY: f64 = 1.5;
 
@@ -60,7 +60,7 @@ impl<S> Window<S> {
     /// How the motion goes on after `row`, by `most` rows at most; of rows without noise (`exact`) by as many as
     /// have foretold each coordinate best.
     pub fn motion(&self, row: usize, most: usize, exact: bool) -> Motion {
-        let rows = self.smooth_rows(row, if exact { most + FORETOLD } else { most });
+        let mut rows = self.smooth_rows(row, if exact { most + FORETOLD } else { most });
         let state = |at: usize| &self.frames[rows[at]].sample.state;
         let coordinates = state(0).position.len();
         if !exact || rows.len() < LEAST {
@@ -85,20 +85,21 @@ impl<S> Window<S> {
         };
         let position = (0..coordinates).map(|entry| used(&|at| state(at).position[entry])).collect();
         let velocity = (0..coordinates).map(|entry| used(&|at| state(at).velocity[entry])).collect();
+        rows.truncate(most);
         Motion { position, velocity, rows }
     }
 
-    /// By how many rows what `motion` says is carried on to `time`.
+    /// How the last row of a motion, its last two and so on give what they carry on at `time`.
     pub fn onward(&self, motion: &Motion, time: f64) -> Vec<Interpolation> {
         let times = self.times(motion.rows.iter().copied());
-        (0..=times.len()).map(|used| Interpolation::at(time, &times[..used])).collect()
+        (1..=times.len()).map(|used| Interpolation::at(time, &times[..used])).collect()
     }
 
     /// q at `time` if a motion goes on.
     pub fn onward_position(&self, motion: &Motion, time: f64) -> Vec<f64> {
         let onward = self.onward(motion, time);
         let value = |(entry, &used): (usize, &usize)| {
-            onward[used].value(|at| self.frames[motion.rows[at]].sample.state.position[entry])
+            onward[used - 1].value(|at| self.frames[motion.rows[at]].sample.state.position[entry])
         };
         motion.position.iter().enumerate().map(value).collect()
     }

@@ -8,7 +8,7 @@ use super::reference_pose::ReferencePose;
 use super::role::Role;
 use super::{Body, ParentJoint, Robot};
 use crate::description::{
-    Collision, Description, Geometry, Inertial, JointKind, Matrix, Mesh, Pose, UrdfJoint, UrdfLink, apply, turn,
+    Collision, Description, Geometry, Inertial, JointKind, Matrix, Mesh, Mimic, Pose, UrdfJoint, UrdfLink, apply, turn,
 };
 use crate::error::rounded;
 use std::f64::consts::TAU;
@@ -43,6 +43,22 @@ pub(super) struct Seen<'a> {
     pub(super) plane: Plane,
     /// Whether each joint leads to one of the lowest links.
     pub(super) legs: &'a [bool],
+}
+
+impl Seen<'_> {
+    /// The joints between a joint and the root.
+    fn before(&self, joint: usize) -> impl Iterator<Item = usize> {
+        let link = |joint: usize| self.description.links[self.description.joints[joint].parent].joint;
+        std::iter::successors(link(joint), move |&joint| link(joint))
+    }
+
+    /// How far off the plane's normal, or of a slide off the plane, an axis of a joint is \[rad\].
+    fn off(&self, joint: usize, axis: [f64; 3]) -> f64 {
+        match self.description.joints[joint].kind {
+            JointKind::Prismatic => self.plane.off_plane(axis),
+            _ => self.plane.off_normal(axis),
+        }
+    }
 }
 
 /// The cautions about joints that are frozen, each with its place in the file, where `kept` others stay.
@@ -194,7 +210,10 @@ pub(super) fn about_held(description: &Description, frozen: &[(usize, FrozenJoin
     }
     let held = names(held).map(|held| format!("held beyond limits, or in degrees: {held}"));
     let at_zero = names(at_zero).map(|joints| {
-        format!("frozen at zero, which is beyond their limits: {joints}; give the values (`hold: NAME=VALUE`)")
+        format!(
+            "frozen at zero, which is beyond their limits: {joints}; give values (`hold: NAME=VALUE`), which may turn joints \
+             beyond them out of the plane"
+        )
     });
     held.into_iter().chain(at_zero)
 }
@@ -337,11 +356,18 @@ fn about_tilted(seen: &Seen, nearly: &[&(usize, FrozenJoint)], (all, stays): (us
     let range = if least == most { most } else { format!("{least} to {most}") };
     let slightly = angles.filter(|&angle| angle <= SLIGHTLY).fold(0.0, f64::max);
     let mut remedies: Vec<Remedy> = Vec::new();
-    for &&(joint, _) in nearly {
-        let is_slight = seen.plane.off_normal(seen.pose.axes[joint]) <= SLIGHTLY;
-        let remedy = match is_slight {
-            true => ("axis_tolerance", 0, format!("`axis_tolerance: {:.1e}`", 1.1 * slightly)),
-            false => remedy(seen, joint, stays),
+    // A slide has none of its own, but lies behind a hinge that may have.
+    let slides = |joint: usize| seen.description.joints[joint].kind == JointKind::Prismatic;
+    let joints = nearly.iter().map(|(joint, _)| *joint);
+    for joint in joints.clone().filter(|&joint| !slides(joint)).chain(joints.filter(|&joint| slides(joint))) {
+        let is_held = |hinge| remedies.iter().any(|(kind, of, _)| (*kind, *of) == ("hold", hinge));
+        let remedy = if seen.off(joint, seen.pose.axes[joint]) <= SLIGHTLY {
+            ("axis_tolerance", 0, format!("`axis_tolerance: {:.1e}`", 1.1 * slightly))
+        } else if seen.before(joint).any(is_held) {
+            // That serves it, too.
+            continue;
+        } else {
+            remedy(seen, joint, stays)
         };
         // One for each joint: a hinge has one value.
         if !remedies.iter().any(|(kind, of, _)| (*kind, *of) == (remedy.0, remedy.1)) {
@@ -366,16 +392,17 @@ type Remedy = (&'static str, usize, String);
 fn remedy(seen: &Seen, joint: usize, stays: &[bool]) -> Remedy {
     let Seen { description, pose, plane, .. } = seen;
     let axis = pose.axes[joint];
-    let before = || {
-        let link = |joint: usize| description.links[description.joints[joint].parent].joint;
-        std::iter::successors(link(joint), move |&joint| link(joint))
-    };
-    let turned = before().filter(|&before| {
+    let turned = seen.before(joint).filter(|&before| {
         let kind = description.joints[before].kind;
+        let mimics = |(own, mimicked): (usize, &Option<Mimic>)| {
+            mimicked.as_ref().is_some_and(|mimicked| own == before || mimicked.joint == before)
+        };
         // One that is nearly in line is to be kept itself.
         matches!(kind, JointKind::Revolute | JointKind::Continuous)
+            && description.joints[joint].kind != JointKind::Prismatic
             && pose.frozen[before].is_none()
             && plane.off_normal(pose.axes[before]) > OBLIQUE
+            && !pose.mimicked.iter().enumerate().any(mimics)
     });
     let into_line = |hinge: usize| angle_into_line(axis, pose.axes[hinge], *plane, pose.tolerance);
     let turned = turned.filter_map(|hinge| Some((hinge, into_line(hinge)?))).filter(|&(hinge, angle)| {
@@ -393,23 +420,20 @@ fn remedy(seen: &Seen, joint: usize, stays: &[bool]) -> Remedy {
         let joint = &description.joints[*at];
         in_line(&pose.rotations[joint.parent]) && !in_line(&pose.rotations[joint.child])
     };
-    let (part, of) = std::iter::once(joint).chain(before()).find(tilts).map_or(("axis", joint), |own| ("rpy", own));
+    let (part, of) =
+        std::iter::once(joint).chain(seen.before(joint)).find(tilts).map_or(("axis", joint), |own| ("rpy", own));
     (part, of, format!("straighten the {part} of {}", description.joints[of].name))
 }
 
 /// Whether a turn of a hinge by this angle leaves whatever `stays` beyond it in line, or brings it there; what is off by
 /// the digits of the file may be so as before.
 fn serves_all(seen: &Seen, (hinge, angle): (usize, f64), stays: &[bool]) -> bool {
-    let Seen { description, pose, plane, .. } = seen;
+    let Seen { description, pose, .. } = seen;
     let turned = turn(pose.axes[hinge], angle);
     description.outward(description.joints[hinge].child).into_iter().filter(|&joint| stays[joint]).all(|joint| {
-        let off = |axis| match description.joints[joint].kind {
-            JointKind::Prismatic => plane.off_plane(axis),
-            _ => plane.off_normal(axis),
-        };
-        let before = off(pose.axes[joint]);
+        let before = seen.off(joint, pose.axes[joint]);
         let most = if before <= SLIGHTLY { before.max(pose.tolerance) } else { pose.tolerance };
-        !description.joints[joint].kind.has_axis() || off(apply(&turned, pose.axes[joint])) <= most
+        !description.joints[joint].kind.has_axis() || seen.off(joint, apply(&turned, pose.axes[joint])) <= most
     })
 }
 

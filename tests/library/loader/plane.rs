@@ -255,6 +255,14 @@ fn a_hinge_is_held_only_where_that_serves_all_beyond_it() {
     };
     assert!(within("lower=\"-0.1\" upper=\"0.1\"").ends_with(": `hold: j=-0.087266`"));
     assert!(within("lower=\"-0.05\" upper=\"0.1\"").ends_with(": straighten the axis of k, straighten the axis of l"));
+    // A slide in the plane of what is tilted is turned with it.
+    let robot = load(&massive(&[ROLL, tilted, ("prismatic", "0 -0.087488663525924 1")]));
+    assert!(only_caution(&robot).ends_with("(k, l); to keep them: `hold: j=-0.087266`"));
+    // What follows another joint cannot be held by itself.
+    let follows = "<mimic joint=\"m\"/></joint>";
+    let robot = load(&massive(&[ROLL, tilted, tilted, PITCH]).replacen("</joint>", follows, 1));
+    let caution = &robot.reading.cautions[0];
+    assert!(caution.ends_with("(k, l); to keep them: straighten the axis of k, straighten the axis of l"), "{caution}");
     // What is in line already would be turned out of it.
     let robot = load(&massive(&[ROLL, tilted, tilted, PITCH]));
     assert_eq!(names(&robot), ["m"]);
@@ -278,8 +286,8 @@ fn a_joint_frozen_outside_its_limits_is_named() {
         let limits = format!("{axis}<limit {limits} effort=\"1\" velocity=\"1\"/>");
         load(&massive(&[PITCH, PITCH, ROLL]).replace(axis, &limits)).reading.cautions
     };
-    let expected =
-        "frozen at zero, which is beyond their limits: l in [0.3, 0.8]; give the values (`hold: NAME=VALUE`)";
+    let expected = "frozen at zero, which is beyond their limits: l in [0.3, 0.8]; give values (`hold: NAME=VALUE`), which may turn \
+         joints beyond them out of the plane";
     assert_eq!(limited("lower=\"0.3\" upper=\"0.8\""), [expected]);
     assert_eq!(limited("lower=\"0.008\" upper=\"0.8\""), [""; 0], "by the digits of the file");
 }

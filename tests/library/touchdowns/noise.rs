@@ -125,6 +125,49 @@ fn recorded_velocities_show_an_impact_that_noise_hides() {
     }
 }
 
+/// A ball that is slowed on its way, as by a knee that is stopped, has not touched down there.
+#[test]
+fn a_fall_that_is_slowed_goes_on() {
+    // It falls at 1 m/s, and from so much before it strikes at half of that.
+    for slowed in [0.02, 0.04, 0.06] {
+        let height = |left: f64| if left < 0.0 { 0.0 } else { 0.5 * left + 0.5 * (left - slowed).max(0.0) };
+        let mut table = "time,q_base_z,v_base_z\n".to_owned();
+        for time in (0..60).map(|row| f64::from(row) / 100.0) {
+            let left = 0.354 - time;
+            let rate = if left > slowed { -1.0 } else { [-0.5, 0.0][usize::from(left < 0.0)] };
+            writeln!(table, "{time:?},{:?},{rate:?}", 0.3 + height(left)).unwrap();
+        }
+        let robot = robot(&urdf::body(1.0, &collision([0.0; 2], "sphere radius=\"0.3\"")));
+        let samples = samples(&table, &robot, Rates::Columns);
+        let found = touchdowns(Heights::Recorded, &robot, &[], samples, At::Crossing, Touching::Strike);
+        let [touchdown] = &found[..] else { panic!("{} touchdowns, slowed {slowed} s before", found.len()) };
+        assert!((touchdown.time - 0.354).abs() < 0.005, "{} s, slowed {slowed} s before", touchdown.time);
+        assert!((touchdown.state.velocity[1] + 0.5).abs() < 0.1, "{} m/s", touchdown.state.velocity[1]);
+    }
+}
+
+#[test]
+fn a_flat_foot_is_one_touchdown_whatever_the_noise_of_its_rates() {
+    let mut random = Random::new(9);
+    let mut table = "time,q_base_z,v_base_z,v_base_pitch\n".to_owned();
+    for row in 0..1200 {
+        // It comes down at 0.5 m/s and slows down over 30 ms; it stands, and is lifted again.
+        let (time, cycle) = (f64::from(row) / 100.0, f64::from(row % 60) / 100.0);
+        let [height, rate] = match cycle {
+            ..0.09 => [0.06 - 0.5 * cycle, -0.5],
+            ..0.45 => [0.015, -0.5].map(|start| start * ((0.09 - cycle) / 0.03).exp()),
+            _ => [0.4 * (cycle - 0.45), 0.4],
+        };
+        writeln!(table, "{time:?},{height:?},{rate:?},{:?}", 0.1 * normal(&mut random)).unwrap();
+    }
+    let corners = [-0.1, 0.1].map(|x| collision([x, 0.0], "sphere radius=\"0\"")).concat();
+    let robot = robot(&urdf::body(1.0, &(corners + &collision([0.0, 0.5], "sphere radius=\"0.1\""))));
+    let samples = samples(&table, &robot, Rates::Columns);
+    let found = touchdowns(Heights::Recorded, &robot, &[], samples, At::Crossing, Touching::Strike);
+    let contacts: Vec<usize> = found.iter().map(|own| own.state.scene.contacts.as_ref().unwrap().len()).collect();
+    assert_eq!(contacts, [2; 20]);
+}
+
 #[test]
 fn without_noise_moments_are_true() {
     for hertz in [100, 500, 1000] {
