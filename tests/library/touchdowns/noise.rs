@@ -160,7 +160,7 @@ fn a_flat_foot_is_one_touchdown_whatever_the_noise_of_its_rates() {
         };
         writeln!(table, "{time:?},{height:?},{rate:?},{:?}", 0.1 * normal(&mut random)).unwrap();
     }
-    let corners = [-0.1, 0.1].map(|x| collision([x, 0.0], "sphere radius=\"0\"")).concat();
+    let corners = [-0.5, 0.5].map(|x| collision([x, 0.0], "sphere radius=\"0\"")).concat();
     let robot = robot(&urdf::body(1.0, &(corners + &collision([0.0, 0.5], "sphere radius=\"0.1\""))));
     let samples = samples(&table, &robot, Rates::Columns);
     let found = touchdowns(Heights::Recorded, &robot, &[], samples, At::Crossing, Touching::Strike);
