@@ -1,6 +1,6 @@
 //! The state with which a point strikes.
 
-use super::carry::{Interpolation, Onward, on_line};
+use super::carry::{Interpolation, down_to, on_line};
 use super::points::Points;
 use super::strike::{Strike, Way};
 use super::window::{BEFORE, Frame, Window};
@@ -35,7 +35,7 @@ impl<S: Clone> Arrival<'_, '_, S> {
         }
         let mut sample = self.window.frames[row].sample.clone();
         let first = (0..row).rfind(|&row| self.window.frames[row].before_impact).map_or(0, |impact| impact + 1);
-        let (At::Crossing, Some(height), Some(next)) = (self.at, height, self.window.frames.get(row + 1)) else {
+        let (At::Crossing, Some(height), true) = (self.at, height, row + 1 < self.window.frames.len()) else {
             if sample.rate_over[1] > self.window.frames[smooth.max(row)].sample.time {
                 self.velocity(first, smooth.max(row), sample.time, &mut sample.state.velocity);
             }
@@ -45,15 +45,10 @@ impl<S: Clone> Arrival<'_, '_, S> {
         if let Some((onward, later)) = onward {
             sample.time += later;
             for (entry, own) in sample.state.position.iter_mut().enumerate() {
-                *own = onward.value(|back| self.window.frames[row - back].sample.state.position[entry], later);
+                *own = onward.value(|back| self.window.frames[row - back].sample.state.position[entry]);
             }
         } else {
-            let (above, below) = (self.window.height(point, row), next.places[point].z);
-            let part = if below < above { ((above - height) / (above - below)).clamp(0.0, 1.0) } else { 0.0 };
-            sample.time += part * (next.sample.time - sample.time);
-            for (own, next) in sample.state.position.iter_mut().zip(&next.sample.state.position) {
-                *own += part * (next - *own);
-            }
+            self.between(point, row, height, &mut sample);
         }
         self.velocity(first, smooth, sample.time, &mut sample.state.velocity);
         sample
@@ -76,13 +71,7 @@ impl<S: Clone> Arrival<'_, '_, S> {
                 }
                 (sample.time, sample.state.position) = (below, self.window.onward_position(&motion, below));
             } else {
-                let [from, to] = [row, row + 1].map(|row| self.window.height(point, row) - level);
-                let part = if to < from { (from / (from - to)).clamp(0.0, 1.0) } else { 0.0 };
-                sample.time += part * (end - start);
-                let next = &self.window.frames[row + 1].sample.state.position;
-                for (own, next) in sample.state.position.iter_mut().zip(next) {
-                    *own += part * (next - *own);
-                }
+                self.between(point, row, level, &mut sample);
             }
         }
         if motion.rows.len() > 1 {
@@ -97,6 +86,17 @@ impl<S: Clone> Arrival<'_, '_, S> {
             self.carry_velocity(&motion.rows, |entry| &onward[used[entry] - 1], &mut sample);
         }
         sample
+    }
+
+    /// Takes the time and the positions of a sample of `row` to where the point is at `level` on the line to the next row.
+    fn between(&self, point: usize, row: usize, level: f64, sample: &mut Sample<S>) {
+        let [from, to] = [row, row + 1].map(|row| self.window.height(point, row) - level);
+        let part = if to < from { (from / (from - to)).clamp(0.0, 1.0) } else { 0.0 };
+        let next = &self.window.frames[row + 1].sample;
+        sample.time += part * (next.time - sample.time);
+        for (own, next) in sample.state.position.iter_mut().zip(&next.state.position) {
+            *own += part * (next - *own);
+        }
     }
 
     /// The sample at `time` on the line through `rows`, the last one first.
@@ -127,14 +127,13 @@ impl<S: Clone> Arrival<'_, '_, S> {
         }
     }
 
-    /// How the motion of rows `first` to `at` goes on, and how much later the point is at `height`, if that is before
-    /// the next row.
-    fn onward(&self, point: usize, first: usize, at: usize, height: f64) -> Option<(Onward, f64)> {
+    /// How much later than row `at` the parabola through the last rows from `first` on has the point at `height`, if that
+    /// is before the next row, and how it goes on until then.
+    fn onward(&self, point: usize, first: usize, at: usize, height: f64) -> Option<(Interpolation, f64)> {
         let times = self.window.times((first..=at).rev().take(BEFORE));
-        let next = self.window.frames[at + 1].sample.time - self.window.frames[at].sample.time;
-        let onward = Onward::from(&times, next)?;
-        let later = onward.down_to(height, |back| self.window.height(point, at - back))?;
-        (later <= next).then_some((onward, later))
+        let next = self.window.frames[at + 1].sample.time - times[0];
+        let later = down_to(height, &times, |back| self.window.height(point, at - back), next)?;
+        (later <= next).then(|| (Interpolation::at(times[0] + later, &times), later))
     }
 
     /// Replaces `velocity` by that at `time`, from the rows `first` to `smooth`.

@@ -3,47 +3,21 @@
 /// A motion is carried on by so many times the distance of its last rows at most.
 pub(super) const REACH: f64 = 2.5;
 
-/// How the motion of two or three rows goes on after the last of them.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Onward {
-    /// Between the last row and the one before, and between that and the one before it, where there is one \[s\].
-    steps: (f64, Option<f64>),
-}
-
-impl Onward {
-    /// From rows at `times` on, the last one first, for a moment no more than `most` \[s\] later; `None` if they are
-    /// too few or too near to each other for that.
-    pub fn from(times: &[f64], most: f64) -> Option<Self> {
-        let &[last, before, ..] = times else { return None };
-        let step = last - before;
-        let earlier = times.get(2).map(|earlier| before - earlier);
-        (most <= REACH * step).then_some(Self { steps: (step, earlier) })
-    }
-
-    /// Slope and curvature at the last row of the parabola through the values at the rows, the last one first; of a
-    /// line where there are two.
-    fn shape(self, value: impl Fn(usize) -> f64) -> (f64, f64) {
-        let (step, earlier) = self.steps;
-        let slope = (value(0) - value(1)) / step;
-        let curvature = earlier.map_or(0.0, |earlier| (slope - (value(1) - value(2)) / earlier) / (step + earlier));
-        (slope + curvature * step, curvature)
-    }
-
-    /// The value `later` \[s\] than the last row.
-    pub fn value(self, value: impl Fn(usize) -> f64, later: f64) -> f64 {
-        let (slope, curvature) = self.shape(&value);
-        value(0) + (slope + curvature * later) * later
-    }
-
-    /// How much later \[s\] than the last row the value is down at `level`, if it gets there at all.
-    pub fn down_to(self, level: f64, value: impl Fn(usize) -> f64) -> Option<f64> {
-        let (slope, curvature) = self.shape(&value);
-        let height = value(0) - level;
-        let discriminant = slope * slope - 4.0 * curvature * height;
-        // Of two roots the first; the usual formula would cancel digits where the curvature is small.
-        let later = 2.0 * height / (discriminant.sqrt() - slope);
-        (later.is_finite() && later >= 0.0).then_some(later)
-    }
+/// How much later \[s\] than the last of some rows the parabola through the values at the last three (a line where there
+/// are two) is down at `level`, if it gets there at all, and the rows are not too near to each other for a moment `most`
+/// later. Their `times` and values are given the last one first.
+pub(super) fn down_to(level: f64, times: &[f64], value: impl Fn(usize) -> f64, most: f64) -> Option<f64> {
+    let &[last, before, ..] = times else { return None };
+    let (step, rate) = (last - before, (value(0) - value(1)) / (last - before));
+    let curvature = times.get(2).map_or(0.0, |earlier| {
+        let earlier_rate = (value(1) - value(2)) / (before - earlier);
+        (rate - earlier_rate) / (last - earlier)
+    });
+    let (slope, height) = (rate + curvature * step, value(0) - level);
+    let discriminant = slope * slope - 4.0 * curvature * height;
+    // Of two roots the first; the usual formula would cancel digits where the curvature is small.
+    let later = 2.0 * height / (discriminant.sqrt() - slope);
+    (most <= REACH * step && later.is_finite() && later >= 0.0).then_some(later)
 }
 
 /// How the values at some moments, or rather their polynomial, give that at another.
@@ -104,10 +78,9 @@ mod tests {
     fn a_parabola_is_carried_on_exactly() {
         let fall = |time: f64| 1.0 - 4.0 * time * time;
         let times = [0.375, 0.25, 0.0];
-        let onward = Onward::from(&times, 0.25).unwrap();
-        assert_eq!(onward.value(|row| fall(times[row]), 0.125), fall(0.5));
-        assert_eq!(onward.down_to(0.0, |row| fall(times[row])), Some(0.125));
-        assert_eq!(onward.down_to(2.0, |row| fall(times[row])), None);
+        assert_eq!(Interpolation::at(0.5, &times).value(|row| fall(times[row])), fall(0.5));
+        assert_eq!(down_to(0.0, &times, |row| fall(times[row]), 0.25), Some(0.125));
+        assert_eq!(down_to(2.0, &times, |row| fall(times[row]), 0.25), None);
     }
 
     #[test]
@@ -126,11 +99,10 @@ mod tests {
 
     #[test]
     fn two_near_rows_carry_on_a_line() {
-        let onward = Onward::from(&[1.0, 0.5], 1.0).unwrap();
         let falling = |row: usize| [2.0, 3.0][row];
-        assert_eq!((onward.value(falling, 0.5), onward.down_to(0.0, falling)), (1.0, Some(1.0)));
-        assert_eq!(onward.down_to(0.0, |_| 1.0), None, "it does not fall");
-        assert!(Onward::from(&[1.0], 0.1).is_none() && Onward::from(&[1.0, 0.5], 1.5).is_none());
+        assert_eq!(down_to(0.0, &[1.0, 0.5], falling, 1.0), Some(1.0));
+        assert_eq!(down_to(0.0, &[1.0, 0.5], |_| 1.0, 1.0), None, "it does not fall");
+        assert!(down_to(0.0, &[1.0], falling, 0.1).is_none() && down_to(0.0, &[1.0, 0.5], falling, 1.5).is_none());
         let line = [(1.0, 3.0), (2.0, 5.0)];
         assert_eq!([1.5, 2.5, 9.0].map(|time| on_line(line, time)), [4.0, 6.0, 5.0]);
         assert_eq!(on_line([(1.0, 3.0), (1.0, 5.0)], 1.5), 5.0);
