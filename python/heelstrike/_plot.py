@@ -22,9 +22,11 @@ class Plot:
         return self.text
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the SVG to a file."""
+        """Write the SVG to a file, whose name ends with .svg."""
         if self.svg is None:
             raise ValueError("there is nothing to draw, or not to scale")
+        if not os.fspath(path).lower().endswith(".svg"):
+            raise ValueError("a picture is saved as SVG: give a name that ends with .svg, or use `heelstrike --plot`")
         with open(path, "w", encoding="utf-8") as file:
             file.write(self.svg)
 

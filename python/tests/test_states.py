@@ -225,6 +225,8 @@ def test_pictures_are_those_of_the_command(ramone, tmp_path):
         assert repr(plot).splitlines()[0] == text.splitlines()[0]
         plot.save(tmp_path / "own.svg")
         assert (tmp_path / "own.svg").read_text() == file.read_text()
+    with pytest.raises(ValueError, match="ends with .svg"):
+        plot.save(tmp_path / "own.png")
     with pytest.raises(TypeError, match="has no picture"):
         heelstrike.plot({})
     with pytest.raises(TypeError, match="Answers have no picture"):

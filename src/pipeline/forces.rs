@@ -75,6 +75,8 @@ impl Unforced {
     }
 }
 
+/// After an impact a rate of no more than this part of the fastest is rounding.
+const STOPPED: f64 = 1e-13;
 /// No planet has a stronger gravity \[m/s^2\]; some programs count in centimeters.
 const STRONGEST: f64 = 100.0;
 
@@ -95,6 +97,9 @@ impl Pipeline<'_> {
     pub(super) fn sustained(&mut self, state: &State, chosen: Option<&[Vec<Mode>]>) -> Result<Box<Impact>> {
         let scene = &state.scene;
         let (mut prepared, slips) = self.prepare_sustained(state)?;
+        if let Some(speed) = self.options.resting_speed.filter(|_| prepared.impact.resting.contains(&true)) {
+            self.stop(&mut prepared.velocity, speed);
+        }
         if state.uncertainty.is_some() {
             let notes = &mut prepared.impact.notes;
             notes.push("the uncertainty is ignored: forces are those of the given numbers".to_owned());
@@ -212,8 +217,11 @@ impl Pipeline<'_> {
             mode => mode.direction().partial_cmp(&0.0),
         };
         let slips: Vec<Option<Ordering>> = outcome.modes.iter().enumerate().map(slip).collect();
-        // The foot of a stance may move after the impact.
-        let velocity = outcome.velocity().collect();
+        // The foot of a stance may move after the impact. What stands has rates of rounding, whose squares would decide what
+        // dependent contacts do.
+        let mut velocity: Vec<f64> = outcome.velocity().collect();
+        let fastest = f64::max(self.fastest(&struck.velocity), self.fastest(&velocity));
+        self.stop(&mut velocity, STOPPED * fastest);
         let mut prepared = Prepared { velocity, foot: None, still: Still::default(), ..struck.clone() };
         prepared.impact.stance = None;
         self.refuse_uneven(&prepared)?;
@@ -238,6 +246,22 @@ impl Pipeline<'_> {
         }))
     }
 
+    /// The speed at which each rate moves the robot by itself: of a turn that of its farthest points \[m/s\].
+    fn speeds<'a>(&'a self, velocity: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+        let rates = velocity.iter().zip(self.robot.units());
+        rates.map(|(rate, (unit, _))| rate.abs() * if unit == "rad" { self.feet.size() } else { 1.0 })
+    }
+
+    fn fastest(&self, velocity: &[f64]) -> f64 {
+        self.speeds(velocity).fold(0.0, f64::max)
+    }
+
+    /// Takes rates as zero that by themselves move the robot no faster than `speed` \[m/s\].
+    fn stop(&self, velocity: &mut [f64], speed: f64) {
+        let stops: Vec<bool> = self.speeds(velocity).map(|own| own <= speed).collect();
+        velocity.iter_mut().zip(stops).filter(|(_, stops)| *stops).for_each(|(rate, _)| *rate = 0.0);
+    }
+
     /// Puts the problem of accelerations in place of that of velocities.
     fn pose(&mut self, state: &State, prepared: &mut Prepared, slips: &[Ordering]) -> Result<Unforced> {
         let still = self.still(state, prepared, slips)?;
@@ -249,6 +273,7 @@ impl Pipeline<'_> {
         let (unclosed, drifts) = self.assembly.acceleration(&prepared.velocity, loads);
         let mut free = unclosed.clone();
         self.assembly.answer_to(Closed::Acceleration(&drifts), &mut free);
+        self.refuse_parting(&state.scene.loops, &free, &drifts)?;
         for &entry in &free {
             finite(entry, || "an acceleration".into()).map_err(|error| {
                 error.hint("gravity, torques or velocities are too large for the masses: are they in SI units?")

@@ -9,6 +9,7 @@ use crate::dynamics::{
     spent_energy,
 };
 use crate::error::{Error, Reason, Result, rounded};
+use crate::planar::Vector;
 use crate::robot::Robot;
 use crate::scalar::{Ball, Certified, Real};
 use crate::state::NamedLoop;
@@ -18,6 +19,8 @@ use crate::state::NamedLoop;
 const OPEN: f64 = 1e-4;
 /// The greatest part of the kinetic energy that may lie in a motion that opens the loops: a hundredth of the speed.
 const OPENING: f64 = 1e-4;
+/// The part of what the accelerations of a loop's points are added up from that may open it.
+const PARTING: f64 = 1e-6;
 /// Below this part of the kinetic energy a motion that opens the loops is rounding, and not worth a word.
 const ROUNDING: f64 = 1e-20;
 /// A row of K is taken to follow from others if less than this part of its squared reach is left.
@@ -161,14 +164,15 @@ impl Pipeline<'_> {
             }
         }
         let spent = spent_energy(&amplitudes, workspace);
-        if spent > OPENING * energy {
+        let resting = self.options.resting_speed.unwrap_or(0.0);
+        if spent > OPENING * energy && opening > resting {
             return Err(moves_apart(own, worst, opening, robot));
         }
         // What was left out must hold all the same.
         for (index, own) in loops.iter().enumerate().filter(|(index, _)| !self.is_whole(*index)) {
             let left = own.opening(plan, velocity, workspace).length();
             let [a, b] = named[index].arms(robot).map(|end| self.bounds.speed(plan, end, velocity));
-            if left * left > OPENING * (a * a + b * b) {
+            if left * left > OPENING * (a * a + b * b) && left > resting {
                 return Err(moves_apart(&named[index], index, left, robot));
             }
         }
@@ -179,6 +183,26 @@ impl Pipeline<'_> {
                 own.name(worst, robot)
             )
         }))
+    }
+
+    /// Refuses an `acceleration` by coordinate that opens a loop along a row that was left out, with kappa of each loop: a
+    /// dead point holds no velocity there, but its own motion would move its points apart.
+    pub(super) fn refuse_parting(&self, named: &[NamedLoop], acceleration: &[f64], drifts: &[Vector]) -> Result<()> {
+        let Assembly { plan, loops, workspace, .. } = &self.assembly;
+        for (index, (own, &drift)) in loops.iter().zip(drifts).enumerate().filter(|(index, _)| !self.is_whole(*index)) {
+            let opening = (own.opening(plan, acceleration, workspace) + drift).length();
+            let [a, b] = named[index].arms(self.robot).map(|end| self.bounds.speed(plan, end, acceleration));
+            let known = PARTING.max(PER_GAP * own.gap(plan, workspace).length() / self.feet.size());
+            if opening > known * (a + b + drift.length()) {
+                let name = named[index].name(index, self.robot);
+                let reason =
+                    format!("no acceleration keeps {name} closed: its points part at {} m/s^2", rounded(opening));
+                let hint = "it moves through a dead point, or is held at rates that it cannot keep: ask beside that pose, or \
+                            hold fewer joints";
+                return Err(Error::new(Reason::Inconsistent(reason)).at(format!("loops[{index}]")).hint(hint));
+            }
+        }
+        Ok(())
     }
 
     /// Refuses a loop whose points are apart; gives the widest gap \[m\].
@@ -202,7 +226,7 @@ impl Pipeline<'_> {
 
 fn moves_apart(own: &NamedLoop, index: usize, opening: f64, robot: &Robot) -> Error {
     let reason = format!("the velocities open {} at {} m/s", own.name(index, robot), rounded(opening));
-    Error::new(Reason::Inconsistent(reason))
-        .at(format!("loops[{index}]"))
-        .hint("give rates of all joints of the loop, such that both points move alike")
+    Error::new(Reason::Inconsistent(reason)).at(format!("loops[{index}]")).hint(
+        "give rates of all joints of the loop, such that both points move alike; what is noise, `resting_speed` covers",
+    )
 }

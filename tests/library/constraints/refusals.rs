@@ -2,8 +2,22 @@
 
 use crate::constraints::four_bar::{CRANKS, WIDTH, bolted, parallelogram, pin, state};
 use crate::constraints::try_impact;
+use heelstrike::{Defaults, Options, Pipeline, State};
 use serde_json::{Value, json};
 use std::fmt::Write;
+
+/// What stands in a simulation has rates of rounding, which open a loop as wide as they are.
+#[test]
+fn rates_below_the_resting_speed_open_no_loop() {
+    let mechanism = parallelogram(&CRANKS);
+    let robot = bolted(&mechanism);
+    let mut noisy = state(&mechanism, 0.6, -2.0, json!([pin("rear", WIDTH)]));
+    noisy["velocity"] = json!({"joints": {"front": -2e-17, "rear": 1e-17, "coupler": 3e-17}});
+    assert!(try_impact(&robot, &noisy).is_err());
+    let state = State::from_json(&noisy.to_string(), &robot, &Defaults::default()).unwrap();
+    let options = Options { resting_speed: Some(1e-9), ..Options::default() };
+    assert!(Pipeline::new(&robot, options).impact(&state).is_ok());
+}
 
 #[test]
 fn state_that_breaks_a_loop_is_refused() {

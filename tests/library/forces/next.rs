@@ -112,3 +112,35 @@ fn held_legs_stand_on_both_feet_after_an_impact() {
         );
     }
 }
+
+/// An arm that is bolted to the world has more rows of contact than joints, and stands with rates of 1e-16 rad/s.
+#[test]
+fn what_an_impact_stops_stands_as_it_would_without_rates() {
+    let arm = robot(
+        r#"<robot name="arm"><link name="world"/><link name="l"><inertial><origin xyz="0.15 0 -0.2"/><mass value="1"/>
+        <inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/></inertial></link>
+        <joint name="j" type="continuous"><parent link="world"/><child link="l"/><axis xyz="0 1 0"/></joint></robot>"#,
+    );
+    let mut random = Random::new(3);
+    let mut stands = 0;
+    for _ in 0..100 {
+        let mut between = |low: f64, high: f64| low + (high - low) * random.uniform();
+        let mut state = json!({
+            "position": {"joints": {"j": between(-3.0, 3.0)}}, "velocity": {"joints": {"j": between(-1.0, 1.0)}},
+            "contacts": [{"link": "l", "offset": [between(-0.5, 0.5), 0, between(-0.5, 0.5)]}],
+            "friction": between(0.1, 3.0), "torque": {"j": between(-5.0, 5.0)},
+        });
+        let outcomes = try_impact(&arm, Options { next: true, ..Options::default() }, &state).unwrap();
+        for outcome in outcomes.into_analysis().unwrap().outcomes.iter().filter(|own| own.modes == [Stick]) {
+            state["velocity"] = json!({});
+            let still = State::from_json(&state.to_string(), &arm, &Defaults::default()).unwrap();
+            let still = Pipeline::new(&arm, Options::default()).forces(&still).unwrap();
+            let next = outcome.next.as_ref().unwrap();
+            let modes_after: Vec<Vec<Mode>> =
+                next.modes.iter().map(|own| own.iter().copied().flatten().collect()).collect();
+            assert_eq!((next.proven, modes_after), (true, modes(&still)), "{state}");
+            stands += usize::from(next.verdict == Verdict::Unique);
+        }
+    }
+    assert!(stands > 10, "{stands}");
+}

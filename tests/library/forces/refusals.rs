@@ -2,7 +2,7 @@
 
 use super::{rod, try_forces};
 use crate::support::impact::robot;
-use crate::support::urdf::{body, collision};
+use crate::support::urdf::{self, HINGE, body, collision, joint, link};
 use serde_json::json;
 
 #[test]
@@ -84,4 +84,27 @@ fn what_leaves_the_range_of_f64_has_a_remedy() {
             Err(error) => assert!(error.remedy().is_some(), "{error}"),
         }
     }
+}
+
+/// Two links of 0.5 m hang straight down from a pin 1 m above their end: along the line they hold no velocity, but their
+/// turns bring both ends together at 0.5 omega^2 each.
+#[test]
+fn a_loop_that_moves_through_its_dead_point_is_refused() {
+    let leg = |name: &str, shape: &str| link(name, 1.0, [0.0, -0.25], 0.02, shape);
+    let tri = robot(&urdf::robot(&[
+        link("root", 5.0, [0.0; 2], 0.05, ""),
+        leg("upper", ""),
+        leg("lower", &collision([0.0, -0.5], "sphere radius=\"0\"")),
+        joint("hip", HINGE, ["root", "upper"], [0.0; 2], ""),
+        joint("knee", HINGE, ["upper", "lower"], [0.0, -0.5], ""),
+    ]));
+    let state = |rate: f64| {
+        json!({"position": {"base": {"z": 1}}, "friction": 0.5,
+            "velocity": {"base": {"x": 0.5 * rate - 0.2 * rate}, "joints": {"hip": rate, "knee": -2.0 * rate}},
+            "loops": [{"a": {"link": "lower", "offset": [0, 0, -0.5]}, "b": {"link": "root", "offset": [0, 0, -1]}}]})
+    };
+    let error = try_forces(&tri, state(1.0)).unwrap_err();
+    assert!(error.to_string().contains("no acceleration keeps loops[0] (lower - root) closed"), "{error}");
+    assert!(error.to_string().contains("part at 1 m/s^2"), "{error}");
+    assert!(try_forces(&tri, state(0.0)).is_ok(), "at rest it stays closed");
 }
