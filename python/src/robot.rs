@@ -312,7 +312,8 @@ impl Robot {
     /// [s], `q_base_x`, `q_base_z`, `q_base_pitch`, `q_<joint>` [m, rad], and rates likewise with `v_` unless `velocity`
     /// is "central" or "backward". `at` is "crossing" or "row", `touching` strike, slow:SPEED,HEIGHT or near:HEIGHT. A
     /// foot must descend by `drop` to at most `ground_height` [m], which depend on the robot's size; `simulated` takes
-    /// z = 0 as the ground. Raises Refused for the table; a refused touchdown has an `error`.
+    /// z = 0 as the ground. `line` and `row` of a table in memory are those of its CSV: the first row is line 2. Raises
+    /// Refused for the table; a refused touchdown has an `error`.
     #[pyo3(signature = (
         table, *, friction = None, velocity = None, at = None, touching = None, drop = None, ground_height = None,
         simulated = false
