@@ -109,7 +109,10 @@ class Layout:
 
     @staticmethod
     def _angle(q: Array, joint: Joint) -> Array:
-        return np.arctan2(q[:, joint.q + 1], q[:, joint.q]) if joint.unit_circle else q[:, joint.q] - joint.zero
+        if not joint.unit_circle:
+            return q[:, joint.q] - joint.zero
+        _refuse_length("the cosine and sine of a joint have", q[:, joint.q : joint.q + 2])
+        return np.arctan2(q[:, joint.q + 1], q[:, joint.q])
 
     def _planar(self, robot: Robot, q: Array, v: Array, tolerance: float) -> tuple[list[Array], list[Array]]:
         """x, z, pitch of the base and their rates."""
@@ -118,10 +121,7 @@ class Layout:
         forward, up = (_AXES[axis] for axis in _PLANES[robot.plane])
         normal = np.cross(up, forward)
         quaternion = q[:, base.quaternion]
-        length = np.linalg.norm(quaternion, axis=1)
-        if np.any(np.abs(length - 1) > 1e-3):
-            worst = length[np.nanargmax(np.abs(length - 1))]
-            raise ValueError(f"a quaternion of the base has the length {worst}, not 1")
+        _refuse_length("a quaternion of the base has", quaternion)
         w, vector = quaternion[:, 0], quaternion[:, 1:]
         across = np.linalg.norm(vector - np.outer(vector @ normal, normal), axis=1)
         _refuse("the base is turned out of the plane", 2 * across, "rad", tolerance)
@@ -171,6 +171,13 @@ class Layout:
                 off = np.remainder(off + np.pi, 2 * np.pi) - np.pi
             _refuse(f"{what} is off", np.abs(off), "rad or m", tolerance)
             _refuse(f"{what} {moves}", np.abs(rate), "rad/s or m/s", tolerance)
+
+
+def _refuse_length(what: str, vectors: Array) -> None:
+    length = np.linalg.norm(vectors, axis=1)
+    if np.any(np.abs(length - 1) > 1e-3):
+        worst = length[np.nanargmax(np.abs(length - 1))]
+        raise ValueError(f"{what} the length {worst}, not 1")
 
 
 def _refuse(what: str, sizes: Array, unit: str, tolerance: float) -> None:

@@ -194,6 +194,15 @@ def test_motion_out_of_the_plane_is_refused_with_its_size(package, robot, change
         package.layout(robot, *state)
 
 
+def test_cosine_and_sine_of_no_angle_are_refused(robot):
+    package = Pinocchio()
+    (q, v), _ = planar(package, np.random.default_rng(4))
+    knee = package.layout.joints["left_knee"].q
+    q[knee : knee + 2] *= 2
+    with pytest.raises(ValueError, match="the cosine and sine of a joint have the length 2"):
+        package.layout(robot, q, v)
+
+
 # The left knee is turned by twice the right one's angle and 0.1 rad.
 MIMIC = URDF.replace(
     '<joint name="left_knee" type="continuous">',
