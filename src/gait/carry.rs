@@ -78,7 +78,8 @@ mod tests {
     fn a_parabola_is_carried_on_exactly() {
         let fall = |time: f64| 1.0 - 4.0 * time * time;
         let times = [0.375, 0.25, 0.0];
-        assert_eq!(Interpolation::at(0.5, &times).value(|row| fall(times[row])), fall(0.5));
+        let ahead = Interpolation::at(0.5, &times).value(|row| fall(times[row]));
+        assert!((ahead - fall(0.5)).abs() < 1e-15, "{ahead}");
         assert_eq!(down_to(0.0, &times, |row| fall(times[row]), 0.25), Some(0.125));
         assert_eq!(down_to(2.0, &times, |row| fall(times[row]), 0.25), None);
     }
