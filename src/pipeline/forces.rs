@@ -97,9 +97,6 @@ impl Pipeline<'_> {
     pub(super) fn sustained(&mut self, state: &State, chosen: Option<&[Vec<Mode>]>) -> Result<Box<Impact>> {
         let scene = &state.scene;
         let (mut prepared, slips) = self.prepare_sustained(state)?;
-        if let Some(speed) = self.options.resting_speed.filter(|_| prepared.impact.resting.contains(&true)) {
-            self.stop(&mut prepared.velocity, speed);
-        }
         if state.uncertainty.is_some() {
             let notes = &mut prepared.impact.notes;
             notes.push("the uncertainty is ignored: forces are those of the given numbers".to_owned());
@@ -191,6 +188,15 @@ impl Pipeline<'_> {
             format!("{} leaves the ground at {normal:.1e} m/s, and takes no part", contact.name)
         }));
         self.take_part(state, &mut prepared, &slips)?;
+        if let Some(speed) = self.options.resting_speed
+            && prepared.impact.resting.contains(&true)
+            && self.fastest(&prepared.velocity) <= speed
+            && prepared.velocity.iter().any(|&rate| rate != 0.0)
+        {
+            // All of them: what is left of some would open loops, and move the foot of a stance.
+            prepared.velocity.fill(0.0);
+            prepared.impact.notes.push(format!("all rates are taken as zero (resting speed {speed} m/s)"));
+        }
         Ok((prepared, slips.into_iter().flatten().collect()))
     }
 
@@ -246,7 +252,7 @@ impl Pipeline<'_> {
         }))
     }
 
-    /// The speed at which each rate moves the robot by itself: of a turn that of its farthest points \[m/s\].
+    /// The speed of each rate: of a turn that at the robot's size (see [`Feet::size`](crate::contact::Feet::size)) \[m/s\].
     fn speeds<'a>(&'a self, velocity: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
         let rates = velocity.iter().zip(self.robot.units());
         rates.map(|(rate, (unit, _))| rate.abs() * if unit == "rad" { self.feet.size() } else { 1.0 })
@@ -256,7 +262,7 @@ impl Pipeline<'_> {
         self.speeds(velocity).fold(0.0, f64::max)
     }
 
-    /// Takes rates as zero that by themselves move the robot no faster than `speed` \[m/s\].
+    /// Takes rates as zero that are no faster than `speed` \[m/s\].
     fn stop(&self, velocity: &mut [f64], speed: f64) {
         let stops: Vec<bool> = self.speeds(velocity).map(|own| own <= speed).collect();
         velocity.iter_mut().zip(stops).filter(|(_, stops)| *stops).for_each(|(rate, _)| *rate = 0.0);
@@ -273,7 +279,7 @@ impl Pipeline<'_> {
         let (unclosed, drifts) = self.assembly.acceleration(&prepared.velocity, loads);
         let mut free = unclosed.clone();
         self.assembly.answer_to(Closed::Acceleration(&drifts), &mut free);
-        self.refuse_parting(&state.scene.loops, &free, &drifts)?;
+        self.refuse_parting(&state.scene.loops, [&prepared.velocity, &unclosed, &free], &drifts, loads)?;
         for &entry in &free {
             finite(entry, || "an acceleration".into()).map_err(|error| {
                 error.hint("gravity, torques or velocities are too large for the masses: are they in SI units?")

@@ -1,7 +1,7 @@
 //! The loops of a state: whether they close, which of their rows count, and the velocity that keeps them closed.
 
 use super::Pipeline;
-use super::assembly::Assembly;
+use super::assembly::{Assembly, Loads};
 use crate::contact::Contact;
 use crate::dynamics::plan::Plan;
 use crate::dynamics::{
@@ -11,7 +11,7 @@ use crate::dynamics::{
 use crate::error::{Error, Reason, Result, rounded};
 use crate::planar::Vector;
 use crate::robot::Robot;
-use crate::scalar::{Ball, Certified, Real};
+use crate::scalar::{Ball, Certified, Magnitude, Real};
 use crate::state::NamedLoop;
 
 /// How far apart the points of a loop may lie, as part of the robot's size: recorded poses are rounded, and simulators
@@ -20,7 +20,7 @@ const OPEN: f64 = 1e-4;
 /// The greatest part of the kinetic energy that may lie in a motion that opens the loops: a hundredth of the speed.
 const OPENING: f64 = 1e-4;
 /// The part of what the accelerations of a loop's points are added up from that may open it.
-const PARTING: f64 = 1e-6;
+const PARTING: f64 = 1e-9;
 /// Below this part of the kinetic energy a motion that opens the loops is rounding, and not worth a word.
 const ROUNDING: f64 = 1e-20;
 /// A row of K is taken to follow from others if less than this part of its squared reach is left.
@@ -185,18 +185,39 @@ impl Pipeline<'_> {
         }))
     }
 
-    /// Refuses an `acceleration` by coordinate that opens a loop along a row that was left out, with kappa of each loop: a
-    /// dead point holds no velocity there, but its own motion would move its points apart.
-    pub(super) fn refuse_parting(&self, named: &[NamedLoop], acceleration: &[f64], drifts: &[Vector]) -> Result<()> {
-        let Assembly { plan, loops, workspace, .. } = &self.assembly;
-        for (index, (own, &drift)) in loops.iter().zip(drifts).enumerate().filter(|(index, _)| !self.is_whole(*index)) {
-            let opening = (own.opening(plan, acceleration, workspace) + drift).length();
-            let [a, b] = named[index].arms(self.robot).map(|end| self.bounds.speed(plan, end, acceleration));
-            let known = PARTING.max(PER_GAP * own.gap(plan, workspace).length() / self.feet.size());
-            if opening > known * (a + b + drift.length()) {
-                let name = named[index].name(index, self.robot);
-                let reason =
-                    format!("no acceleration keeps {name} closed: its points part at {} m/s^2", rounded(opening));
+    /// Refuses the acceleration `free` by coordinate if it opens a loop along a row that was left out, with kappa of each
+    /// loop: a dead point holds no velocity there, but its own motion would move its points apart. `unclosed` is the
+    /// acceleration without what the loops answer.
+    pub(super) fn refuse_parting(
+        &mut self,
+        named: &[NamedLoop],
+        [velocity, unclosed, free]: [&[f64]; 3],
+        drifts: &[Vector],
+        loads: Loads<'_>,
+    ) -> Result<()> {
+        if (0..named.len()).all(|index| self.is_whole(index)) {
+            return Ok(());
+        }
+        let reaches = named.iter().flat_map(|own| self.reaches(own.arms(self.robot)));
+        let shortest = reaches.fold(f64::INFINITY, |least, reach| least.min(reach.shortest));
+        let Self { robot, assembly: Assembly { plan, loops, workspace, rows, .. }, stretched, bounds, .. } = self;
+        let gap = loops.iter().fold(0.0, |most: f64, own| most.max(own.gap(plan, workspace).length()));
+        // What the accelerations are added up from, by magnitude.
+        bounds.stretched_poses(&stretched.plan, &mut stretched.workspace);
+        let magnitudes = |list: &[f64]| list.iter().map(|&entry| Magnitude::from_f64(entry)).collect::<Vec<_>>();
+        stretched.load(&magnitudes(velocity), loads);
+        let most = PARTING.max(PER_GAP * gap / shortest);
+        for (index, (own, &drift)) in loops.iter().zip(drifts).enumerate() {
+            let opening = (own.opening(plan, free, workspace) + drift).components();
+            let pushed = [unclosed, free].map(|list| named[index].arms(robot).map(|end| bounds.speed(plan, end, list)));
+            let turning = named[index].points::<Magnitude>(robot).drift(&stretched.workspace).components();
+            let size = pushed.as_flattened().iter().chain(turning.iter().map(|Magnitude(own)| own)).sum::<f64>()
+                + loads.scene.gravity().abs();
+            let left = [0, 1].map(|axis| if rows.contains(&(2 * index + axis)) { 0.0 } else { opening[axis].abs() });
+            if left[0].max(left[1]) > most * size {
+                let name = named[index].name(index, robot);
+                let apart = rounded(left[0].max(left[1]));
+                let reason = format!("no acceleration keeps {name} closed: its points part at {apart} m/s^2");
                 let hint = "it moves through a dead point, or is held at rates that it cannot keep: ask beside that pose, or \
                             hold fewer joints";
                 return Err(Error::new(Reason::Inconsistent(reason)).at(format!("loops[{index}]")).hint(hint));

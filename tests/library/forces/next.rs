@@ -144,3 +144,27 @@ fn what_an_impact_stops_stands_as_it_would_without_rates() {
     }
     assert!(stands > 10, "{stands}");
 }
+
+/// The same of a robot on both feet of held legs whose rates are noise, below the resting speed.
+#[test]
+fn rates_below_the_resting_speed_are_zero_where_a_robot_stands() {
+    let ramone = robot(include_str!("../../../urdf/ramone.urdf"));
+    let joints = json!({"left_hip": 0.4, "left_knee": -0.3, "right_hip": -0.4, "right_knee": 0.3});
+    let forces = |velocity: Value, resting_speed: Option<f64>| {
+        let state = json!({
+            "position": {"joints": joints}, "velocity": velocity, "place": "lowest", "friction": "infinite",
+            "held": ["left_hip", "left_knee", "right_hip", "right_knee"],
+        });
+        let state = State::from_json(&state.to_string(), &ramone, &Defaults::default()).unwrap();
+        let options = Options { resting_speed, ..Options::default() };
+        Pipeline::new(&ramone, options).forces(&state).unwrap()
+    };
+    let noise = json!({"base": {"x": 1.3e-17, "z": -2.1e-17, "pitch": 5e-17}});
+    let found = forces(noise, Some(1e-6));
+    assert_eq!(modes(&found), [[Stick; 2]]);
+    assert_eq!(modes(&forces(json!({}), None)), modes(&found));
+    assert!(found.notes.iter().any(|note| note == "all rates are taken as zero (resting speed 0.000001 m/s)"));
+    // A joint that moves is not noise, and none of the rates is taken away.
+    let moving = forces(json!({"base": {"pitch": 5e-17}, "joints": {"left_hip": 0.1}}), Some(1e-6));
+    assert!(!moving.notes.iter().any(|note| note.starts_with("all rates")), "{:?}", moving.notes);
+}

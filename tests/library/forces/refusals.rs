@@ -108,3 +108,37 @@ fn a_loop_that_moves_through_its_dead_point_is_refused() {
     assert!(error.to_string().contains("part at 1 m/s^2"), "{error}");
     assert!(try_forces(&tri, state(0.0)).is_ok(), "at rest it stays closed");
 }
+
+/// Three cranks of one length between two rails, the third of which follows from the others, moving, hanging and locked.
+#[test]
+fn loops_that_follow_from_others_are_no_dead_points() {
+    let crank = |name: &str, at: f64| {
+        link(name, 1.0, [0.0, -0.2], 0.01, "") + &joint(format!("j{name}"), HINGE, ["world", name], [at, 0.0], "")
+    };
+    let cranks = [("a", 0.0), ("b", 0.4), ("c", 0.8)].map(|(name, at)| crank(name, at)).concat();
+    let coupler = link("coupler", 2.0, [0.4, 0.0], 0.1, "");
+    let pin = joint("jd", HINGE, ["a", "coupler"], [0.0, -0.4], "");
+    let robot = robot(&urdf::robot(&["<link name=\"world\"/>".to_owned(), cranks, coupler, pin]));
+    let end = |name: &str, at: f64| json!({"a": {"link": name, "offset": [0, 0, -0.4]}, "b": {"link": "coupler", "offset": [at, 0, 0]}});
+    for (angle, rate, held, gravity) in [
+        (0.3, 3.0, json!([]), 9.81),
+        (0.3, 3.0, json!([]), 0.0),
+        (0.0, 0.0, json!([]), 9.81),
+        (0.0, 3.0, json!([]), 9.81),
+        (0.3, 0.0, json!(["ja"]), 9.81),
+        (0.7, 30.0, json!(["ja"]), 9.81),
+        (0.7, 1e4, json!([]), 0.0),
+    ] {
+        // Exact, and as a pose of five digits leaves the loops open.
+        for off in [[0.0; 2], [3e-6, -4e-6]] {
+            let state = json!({
+                // The coupler stays level: its hinge turns back.
+                "position": {"joints": {"ja": angle, "jb": angle + off[0], "jc": angle + off[1], "jd": -angle}},
+                "velocity": {"joints": {"ja": rate, "jb": rate, "jc": rate, "jd": -rate}},
+                "held": held, "gravity": gravity, "loops": [end("b", 0.4), end("c", 0.8)], "contacts": [],
+            });
+            let found = try_forces(&robot, &state);
+            assert!(found.is_ok(), "{:?}\n{state}", found.err());
+        }
+    }
+}
