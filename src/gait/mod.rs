@@ -67,8 +67,9 @@
 //! of them from before the last touchdown or from before two rows of one time. With six rows and more each coordinate and
 //! each rate goes on by the fewest that have foretold its last two values nearly as well as any: accelerations may jump
 //! from row to row, as a controller's do.
-//! Velocities go on as recorded; differences are replaced by the rates of the polynomial. If that does not reach the ground before the next row, time
-//! and positions lie on the line between both rows. A clip that ends aloft ends without a touchdown.
+//! Velocities go on as recorded; differences are replaced by the rates of the polynomial. If that does not reach the
+//! ground before the next row, time and positions lie on the line between both rows. A clip that ends aloft ends
+//! without a touchdown.
 //!
 //! A jump back in time starts a new clip, and so does a step more than ten times the longest of the clip so far. A
 //! refused sample is passed on in its place and left out of the motion. Touchdowns come in the order of the ends of
