@@ -204,7 +204,8 @@ pub enum Touching {
     /// None.
     Strike,
     /// Of every other body the lowest point, if it is slower than `speed` \[m/s\] and its height differs from the
-    /// striking point's by no more than `height` \[m\].
+    /// striking point's by no more than `height` \[m\]. Where heights are true ([`Heights::True`]), also every point
+    /// on the ground, or in it by up to `height`, that is slower or goes down: of each body the outer two.
     Slow { speed: f64, height: f64 },
     /// Every point free toward the ground whose height differs from the striking point's by no more than `height`
     /// \[m\], however it moves.

@@ -75,8 +75,9 @@ impl<'r> Points<'r> {
     }
 
     /// Shifts `state` along z so that the point `striking` is at z = 0, and names its contacts, those that strike as
-    /// well (`also`) among them, `together` as in [`Points::is_free`]. Where heights are true, standing points touch that
-    /// are no higher than `level` above it \[m\], of whatever body. Gives the shift \[m\] and the striking one's name.
+    /// well (`also`) among them, `together` as in [`Points::is_free`]. Where heights are true, points touch that are no
+    /// higher than `level` \[m\], of whatever body, and that stand or go down. Gives the shift \[m\] and the striking one's
+    /// name.
     pub fn touch(
         &mut self,
         state: &mut State,
@@ -92,15 +93,17 @@ impl<'r> Points<'r> {
         match touching {
             Touching::Strike => {}
             Touching::Slow { speed, height } => {
-                let stands = |point: usize, height: f64| {
-                    above(point) <= height && self.velocity(point, &placement, &state.velocity).length() < speed
-                };
+                let moving = |point: usize| self.velocity(point, &placement, &state.velocity);
                 let mut feet = self.lowest_of_other_bodies(&closed, &places);
-                feet.retain(|&point| stands(point, height));
+                feet.retain(|&point| above(point) <= height && moving(point).length() < speed);
                 closed.append(&mut feet);
                 if let Some(level) = level {
-                    // As of a sole, the outer two of each body.
-                    let on_it = |&point: &usize| closed.contains(&point) || stands(point, level);
+                    // As of a sole, the outer two of each body; into soft ground they sink.
+                    let is_down = |point: usize| {
+                        let moving = moving(point);
+                        (-height..=level).contains(&places[point].z) && (moving.length() < speed || moving.z < 0.0)
+                    };
+                    let on_it = |&point: &usize| closed.contains(&point) || is_down(point);
                     let ground: Vec<usize> = (0..places.len()).filter(on_it).collect();
                     let is_outer = |point: usize| {
                         let others = ground.iter().filter(|&&other| self.body(other) == self.body(point));

@@ -79,8 +79,9 @@ impl Seen {
         (middle.abs() > 0.5 * thresholds.ground).then(|| {
             format!(
                 "feet reach the ground at z = {} m, in the middle of all touchdowns: shift q_base_z so that the \
-                 ground is z = 0",
-                rounded(-middle)
+                 ground is z = 0{}",
+                rounded(-middle),
+                if middle > 0.0 { ", or, if feet sink into a simulation's soft ground, give `simulated`" } else { "" }
             )
         })
     }
