@@ -65,7 +65,7 @@
 //! z = 0, or stops within a millionth of the robot's size of it, after a descent of [`Thresholds::drop`] or more. The
 //! moment is where its height is zero if all coordinates go on as the polynomial through up to six rows before it, none
 //! of them from before the last touchdown or from before two rows of one time. With six rows and more each coordinate and
-//! each rate goes on by the fewest that have foretold its last two values nearly as well as any: accelerations may jump
+//! each rate goes on by as many as have foretold its last two values best: accelerations may jump
 //! from row to row, as a controller's do.
 //! Velocities go on as recorded; differences are replaced by the rates of the polynomial. If that does not reach the
 //! ground before the next row, time and positions lie on the line between both rows. A clip that ends aloft ends

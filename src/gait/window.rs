@@ -14,8 +14,6 @@ pub(super) const SMOOTH: usize = 6;
 pub(super) const FORETOLD: usize = 2;
 /// Fewer rows than this show nothing of that.
 const LEAST: usize = 6;
-/// Fewer rows are used if they are off by no more times what more are off by.
-const NEARLY: f64 = 1.5;
 
 /// The last rows of a clip.
 #[derive(Debug)]
@@ -79,7 +77,7 @@ impl<S> Window<S> {
             let off = |(back, by): &(usize, Interpolation)| (by.value(|at| value(back + 1 + at)) - value(*back)).abs();
             let off: Vec<f64> = foretelling.iter().map(|of| of.iter().map(off).fold(0.0, f64::max)).collect();
             let least = off.iter().copied().fold(f64::INFINITY, f64::min);
-            let used = off.iter().position(|&off| off <= NEARLY * least).map_or(1, |place| place + 1);
+            let used = off.iter().position(|&off| off == least).map_or(1, |place| place + 1);
             // What more rows would have foretold is not known.
             if used == foretelling.len() { (used + 1).min(most) } else { used }
         };
