@@ -75,8 +75,8 @@ impl Unforced {
     }
 }
 
-/// After an impact a rate of no more than this part of the fastest is rounding.
-const STOPPED: f64 = 1e-13;
+/// Velocities after an impact are right to this part of those before it: rates of no more than it say nothing.
+const STOPPED: f64 = 1e-10;
 /// No planet has a stronger gravity \[m/s^2\]; some programs count in centimeters.
 const STRONGEST: f64 = 100.0;
 
