@@ -19,20 +19,33 @@ pub fn print(rounds: usize) {
     let robot = super::ramone();
     of_one_state(&robot, rounds);
     of_one_line(&robot, rounds);
+    of_threads(&robot, rounds.min(20));
 }
 
 /// Prints what both take for one line of the walk: the least time of rounds that alternate.
-fn compare(rounds: usize, what: &str, mut own: impl FnMut(), against: &str, mut yardstick: impl FnMut()) {
+fn compare(rounds: usize, what: &str, own: impl FnMut(), against: &str, yardstick: impl FnMut()) {
+    compare_lines(rounds, WALK.lines().count(), what, own, against, yardstick);
+}
+
+/// The same of so many lines.
+fn compare_lines(
+    rounds: usize,
+    lines: usize,
+    what: &str,
+    mut own: impl FnMut(),
+    against: &str,
+    mut yardstick: impl FnMut(),
+) {
     let mut least = [f64::INFINITY; 2];
     for _ in 0..rounds {
         for (work, least) in [&mut own as &mut dyn FnMut(), &mut yardstick].into_iter().zip(&mut least) {
             let start = Instant::now();
             work();
-            *least = least.min(start.elapsed().as_nanos() as f64 / WALK.lines().count() as f64);
+            *least = least.min(start.elapsed().as_nanos() as f64 / lines as f64);
         }
     }
     let [own, yardstick] = least;
-    println!("{what:<34} {own:>7.0} ns   {against:<30} {yardstick:>7.0} ns   ratio {:.1}", own / yardstick);
+    println!("{what:<34} {own:>7.0} ns   {against:<30} {yardstick:>7.0} ns   ratio {:.2}", own / yardstick);
 }
 
 /// Both feet touch in every pose of the walk.
@@ -164,11 +177,12 @@ struct Joints {
     right_knee: f64,
 }
 
-struct Kept(Vec<u8>);
+/// What is done with the bytes of the answers.
+struct Bytes<F>(F);
 
-impl Sink for Kept {
+impl<F: FnMut(&[u8])> Sink for Bytes<F> {
     fn block(&mut self, block: Block) -> heelstrike::Result<()> {
-        self.0.extend(block.out);
+        (self.0)(&block.out);
         Ok(())
     }
 
@@ -177,38 +191,59 @@ impl Sink for Kept {
     }
 }
 
+fn question(robot: &Robot, brief: bool) -> Question<'_> {
+    Question {
+        robot,
+        options: Options { friction_needed: true, ..Options::default() },
+        defaults: Defaults { friction: Some(Friction::Finite(0.6)), ..Defaults::default() },
+        detail: Detail { brief, ..Detail::default() },
+        total: None,
+        header: None,
+        columns: None,
+        keyframes: false,
+    }
+}
+
+/// Gives `write` the answers to `lines`.
+fn answer(question: &Question, lines: &str, threads: usize, write: impl FnMut(&[u8])) {
+    let answerer = || {
+        let mut batch = Batch::new(question);
+        move |chunk| batch.records(&chunk)
+    };
+    run(Chunks::of_lines(lines.as_bytes()), threads, answerer, &mut Bytes(write)).expect("good lines");
+}
+
 fn of_one_line(robot: &Robot, rounds: usize) {
     println!("\nA line of RAMone's walk, one thread:");
     for (what, brief) in [("batch --brief", true), ("batch", false)] {
-        let question = Question {
-            robot,
-            options: Options { friction_needed: true, ..Options::default() },
-            defaults: Defaults { friction: Some(Friction::Finite(0.6)), ..Defaults::default() },
-            detail: Detail { brief, ..Detail::default() },
-            total: None,
-            header: None,
-            columns: None,
-            keyframes: false,
+        let question = question(robot, brief);
+        let answers = || {
+            let mut written = Vec::new();
+            answer(&question, WALK, 1, |bytes| written.extend(bytes));
+            written
         };
-        let answer = || {
-            let mut kept = Kept(Vec::new());
-            let answerer = || {
-                let mut batch = Batch::new(&question);
-                move |chunk| batch.records(&chunk)
-            };
-            run(Chunks::of_lines(WALK.as_bytes()), 1, answerer, &mut kept).expect("good lines");
-            kept.0
-        };
-        let answers = String::from_utf8(answer()).expect("text");
+        let written = String::from_utf8(answers()).expect("text");
         let mut out = Vec::new();
-        let own = || {
-            black_box(answer());
-        };
+        let own = || drop(black_box(answers()));
         match brief {
-            true => compare(rounds, what, own, SERDE, parse_and_format::<Brief>(&answers, &mut out)),
-            false => compare(rounds, what, own, SERDE, parse_and_format::<Report>(&answers, &mut out)),
+            true => compare(rounds, what, own, SERDE, parse_and_format::<Brief>(&written, &mut out)),
+            false => compare(rounds, what, own, SERDE, parse_and_format::<Report>(&written, &mut out)),
         }
-        assert_eq!(out, answers.as_bytes());
+        assert_eq!(out, written.as_bytes());
+    }
+}
+
+/// How much of a second processor the reader and the writer, which wait for each other, leave to the answers.
+fn of_threads(robot: &Robot, rounds: usize) {
+    println!("\nA line of 40,800, two threads:");
+    let lines = WALK.repeat(400);
+    for (what, brief) in [("batch --brief", true), ("batch", false)] {
+        let question = question(robot, brief);
+        let with = |threads| {
+            let (question, lines) = (&question, &lines);
+            move || answer(question, lines, threads, |bytes| _ = black_box(bytes))
+        };
+        compare_lines(rounds, lines.lines().count(), what, with(2), "one thread", with(1));
     }
 }
 

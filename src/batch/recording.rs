@@ -2,7 +2,7 @@
 //! other.
 
 use super::chunk::{Chunks, too_long};
-use super::run::TaskSource;
+use super::run::{TaskSource, task_size};
 use crate::error::excerpt::Excerpt;
 use crate::gait::{Sample, Sampled};
 #[cfg(feature = "columnar")]
@@ -12,9 +12,6 @@ use crate::state::Defaults;
 use crate::{Error, Reason, Result, Robot};
 use serde_json::Value;
 use std::io::Read;
-
-/// How many states make a task.
-const STATES: usize = 16;
 
 /// The row that a state comes from; for a touchdown the last one before it.
 #[derive(Debug, Clone, Default)]
@@ -86,13 +83,15 @@ fn sample(row: Result<Row>, robot: &Robot, defaults: &Defaults) -> Sampled<RowOr
 #[derive(Debug)]
 pub struct Recording<I> {
     samples: I,
+    /// How many were given.
+    given: usize,
     /// Why the input ended early; reported after what came before.
     broken: Option<Error>,
 }
 
 impl<I: Iterator<Item = Sampled<RowOrigin>> + Send> Recording<I> {
     pub fn new(samples: I) -> Self {
-        Self { samples, broken: None }
+        Self { samples, given: 0, broken: None }
     }
 }
 
@@ -101,13 +100,14 @@ impl<I: Iterator<Item = Sampled<RowOrigin>> + Send> TaskSource for Recording<I> 
 
     fn next(&mut self) -> Result<Option<Self::Task>> {
         let mut task = Vec::new();
-        while self.broken.is_none() && task.len() < STATES {
+        while self.broken.is_none() && task.len() < task_size(self.given) {
             match self.samples.next() {
                 None => break,
                 Some(Err((_, error))) if matches!(error.reason(), Reason::Io(_)) => self.broken = Some(error),
                 Some(sampled) => task.push(sampled),
             }
         }
+        self.given += task.len();
         match &self.broken {
             Some(error) if task.is_empty() => Err(error.clone()),
             _ => Ok((!task.is_empty()).then_some(task)),
