@@ -160,12 +160,13 @@ impl<'a> Inspection<'a> {
     /// All that is known about `robot`, with `feet` in addition to its own.
     pub fn new(robot: &'a Robot, feet: &[NamedContact]) -> Self {
         let body_name = |body: usize| robot.bodies[body].name.as_str();
-        let body = |(at, body): (usize, &'a Body)| {
+        let mut links = vec![Vec::new(); robot.bodies.len()];
+        robot.links.iter().for_each(|link| links[link.body].push(link.name.as_str()));
+        let body = |(body, links): (&'a Body, Vec<&'a str>)| {
             let (fixed_to, origin) = match body.joint {
                 Some(ParentJoint::Fixed { parent, origin }) => (Some(body_name(parent)), Some(origin)),
                 _ => (None, None),
             };
-            let links = robot.links.iter().filter(|link| link.body == at).map(|link| link.name.as_str()).collect();
             let &Body { ref name, mass, com, moment, .. } = body;
             BodyRecord { name, links, mass, com, moment, fixed_to, origin }
         };
@@ -209,7 +210,7 @@ impl<'a> Inspection<'a> {
             cautions: &robot.reading.cautions,
             mass: robot.mass(),
             coordinates: robot.coordinates().collect(),
-            bodies: robot.bodies.iter().enumerate().map(body).collect(),
+            bodies: robot.bodies.iter().zip(links).map(body).collect(),
             joints: robot.joints.iter().map(joint).collect(),
             followers: robot.mimic_joints.iter().map(mimic).collect(),
             held: robot.reading.frozen.iter().map(frozen).collect(),

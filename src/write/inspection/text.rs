@@ -35,7 +35,8 @@ impl Inspection<'_> {
         let left_out = written(|out| self.left_out(palette, out));
         let mut sections = [bodies, joints, left_out]
             .map(|text| Section { lines: text.lines().map(str::to_owned).collect(), left_out: 0 });
-        let lines = |sections: &[Section]| head.lines().count() + sections.iter().map(Section::height).sum::<usize>();
+        let above = head.lines().count();
+        let lines = |sections: &[Section]| above + sections.iter().map(Section::height).sum::<usize>();
         let is_cut = !all && lines(&sections) > SCREEN;
         while is_cut && lines(&sections) + 1 > SCREEN {
             let longest = sections.iter_mut().max_by_key(|section| section.lines.len());
