@@ -42,6 +42,9 @@ pub struct Summary {
     /// States of which another one within their uncertainty has other outcomes.
     #[serde(skip_serializing_if = "is_zero")]
     pub not_holding: u64,
+    /// States with an uncertainty.
+    #[serde(skip)]
+    pub uncertain: u64,
     /// States with contacts that were taken as exactly at rest, because they are slow (`resting_speed`).
     pub resting: u64,
     /// The modes of the contacts, in the order of their first appearance, at most 1,000 different lists.
@@ -178,6 +181,7 @@ impl Summary {
         self.question = impact.aspect();
         self.verdicts.0[analysis.verdict as usize] += 1;
         self.beyond_budget += u64::from(analysis.open.is_some_and(|open| open.beyond_budget));
+        self.uncertain += u64::from(impact.holds.is_some());
         self.not_holding += u64::from(matches!(impact.holds, Some(Robustness::Not(_))));
         self.resting += u64::from(impact.resting.contains(&true));
         self.near(&state, &analysis.outcomes);
@@ -221,6 +225,7 @@ impl Summary {
         }
         self.more_friction.add(following.more_friction);
         self.slides_regardless += following.slides_regardless;
+        self.uncertain += following.uncertain;
         self.not_holding += following.not_holding;
         self.resting += following.resting;
         for list in following.modes {

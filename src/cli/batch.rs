@@ -353,6 +353,9 @@ impl Args {
         (thresholds, seen): (Thresholds, &Seen),
     ) -> io::Result<()> {
         note_all(notes::own_friction(counts.own_friction, "state"));
+        note_all(
+            question.columns.filter(|_| question.detail.brief).and_then(|_| notes::without_holds(counts.uncertain)),
+        );
         if let Some(least) = question.total.as_ref().and_then(TotalBudget::least) {
             let least = least.as_secs_f64();
             note(&format!(

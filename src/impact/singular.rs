@@ -378,9 +378,10 @@ impl<'a, T: Ordered> Equations<'a, T> {
             };
             ranges.push([bound(-T::one())?, bound(T::one())?]);
         }
+        let is_free = !unique && self.is_free(space)?;
         let impulse = if unique {
             from
-        } else if self.is_free(space)? {
+        } else if is_free {
             vec![T::zero(); from.len()]
         } else {
             let y = least_impulse(&from, &directions, &shifted)?;
@@ -392,7 +393,8 @@ impl<'a, T: Ordered> Equations<'a, T> {
         let velocity: Vec<T> = velocity.iter().map(|row| row.constant).collect();
         let mut numbers = Numbers::of((problem, scale), modes, impulse.as_chunks().0, velocity.as_chunks().0);
         numbers.are_sharp &= margin.is_none_or(|margin| is_known(margin, 1.0, scale.digits()));
-        if !unique {
+        // What no impulse has to hold needs no friction.
+        if !(unique || is_free) {
             let needed = friction_needed(modes, problem.laws(), entries.as_chunks().0, &shifted)?;
             numbers.take_friction(&needed, problem.laws(), scale.digits());
         }

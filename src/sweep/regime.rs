@@ -1,5 +1,6 @@
 //! The regime of a point: the set of valid outcomes, or the refusal.
 
+use crate::impact::Verdict;
 use crate::law::Mode;
 use crate::pipeline::Impact;
 use crate::{Error, Reason, Result};
@@ -15,6 +16,8 @@ pub enum Regime {
         outcomes: Vec<Vec<Mode>>,
         /// Combinations that no precision shows or excludes.
         undecided: Vec<Vec<Mode>>,
+        /// Whether every impulse is zero: contacts that slide on without a stroke have the modes of one that strikes.
+        no_impact: bool,
     },
     Refused {
         reason: Discriminant<Reason>,
@@ -38,7 +41,8 @@ impl Regime {
         let mut undecided: Vec<Vec<Mode>> = open.map(|outcome| outcome.modes.clone()).collect();
         undecided.sort();
         let contacts = impact.contacts.iter().map(|contact| contact.name.to_string()).collect();
-        Self::Answered { contacts, outcomes: analysis.modes(), undecided }
+        let no_impact = analysis.verdict == Verdict::NoImpact;
+        Self::Answered { contacts, outcomes: analysis.modes(), undecided, no_impact }
     }
 
     /// The modes of every outcome; `None` if the state is refused.

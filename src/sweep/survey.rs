@@ -23,7 +23,7 @@ pub struct Survey {
     pub odd_joints: Vec<String>,
 }
 
-/// A stretch of the parameter with one set of outcomes.
+/// A stretch of the parameter with one set of outcomes, all of which strike or none.
 #[derive(Debug, Clone)]
 pub struct Region {
     pub from: f64,

@@ -164,7 +164,7 @@ impl Arrays {
         for (place_of, contact) in places.iter_mut().zip(&impact.contacts) {
             *place_of = place(&contact.name)?;
         }
-        self.notes.push(self.verdict.len(), notes(&impact.notes));
+        self.notes.push(self.verdict.len(), notes(impact));
         for (at, outcome) in analysis.outcomes.iter().enumerate() {
             let (row, start) = (self.margin.len(), self.modes.len());
             let number = |entry| if outcome.decided { entry } else { f64::NAN };

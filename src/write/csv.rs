@@ -2,6 +2,7 @@
 
 use crate::contact::Feet;
 use crate::impact::{Analysis, CONTACT_LIMIT, Family, Next};
+use crate::pipeline::robust::Robustness;
 use crate::pipeline::{AT_REST, Aspect, Impact};
 use crate::read::table::{Carried, Form, Header, in_columns};
 use crate::state::NamedContact;
@@ -352,7 +353,7 @@ impl Columns {
             coordinates.for_each(|(at, &number)| row.set(at, Cell::Number(number)));
         }
         if !self.layout.brief {
-            row.set(self.family() + 3, Cell::Text(&notes(&impact.notes)));
+            row.set(self.family() + 3, Cell::Text(&notes(impact)));
         }
     }
 
@@ -452,9 +453,14 @@ pub(super) fn families(families: &[Family], at: usize) -> String {
     of_outcome.map(modes).collect::<Vec<_>>().join("; ")
 }
 
-/// Notes as one cell.
-pub(super) fn notes(notes: &[String]) -> String {
-    notes.iter().map(|note| short(note)).collect::<Vec<_>>().join("; ")
+/// Notes as one cell, with what is known of the state's uncertainty.
+pub(super) fn notes(impact: &Impact) -> String {
+    let holds = impact.holds.as_ref().map(|holds| match holds {
+        Robustness::Everywhere => "holds: true",
+        Robustness::Not(_) => "holds: false",
+        Robustness::Unknown => "holds: unknown",
+    });
+    impact.notes.iter().map(|note| short(note)).chain(holds).collect::<Vec<_>>().join("; ")
 }
 
 /// A note without the speeds of a resting contact: in a walk every row has such a contact.

@@ -58,6 +58,12 @@ pub fn no_strike(count: u64) -> Option<String> {
     (count > 0).then(|| format!("{what}: {count}; is theirs the state after it? (see `at`, `simulated`)"))
 }
 
+/// That a short table does not say of `count` states whether their outcomes hold within their uncertainty.
+pub fn without_holds(count: u64) -> Option<String> {
+    let what = "states with an `uncertainty`, without a word on whether they hold";
+    (count > 0).then(|| format!("{what}: {count}; without `brief` it stands in the column notes"))
+}
+
 /// Which parameters change nothing.
 pub fn unused(study: &Study) -> impl Iterator<Item = String> {
     study.unused().into_iter().map(|name| format!("nothing in the state or the robot depends on {name}"))

@@ -182,6 +182,27 @@ fn friction_needed_is_the_least_that_holds() {
     assert!(compared > 20 && jammed > 5, "{compared} {jammed}");
 }
 
+#[test]
+fn a_contact_that_needs_no_impulse_needs_no_friction() {
+    // G = [[1, 2], [2, 4]]: pressed by L_n, the contact resists by L_t = -2 L_n, but nothing presses it.
+    let parts = |velocity: f64| {
+        let problem = ContactProblem::from_dynamics(
+            &[vec![1.0]],
+            &[vec![1.0], vec![2.0]],
+            &[velocity],
+            vec![Friction::Finite(3.0)],
+            vec![0.0],
+        );
+        let found = analyze(&problem.expect("a problem"), ListedRejections::Nothing).expect("one contact");
+        let [only] = &found.outcomes[..] else { panic!("{found:?}") };
+        assert!(!only.impulse_unique && found.proven, "{found:?}");
+        only.friction_needed.clone()
+    };
+    assert_eq!(parts(0.0), [None]);
+    // L_t + 2 L_n = 1 needs none either, but presses.
+    assert_eq!(parts(-1.0), [Some(0.0)]);
+}
+
 /// A regular problem of four contacts.
 fn of_four(random: &mut Random) -> Parts {
     std::iter::repeat_with(|| Parts::random(random)).find(|parts| parts.friction.len() == 4).expect("one of four")

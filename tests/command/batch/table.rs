@@ -532,3 +532,23 @@ fn a_build_without_parquet_says_how_to_get_it() {
         assert!(refusal.contains("--features columnar") && refusal.contains("no Parquet and no Arrow"), "{refusal}");
     }
 }
+
+#[test]
+fn a_table_says_whether_an_answer_holds() {
+    let states = [0.1, 0.4].map(|width| {
+        format!("{{\"velocity\": {{\"base\": {{\"x\": 1, \"z\": -1}}}}, \"friction\": 0.7, \"uncertainty\": {{\"friction\": {width}}}}}\n")
+    });
+    let run = |arguments: &[&str]| {
+        let arguments = [&["urdf/block.urdf", "-", "--output-format", "csv"], arguments].concat();
+        crate::support::command::heelstrike_reads(&[&["batch"], &arguments[..]].concat(), states.concat())
+    };
+    let (full, brief) = (run(&[]), run(&["--brief"]));
+    let ends: Vec<bool> = full.stdout.lines().skip(1).map(|row| row.ends_with("holds: true")).collect();
+    assert_eq!(ends, [true, false], "{}", full.stdout);
+    assert!(full.stdout.ends_with("holds: false\n"), "{}", full.stdout);
+    assert!(
+        !full.stderr.contains("whether they hold") && brief.stderr.contains("whether they hold: 2;"),
+        "{}",
+        brief.stderr
+    );
+}

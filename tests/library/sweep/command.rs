@@ -21,6 +21,7 @@ pub struct Region {
     pub from: f64,
     pub to: f64,
     pub contacts: Option<Vec<String>>,
+    pub verdict: Option<String>,
     pub outcomes: Option<Vec<Vec<String>>>,
 }
 

@@ -1,6 +1,6 @@
 //! What turns at a border, where that is known by hand.
 
-use crate::sweep::command::{Border, Turn, straight, sweep};
+use crate::sweep::command::{Border, Turn, run, straight, sweep};
 use serde_json::json;
 use std::f64::consts::PI;
 
@@ -70,4 +70,29 @@ fn a_border_where_a_contact_opens_names_it() {
     let tolerance = 1e-6 * f64::sqrt(2.0);
     assert!((border.at - tolerance).abs() < 2e-12, "{} instead of {tolerance}", border.at);
     assert_eq!((&border.opening, &border.closing, &border.turns), (&block(), &vec![], &vec![]));
+}
+
+/// A block that slides keeps its modes where it does not move into the ground: that is an answer of its own, unless it
+/// is that of a single place.
+#[test]
+fn a_slide_without_a_stroke_is_a_region_of_its_own() {
+    let study = |z: &str, steps: u32| {
+        json!({
+            "parameters": {"a": {"from": -1, "to": 1, "steps": steps}},
+            "state": {"velocity": {"base": {"x": 1, "z": z}}, "friction": 0.5},
+        })
+    };
+    let regions = |z: &str, steps: u32| -> Vec<(f64, Option<String>)> {
+        let found = sweep("urdf/block.urdf", &study(z, steps));
+        found.regions.iter().map(|region| (region.to, region.verdict.clone())).collect()
+    };
+    for steps in [4, 21] {
+        let [first, second] = &regions("min(a - 0.3, 0)", steps)[..] else { panic!("two regions") };
+        assert!((first.0 - 0.3).abs() < 4e-12, "{first:?}");
+        assert_eq!([first, second].map(|region| region.1.as_deref()), [Some("unique"), Some("no_impact")]);
+        assert_eq!(regions("-a^2", steps), [(1.0, Some("unique".to_owned()))]);
+        assert_eq!(regions("0*a", steps), [(1.0, Some("no_impact".to_owned()))]);
+    }
+    let text = run("urdf/block.urdf", &study("min(a - 0.3, 0)", 4), &[]).stdout;
+    assert!(text.contains("every impulse is zero in B"), "{text}");
 }
