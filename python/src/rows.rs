@@ -410,7 +410,7 @@ struct Ranges(Range<usize>);
 impl TaskSource for Ranges {
     type Task = Range<usize>;
 
-    fn next(&mut self) -> heelstrike::Result<Option<Range<usize>>> {
+    fn next(&mut self, _: usize) -> heelstrike::Result<Option<Range<usize>>> {
         let Range { start, end } = self.0;
         self.0.start = end.min(start + TOGETHER);
         Ok((start < end).then_some(start..self.0.start))

@@ -2,7 +2,7 @@
 //! other.
 
 use super::chunk::{Chunks, too_long};
-use super::run::{TaskSource, task_size};
+use super::run::TaskSource;
 use crate::error::excerpt::Excerpt;
 use crate::gait::{Sample, Sampled};
 #[cfg(feature = "columnar")]
@@ -12,6 +12,9 @@ use crate::state::Defaults;
 use crate::{Error, Reason, Result, Robot};
 use serde_json::Value;
 use std::io::Read;
+
+/// How many states make a task.
+const STATES: usize = 16;
 
 /// The row that a state comes from; for a touchdown the last one before it.
 #[derive(Debug, Clone, Default)]
@@ -83,31 +86,28 @@ fn sample(row: Result<Row>, robot: &Robot, defaults: &Defaults) -> Sampled<RowOr
 #[derive(Debug)]
 pub struct Recording<I> {
     samples: I,
-    /// How many were given.
-    given: usize,
     /// Why the input ended early; reported after what came before.
     broken: Option<Error>,
 }
 
 impl<I: Iterator<Item = Sampled<RowOrigin>> + Send> Recording<I> {
     pub fn new(samples: I) -> Self {
-        Self { samples, given: 0, broken: None }
+        Self { samples, broken: None }
     }
 }
 
 impl<I: Iterator<Item = Sampled<RowOrigin>> + Send> TaskSource for Recording<I> {
     type Task = Vec<Sampled<RowOrigin>>;
 
-    fn next(&mut self) -> Result<Option<Self::Task>> {
+    fn next(&mut self, _: usize) -> Result<Option<Self::Task>> {
         let mut task = Vec::new();
-        while self.broken.is_none() && task.len() < task_size(self.given) {
+        while self.broken.is_none() && task.len() < STATES {
             match self.samples.next() {
                 None => break,
                 Some(Err((_, error))) if matches!(error.reason(), Reason::Io(_)) => self.broken = Some(error),
                 Some(sampled) => task.push(sampled),
             }
         }
-        self.given += task.len();
         match &self.broken {
             Some(error) if task.is_empty() => Err(error.clone()),
             _ => Ok((!task.is_empty()).then_some(task)),

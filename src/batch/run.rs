@@ -16,24 +16,27 @@ use crate::error::excerpt::Excerpt;
 use crate::write::ColumnBlock;
 use crate::{Error, Result};
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::mpsc::{Receiver, TryRecvError, sync_channel};
 use std::thread::{self, Builder};
+use std::time::{Duration, Instant};
 
 /// Tasks in flight per thread.
-const AHEAD: usize = 4;
+const AHEAD: usize = 2;
 
-/// How many records the next task has, once `before` were given: few at first, so that the threads share short inputs,
-/// and always a small part of what was done before, so that none is left alone with much of the work at the end.
-pub(super) fn task_size(before: usize) -> usize {
-    (before / 32).clamp(16, 256)
-}
+/// The most records of a task: few, so that the threads share short inputs, and more while these take less than
+/// [`QUICK`], since to wake a thread for a task takes as long as some records.
+const FEW: usize = 16;
+const MANY: usize = 64;
+const QUICK: Duration = Duration::from_millis(1);
 
 /// Gives tasks, one after the other.
 pub trait TaskSource: Send {
     type Task: Send;
 
-    /// The next records; `None` at the end. After an error of reading this is not called again.
-    fn next(&mut self) -> Result<Option<Self::Task>>;
+    /// The next records, at most so many if there are more; `None` at the end. After an error of reading this is not called
+    /// again.
+    fn next(&mut self, most: usize) -> Result<Option<Self::Task>>;
 
     /// Whether the next records may take long to arrive.
     fn keeps_waiting(&self) -> bool {
@@ -116,7 +119,7 @@ pub fn run<S: TaskSource, B: Send, F: FnMut(S::Task) -> B>(
 }
 
 fn alone<S: TaskSource, B>(mut source: S, mut answer: impl FnMut(S::Task) -> B, sink: &mut impl Sink<B>) -> Result<()> {
-    while let Some(task) = source.next()? {
+    while let Some(task) = source.next(FEW)? {
         sink.block(answer(task))?;
         if source.keeps_waiting() {
             sink.idle()?;
@@ -136,12 +139,13 @@ fn in_threads<S: TaskSource, B: Send, F: FnMut(S::Task) -> B>(
     let (places, ordered) = sync_channel(AHEAD * threads);
     // Until it ends or fails, or the sink does.
     let source = Mutex::new(Some((source, places)));
+    let most = AtomicUsize::new(FEW);
     // The next task and the channel for its block. Here a thread waits for the others, for input and for the sink.
     let next_job = || {
         let mut left = source.lock().ok()?;
         let (mut source, places) = left.take()?;
         let (block, place) = sync_channel(1);
-        let (task, place) = match source.next().transpose()? {
+        let (task, place) = match source.next(most.load(Relaxed)).transpose()? {
             Ok(task) => (Some(task), Ok(place)),
             Err(error) => (None, Err(error)),
         };
@@ -152,9 +156,12 @@ fn in_threads<S: TaskSource, B: Send, F: FnMut(S::Task) -> B>(
     let work = || {
         let mut answer = answerer();
         while let Some((task, block)) = next_job() {
+            let start = Instant::now();
             if block.send(answer(task)).is_err() {
                 break;
             }
+            let is_quick = start.elapsed() < QUICK;
+            most.store(if is_quick { (2 * most.load(Relaxed)).min(MANY) } else { FEW }, Relaxed);
         }
     };
     thread::scope(|scope| {
@@ -194,7 +201,7 @@ mod tests {
     impl TaskSource for Numbers {
         type Task = u32;
 
-        fn next(&mut self) -> Result<Option<u32>> {
+        fn next(&mut self, _: usize) -> Result<Option<u32>> {
             self.0 += 1;
             Ok((self.0 <= self.1).then_some(self.0 - 1))
         }

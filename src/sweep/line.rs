@@ -193,7 +193,7 @@ mod tests {
         fn regime(&mut self, at: f64) -> Arc<Regime> {
             let modes: Vec<Mode> = (self.0)(at).into_iter().collect();
             let contacts = modes.iter().map(|_| "foot".to_owned()).collect();
-            Arc::new(Regime::Answered { contacts, outcomes: vec![modes], undecided: Vec::new(), no_impact: false })
+            Arc::new(Regime::Answered { contacts, outcomes: vec![modes], undecided: Vec::new() })
         }
 
         /// One combination, det A = 1.

@@ -14,7 +14,7 @@ use super::edge::{Edge, GridLine, Segment};
 use super::interior::{deepest_nodes, distance};
 use super::letter;
 use super::line::{Probe, RESOLUTION};
-use super::model::{RobotStudy, Solver};
+use super::model::{OTHERS, RobotStudy, Solver};
 use super::parallel::Workers;
 use super::polyline::{loops, polylines};
 use super::regime::Regime;
@@ -61,7 +61,7 @@ pub struct Area {
     pub loops: Vec<Vec<[f64; 2]>>,
     /// For each connected part a point well inside it, and its distance from the edge as part of the ranges.
     pub middles: Vec<([f64; 2], f64)>,
-    /// The verdict at such a point; `None` if states are refused.
+    /// The verdict at such a point, or at a node that strikes if nothing does there; `None` if states are refused.
     pub verdict: Option<Verdict>,
     /// Why states are refused, as at such a point or next to a border, if they are.
     pub refused: Option<Error>,
@@ -229,7 +229,10 @@ impl Map {
         let mut dependent = false;
         for area in &mut areas {
             let Some((middle, _)) = area.middles.first() else { continue };
-            let inner = solver.inner(middle);
+            let inside = || (0..grid.nodes.len()).filter(|&node| grid.nodes[node] == area.regime);
+            let step = inside().count().div_ceil(OTHERS).max(1);
+            let place = |node: usize| vec![grid.xs[node % grid.xs.len()], grid.ys[node / grid.xs.len()]];
+            let inner = solver.inner(middle, inside().step_by(step).map(place));
             (area.verdict, area.refused) = (inner.verdict, inner.refused);
             dependent |= inner.dependent;
         }

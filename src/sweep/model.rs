@@ -68,6 +68,9 @@ pub(super) struct Inner {
 /// The inequalities of up to this many contacts are followed: 4^n combinations.
 pub const WATCHED_CONTACTS: usize = 4;
 
+/// At so many more points it is asked whether nothing strikes in a region.
+pub(super) const OTHERS: usize = 16;
+
 /// So many points are remembered: the nodes of an interval, of its halves and of theirs.
 const RECENT: usize = 16;
 
@@ -153,8 +156,18 @@ impl<'a> Solver<'a> {
         Ok((names, impact.into_analysis()?))
     }
 
-    /// Properties of a region, found at a point in it.
-    pub(super) fn inner(&mut self, point: &[f64]) -> Inner {
+    /// Properties of a region, found at a point in it; that nothing strikes is said of it only if so it is at the `others`,
+    /// too: contacts that slide on without a stroke have the modes of those that strike.
+    pub(super) fn inner(&mut self, point: &[f64], mut others: impl Iterator<Item = Vec<f64>>) -> Inner {
+        let inner = self.inner_at(point);
+        if inner.verdict != Some(Verdict::NoImpact) {
+            return inner;
+        }
+        let strikes = |own: &Inner| own.verdict.is_some_and(|verdict| verdict != Verdict::NoImpact);
+        others.find_map(|point| Some(self.inner_at(&point)).filter(strikes)).unwrap_or(inner)
+    }
+
+    fn inner_at(&mut self, point: &[f64]) -> Inner {
         let found = self.explained(point, &[]);
         let dependent = |(contacts, analysis): &(Vec<String>, Analysis)| {
             analysis.rank.is_some_and(|rank| rank < 2 * contacts.len())

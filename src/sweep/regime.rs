@@ -1,6 +1,5 @@
 //! The regime of a point: the set of valid outcomes, or the refusal.
 
-use crate::impact::Verdict;
 use crate::law::Mode;
 use crate::pipeline::Impact;
 use crate::{Error, Reason, Result};
@@ -16,8 +15,6 @@ pub enum Regime {
         outcomes: Vec<Vec<Mode>>,
         /// Combinations that no precision shows or excludes.
         undecided: Vec<Vec<Mode>>,
-        /// Whether every impulse is zero: contacts that slide on without a stroke have the modes of one that strikes.
-        no_impact: bool,
     },
     Refused {
         reason: Discriminant<Reason>,
@@ -41,8 +38,7 @@ impl Regime {
         let mut undecided: Vec<Vec<Mode>> = open.map(|outcome| outcome.modes.clone()).collect();
         undecided.sort();
         let contacts = impact.contacts.iter().map(|contact| contact.name.to_string()).collect();
-        let no_impact = analysis.verdict == Verdict::NoImpact;
-        Self::Answered { contacts, outcomes: analysis.modes(), undecided, no_impact }
+        Self::Answered { contacts, outcomes: analysis.modes(), undecided }
     }
 
     /// The modes of every outcome; `None` if the state is refused.

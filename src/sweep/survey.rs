@@ -1,7 +1,7 @@
 //! The regions of a study of one parameter, with the transitions between them.
 
 use super::line::{Along, Bracket, Probe, RESOLUTION, Stretch, brackets, stretches};
-use super::model::{RobotStudy, Solver};
+use super::model::{OTHERS, RobotStudy, Solver};
 use super::parallel::Workers;
 use super::regime::Regime;
 use super::transition::Transition;
@@ -23,7 +23,7 @@ pub struct Survey {
     pub odd_joints: Vec<String>,
 }
 
-/// A stretch of the parameter with one set of outcomes, all of which strike or none.
+/// A stretch of the parameter with one set of outcomes.
 #[derive(Debug, Clone)]
 pub struct Region {
     pub from: f64,
@@ -31,7 +31,7 @@ pub struct Region {
     pub regime: Arc<Regime>,
     /// The number of its regime, from 0 in the order of first regions.
     pub kind: usize,
-    /// The verdict at its middle; `None` if it is refused.
+    /// The verdict at its middle, or at a sample that strikes if nothing does there; `None` if it is refused.
     pub verdict: Option<Verdict>,
     /// Why it is refused, as at its middle, if it is.
     pub refused: Option<Error>,
@@ -78,7 +78,9 @@ impl Survey {
             let begin = index.checked_sub(1).map_or(parameter.from, |border| brackets[border].above.at);
             let middle = 0.5 * (from + to);
             let at = if solver.regime(&[middle]) == regime { middle } else { begin };
-            let inner = solver.inner(&[at]);
+            let inside = || samples.iter().filter(|own| own.regime == regime && from < own.at && own.at < to);
+            let step = inside().count().div_ceil(OTHERS).max(1);
+            let inner = solver.inner(&[at], inside().step_by(step).map(|own| vec![own.at]));
             dependent |= inner.dependent;
             Region { from, to, regime, kind, verdict: inner.verdict, refused: inner.refused }
         };

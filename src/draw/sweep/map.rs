@@ -138,8 +138,7 @@ mod tests {
         let (mut areas, mut curves, mut x) = (Vec::new(), Vec::new(), 0.0);
         for (index, width) in widths.iter().enumerate() {
             let outcomes = vec![vec![Mode::ALL[index]]];
-            let regime =
-                Regime::Answered { contacts: vec!["foot".into()], outcomes, undecided: Vec::new(), no_impact: false };
+            let regime = Regime::Answered { contacts: vec!["foot".into()], outcomes, undecided: Vec::new() };
             let loops = vec![line(x).into_iter().chain(line(x + width).into_iter().rev()).collect()];
             let middles = vec![([x + 0.5 * width, 0.5], 0.5 * width)];
             areas.push(Area { regime: regime.into(), loops, middles, verdict: None, refused: None });

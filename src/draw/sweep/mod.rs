@@ -129,8 +129,7 @@ mod tests {
 
     #[test]
     fn neighbors_differ_in_color() {
-        let regime =
-            Regime::Answered { contacts: Vec::new(), outcomes: Vec::new(), undecided: Vec::new(), no_impact: false };
+        let regime = Regime::Answered { contacts: Vec::new(), outcomes: Vec::new(), undecided: Vec::new() };
         let regimes = [&regime; 20];
         // Each kind borders on the one before it, and on one that would have its color if colors were used in turn.
         let borders: Vec<[usize; 2]> =

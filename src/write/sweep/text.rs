@@ -145,10 +145,6 @@ impl Transition {
         let closing = self.closing.iter().map(|contact| alone(contact, above));
         let all: Vec<String> = self.ended.iter().map(ends).chain(opening).chain(closing).collect();
         if all.is_empty() {
-            let strokeless = |side: &RegionSide| side.happening.verdict == Some(Verdict::NoImpact);
-            if let [Some(side), None] | [None, Some(side)] = [below, above].map(|side| Some(side).filter(strokeless)) {
-                return format!("every impulse is zero in {}", side.letter);
-            }
             return "the outcomes change, but no inequality of either side is seen to pass zero".to_owned();
         }
         visible(&all.join("; ")).into_owned()
