@@ -24,11 +24,12 @@ const GREATEST: f64 = 1e12;
 /// No slack is sought beyond this.
 const ENOUGH: f64 = 1e3;
 
-/// |L_t| / L_n of each sticking contact that some admissible impulse presses on the ground. The impulses are functions of
-/// y, admissible where no function is negative, as none is at y = 0.
+/// |L_t| / L_n of each sticking contact that some admissible impulse presses on the ground, unless the `shortest` of them
+/// does not need it. The impulses are functions of y, admissible where no function is negative, as none is at y = 0.
 pub fn friction_needed<T: Ordered>(
     modes: &[Mode],
     laws: &[Law],
+    shortest: &[Pair<T>],
     impulses: &[Pair<LinearFunction<T>>],
     functions: &[LinearFunction<T>],
 ) -> Result<Vec<Option<T>>, Unsettled> {
@@ -36,6 +37,9 @@ pub fn friction_needed<T: Ordered>(
     let (mut needed, mut common) = (vec![None; modes.len()], vec![None; modes.len()]);
     for contact in (0..modes.len()).filter(|&contact| modes[contact] == Mode::Stick) {
         let members = || (0..modes.len()).filter(|&own| groups[own] == groups[contact] && modes[own] == Mode::Stick);
+        if members().all(|own| shortest[own].iter().all(|entry| entry.sign() == Sign::Zero)) {
+            continue;
+        }
         let [t, n] = [0, 1].map(|entry| sum(members().map(|own| &impulses[own][entry])));
         let are_alike = members().all(|own| laws[own] == laws[contact]);
         if are_alike && t.is_constant()? && n.is_constant()? && exchange(members(), impulses)? {
@@ -236,7 +240,8 @@ mod tests {
                 [cone(1.0), cone(-1.0), n.clone()]
             })
             .collect();
-        let needed = friction_needed(&[Mode::Stick; 2], &laws, &impulses, &functions).unwrap();
+        let shortest = [[Number::one(); 2]; 2];
+        let needed = friction_needed(&[Mode::Stick; 2], &laws, &shortest, &impulses, &functions).unwrap();
         [0, 1].map(|contact: usize| needed[contact].map(Ordered::to_f64))
     }
 

@@ -378,10 +378,9 @@ impl<'a, T: Ordered> Equations<'a, T> {
             };
             ranges.push([bound(-T::one())?, bound(T::one())?]);
         }
-        let is_free = !unique && self.is_free(space)?;
         let impulse = if unique {
             from
-        } else if is_free {
+        } else if self.is_free(space)? {
             vec![T::zero(); from.len()]
         } else {
             let y = least_impulse(&from, &directions, &shifted)?;
@@ -393,9 +392,9 @@ impl<'a, T: Ordered> Equations<'a, T> {
         let velocity: Vec<T> = velocity.iter().map(|row| row.constant).collect();
         let mut numbers = Numbers::of((problem, scale), modes, impulse.as_chunks().0, velocity.as_chunks().0);
         numbers.are_sharp &= margin.is_none_or(|margin| is_known(margin, 1.0, scale.digits()));
-        // What no impulse has to hold needs no friction.
-        if !(unique || is_free) {
-            let needed = friction_needed(modes, problem.laws(), entries.as_chunks().0, &shifted)?;
+        if !unique {
+            let shortest = impulse.as_chunks().0;
+            let needed = friction_needed(modes, problem.laws(), shortest, entries.as_chunks().0, &shifted)?;
             numbers.take_friction(&needed, problem.laws(), scale.digits());
         }
         let range = |(&ends, &own): (&[Option<T>; 2], &T)| {

@@ -184,23 +184,20 @@ fn friction_needed_is_the_least_that_holds() {
 
 #[test]
 fn a_contact_that_needs_no_impulse_needs_no_friction() {
-    // G = [[1, 2], [2, 4]]: pressed by L_n, the contact resists by L_t = -2 L_n, but nothing presses it.
-    let parts = |velocity: f64| {
-        let problem = ContactProblem::from_dynamics(
-            &[vec![1.0]],
-            &[vec![1.0], vec![2.0]],
-            &[velocity],
-            vec![Friction::Finite(3.0)],
-            vec![0.0],
-        );
-        let found = analyze(&problem.expect("a problem"), ListedRejections::Nothing).expect("one contact");
+    // G = [[1, 2], [2, 4]] twice: pressed by L_n, a contact resists by L_t = -2 L_n.
+    let needed = |velocity: [f64; 2]| {
+        let jacobian = [[1.0, 0.0], [2.0, 0.0], [0.0, 1.0], [0.0, 2.0]].map(|row| row.to_vec());
+        let masses = [vec![1.0, 0.0], vec![0.0, 1.0]];
+        let friction = vec![Friction::Finite(3.0); 2];
+        let problem = ContactProblem::from_dynamics(&masses, &jacobian, &velocity, friction, vec![0.0; 2]);
+        let found = analyze(&problem.expect("a problem"), ListedRejections::Nothing).expect("two contacts");
         let [only] = &found.outcomes[..] else { panic!("{found:?}") };
         assert!(!only.impulse_unique && found.proven, "{found:?}");
         only.friction_needed.clone()
     };
-    assert_eq!(parts(0.0), [None]);
-    // L_t + 2 L_n = 1 needs none either, but presses.
-    assert_eq!(parts(-1.0), [Some(0.0)]);
+    assert_eq!(needed([0.0, 0.0]), [None, None]);
+    // L_t + 2 L_n = 1 needs none either, but presses, and the other contact has no part in it.
+    assert_eq!(needed([0.0, -1.0]), [None, Some(0.0)]);
 }
 
 /// A regular problem of four contacts.
