@@ -34,8 +34,8 @@ const QUICK: Duration = Duration::from_millis(1);
 pub trait TaskSource: Send {
     type Task: Send;
 
-    /// The next records, at most so many if there are more; `None` at the end. After an error of reading this is not called
-    /// again.
+    /// The next records, at most so many if the source does not cut its tasks itself; `None` at the end. After an error of
+    /// reading this is not called again.
     fn next(&mut self, most: usize) -> Result<Option<Self::Task>>;
 
     /// Whether the next records may take long to arrive.
@@ -216,6 +216,35 @@ mod tests {
         fn idle(&mut self) -> Result<()> {
             Ok(())
         }
+    }
+
+    /// How many records are asked for, call by call.
+    struct Asked<'a>(usize, &'a Mutex<Vec<usize>>);
+
+    impl TaskSource for Asked<'_> {
+        type Task = ();
+
+        fn next(&mut self, most: usize) -> Result<Option<()>> {
+            self.1.lock().unwrap().push(most);
+            self.0 -= 1;
+            Ok((self.0 > 0).then_some(()))
+        }
+    }
+
+    #[test]
+    fn tasks_grow_only_while_they_are_quick() {
+        let asked = |takes: Duration| {
+            let asked = Mutex::default();
+            let wait = |()| {
+                thread::sleep(takes);
+                Block::default()
+            };
+            run(Asked(50, &asked), 2, || wait, &mut Vec::new()).unwrap();
+            asked.into_inner().unwrap()
+        };
+        let quick = asked(Duration::ZERO);
+        assert!(quick[0] == FEW && quick.contains(&MANY), "{quick:?}");
+        assert!(asked(2 * QUICK).iter().all(|&most| most == FEW));
     }
 
     #[test]

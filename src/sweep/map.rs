@@ -14,7 +14,7 @@ use super::edge::{Edge, GridLine, Segment};
 use super::interior::{deepest_nodes, distance};
 use super::letter;
 use super::line::{Probe, RESOLUTION};
-use super::model::{OTHERS, RobotStudy, Solver};
+use super::model::{RobotStudy, Solver};
 use super::parallel::Workers;
 use super::polyline::{loops, polylines};
 use super::regime::Regime;
@@ -229,10 +229,9 @@ impl Map {
         let mut dependent = false;
         for area in &mut areas {
             let Some((middle, _)) = area.middles.first() else { continue };
-            let inside = || (0..grid.nodes.len()).filter(|&node| grid.nodes[node] == area.regime);
-            let step = inside().count().div_ceil(OTHERS).max(1);
+            let inside = (0..grid.nodes.len()).filter(|&node| grid.nodes[node] == area.regime);
             let place = |node: usize| vec![grid.xs[node % grid.xs.len()], grid.ys[node / grid.xs.len()]];
-            let inner = solver.inner(middle, inside().step_by(step).map(place));
+            let inner = solver.inner(middle, inside.map(place));
             (area.verdict, area.refused) = (inner.verdict, inner.refused);
             dependent |= inner.dependent;
         }

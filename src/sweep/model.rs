@@ -68,9 +68,6 @@ pub(super) struct Inner {
 /// The inequalities of up to this many contacts are followed: 4^n combinations.
 pub const WATCHED_CONTACTS: usize = 4;
 
-/// At so many more points it is asked whether nothing strikes in a region.
-pub(super) const OTHERS: usize = 16;
-
 /// So many points are remembered: the nodes of an interval, of its halves and of theirs.
 const RECENT: usize = 16;
 
@@ -163,8 +160,13 @@ impl<'a> Solver<'a> {
         if inner.verdict != Some(Verdict::NoImpact) {
             return inner;
         }
-        let strikes = |own: &Inner| own.verdict.is_some_and(|verdict| verdict != Verdict::NoImpact);
-        others.find_map(|point| Some(self.inner_at(&point)).filter(strikes)).unwrap_or(inner)
+        let verdict = |state: State, pipeline: &mut Pipeline| Ok(pipeline.outcomes(&state)?.analyzed()?.verdict);
+        let mut strikes = |point: &Vec<f64>| {
+            let found = self.at(point, |_, state, pipeline| verdict(state, pipeline));
+            found.is_ok_and(|verdict| verdict != Verdict::NoImpact)
+        };
+        let other = others.find(|point| strikes(point));
+        other.map_or(inner, |point| self.inner_at(&point))
     }
 
     fn inner_at(&mut self, point: &[f64]) -> Inner {

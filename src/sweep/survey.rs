@@ -1,7 +1,7 @@
 //! The regions of a study of one parameter, with the transitions between them.
 
 use super::line::{Along, Bracket, Probe, RESOLUTION, Stretch, brackets, stretches};
-use super::model::{OTHERS, RobotStudy, Solver};
+use super::model::{RobotStudy, Solver};
 use super::parallel::Workers;
 use super::regime::Regime;
 use super::transition::Transition;
@@ -78,9 +78,8 @@ impl Survey {
             let begin = index.checked_sub(1).map_or(parameter.from, |border| brackets[border].above.at);
             let middle = 0.5 * (from + to);
             let at = if solver.regime(&[middle]) == regime { middle } else { begin };
-            let inside = || samples.iter().filter(|own| own.regime == regime && from < own.at && own.at < to);
-            let step = inside().count().div_ceil(OTHERS).max(1);
-            let inner = solver.inner(&[at], inside().step_by(step).map(|own| vec![own.at]));
+            let inside = samples.iter().filter(|own| own.regime == regime && from <= own.at && own.at <= to);
+            let inner = solver.inner(&[at], inside.map(|own| vec![own.at]));
             dependent |= inner.dependent;
             Region { from, to, regime, kind, verdict: inner.verdict, refused: inner.refused }
         };

@@ -86,6 +86,8 @@ fn a_region_is_without_impact_only_as_a_whole() {
     for (z, verdict) in [
         ("-a^2", "unique"),
         ("min(a, 0)", "unique"),
+        // At the first of all samples, and at that alone.
+        ("min(a + 0.999, 0)", "unique"),
         ("-(1 - cos(a))", "unique"),
         ("-abs(a*3/3 - a) - 1e-300", "unique"),
         ("0*a", "no_impact"),
