@@ -180,7 +180,7 @@ struct Joints {
 /// What is done with the bytes of the answers.
 struct Bytes<F>(F);
 
-impl<F: FnMut(&[u8])> Sink for Bytes<F> {
+impl<F: FnMut(&[u8]) + Send> Sink for Bytes<F> {
     fn block(&mut self, block: Block) -> heelstrike::Result<()> {
         (self.0)(&block.out);
         Ok(())
@@ -205,7 +205,7 @@ fn question(robot: &Robot, brief: bool) -> Question<'_> {
 }
 
 /// Gives `write` the answers to `lines`.
-fn answer(question: &Question, lines: &str, threads: usize, write: impl FnMut(&[u8])) {
+fn answer(question: &Question, lines: &str, threads: usize, write: impl FnMut(&[u8]) + Send) {
     let answerer = || {
         let mut batch = Batch::new(question);
         move |chunk| batch.records(&chunk)
@@ -233,7 +233,7 @@ fn of_one_line(robot: &Robot, rounds: usize) {
     }
 }
 
-/// How much of a second processor the reader and the writer, which wait for each other, leave to the answers.
+/// How much of a second processor goes to the answers.
 fn of_threads(robot: &Robot, rounds: usize) {
     println!("\nA line of 40,800, two threads:");
     let lines = WALK.repeat(400);

@@ -17,7 +17,9 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 use self_cell::self_cell;
 use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
 
 /// How many rows a thread takes at once.
 const TOGETHER: usize = 256;
@@ -285,7 +287,8 @@ impl<'py> Rows<'py> {
         // One row has no others to share with.
         let total = model.budget.filter(|_| rows > 1).map(|each| TotalBudget::new(budget(Some(each)), None));
         let arrays = without_python(py, || {
-            let (numbers, total, mut all) = (&numbers, total.as_ref(), All(table.arrays(rows)));
+            let (numbers, total, is_raised) = (&numbers, total.as_ref(), AtomicBool::new(false));
+            let mut all = All(table.arrays(rows), &is_raised);
             if threads <= 1 {
                 // What it computes is written once.
                 let mut worker = Worker::new(&model, asker, &scene);
@@ -297,11 +300,17 @@ impl<'py> Rows<'py> {
                 }
                 return all.0;
             }
+            // Signals are handled on this thread.
+            let caller = thread::current().id();
             let answerer = || {
                 let mut worker = Worker::new(&model, asker, &scene);
+                let (is_raised, looks) = (&is_raised, thread::current().id() == caller);
                 move |rows: Range<usize>| {
                     let mut block = table.empty.for_states(rows.len());
                     rows.for_each(|row| worker.row(numbers, row, total, &mut block));
+                    if looks && look() {
+                        is_raised.store(true, Relaxed);
+                    }
                     block
                 }
             };
@@ -410,20 +419,20 @@ struct Ranges(Range<usize>);
 impl TaskSource for Ranges {
     type Task = Range<usize>;
 
-    fn next(&mut self, _: usize) -> heelstrike::Result<Option<Range<usize>>> {
+    fn next(&mut self) -> heelstrike::Result<Option<Range<usize>>> {
         let Range { start, end } = self.0;
         self.0.start = end.min(start + TOGETHER);
         Ok((start < end).then_some(start..self.0.start))
     }
 }
 
-/// All answers so far.
-struct All(Box<Arrays>);
+/// All answers so far, until a signal is raised.
+struct All<'a>(Box<Arrays>, &'a AtomicBool);
 
-impl Sink<Arrays> for All {
+impl Sink<Arrays> for All<'_> {
     fn block(&mut self, block: Arrays) -> heelstrike::Result<()> {
         self.0.append(block);
-        if look() { Err(Reason::BeyondBudget.into()) } else { Ok(()) }
+        if self.1.load(Relaxed) { Err(Reason::BeyondBudget.into()) } else { Ok(()) }
     }
 
     fn idle(&mut self) -> heelstrike::Result<()> {

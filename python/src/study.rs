@@ -145,7 +145,7 @@ fn found(
     let rows = recording.chosen(Box::new(rows), &header, (robot, feet), thresholds, (&dropped, &seen))?;
     let (mut source, mut batch, mut lines) = (Recording::new(rows), Batch::new(&question), Vec::new());
     let mut summary = Summary::default();
-    while let Some(states) = source.next(usize::MAX)? {
+    while let Some(states) = source.next()? {
         let block = batch.samples(states);
         lines.extend(block.out);
         summary.merge(block.summary);

@@ -12,6 +12,9 @@ use std::io::{BufRead, BufReader, ErrorKind, Read};
 /// How many bytes are requested from the input at once.
 const READ: usize = 1 << 16;
 
+/// How many records make a task at most: few, so that the threads share short inputs.
+const RECORDS: usize = 16;
+
 /// Longer records are skipped and refused \[bytes\].
 pub const RECORD_LIMIT: usize = 1 << 24;
 
@@ -157,6 +160,12 @@ impl<R: Read + Send> Chunks<R> {
         Ok(())
     }
 
+    /// Whether no whole line is buffered.
+    fn keeps_waiting(&self) -> bool {
+        let again = &self.again.0[self.again.1..];
+        memchr(b'\n', again).is_none() && memchr(b'\n', self.input.buffer()).is_none()
+    }
+
     /// Up to `most` records, fewer if the input would have to be waited for.
     fn records(&mut self, most: usize) -> Result<Option<Chunk>> {
         let mut chunk = Chunk::default();
@@ -275,14 +284,8 @@ pub(super) fn too_long() -> Error {
 impl<R: Read + Send> TaskSource for Chunks<R> {
     type Task = Chunk;
 
-    fn next(&mut self, most: usize) -> Result<Option<Chunk>> {
-        self.records(most)
-    }
-
-    /// Whether no whole line is buffered.
-    fn keeps_waiting(&self) -> bool {
-        let again = &self.again.0[self.again.1..];
-        memchr(b'\n', again).is_none() && memchr(b'\n', self.input.buffer()).is_none()
+    fn next(&mut self) -> Result<Option<Chunk>> {
+        self.records(RECORDS)
     }
 }
 
@@ -290,7 +293,7 @@ impl<R: Read + Send> TaskSource for Chunks<R> {
 impl TaskSource for Parts {
     type Task = Part;
 
-    fn next(&mut self, _: usize) -> Result<Option<Part>> {
+    fn next(&mut self) -> Result<Option<Part>> {
         self.part()
     }
 }
@@ -318,7 +321,7 @@ mod tests {
 
     /// The records of each chunk with their lines.
     fn chunks(mut chunks: Chunks<impl Read + Send>) -> Vec<String> {
-        let chunks = std::iter::from_fn(|| chunks.next(16).unwrap());
+        let chunks = std::iter::from_fn(|| chunks.next().unwrap());
         let shown = |(line, record): (usize, &[u8])| format!("{line}:{}", record.escape_ascii());
         chunks.map(|chunk| chunk.records().map(shown).collect::<Vec<_>>().join(" ")).collect()
     }
@@ -364,7 +367,7 @@ mod tests {
         let count = RECORD_LIMIT / line.len() + 100_000;
         let text = line.repeat(count);
         let mut chunks = Chunks::of_table(text.as_bytes(), Form::Csv);
-        let records = std::iter::from_fn(|| chunks.next(16).unwrap());
+        let records = std::iter::from_fn(|| chunks.next().unwrap());
         assert_eq!(records.map(|chunk| chunk.ends.len()).sum::<usize>(), count);
     }
 
@@ -376,7 +379,7 @@ mod tests {
             Parts(std::iter::once(first).chain(long).chain([&b"\nend"[..]]).collect())
         };
         for mut chunks in [Chunks::of_lines(parts(b"a\n")), Chunks::of_table(parts(b"a\n\""), Form::Csv)] {
-            let chunks = std::iter::from_fn(move || chunks.next(16).unwrap());
+            let chunks = std::iter::from_fn(move || chunks.next().unwrap());
             let found: Vec<_> = chunks.map(|chunk| (chunk.bytes.len(), chunk.too_long)).collect();
             assert_eq!(found, [(2, None), (0, Some(2)), (3, None)]);
         }

@@ -99,7 +99,7 @@ impl<I: Iterator<Item = Sampled<RowOrigin>> + Send> Recording<I> {
 impl<I: Iterator<Item = Sampled<RowOrigin>> + Send> TaskSource for Recording<I> {
     type Task = Vec<Sampled<RowOrigin>>;
 
-    fn next(&mut self, _: usize) -> Result<Option<Self::Task>> {
+    fn next(&mut self) -> Result<Option<Self::Task>> {
         let mut task = Vec::new();
         while self.broken.is_none() && task.len() < STATES {
             match self.samples.next() {

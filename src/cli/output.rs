@@ -275,7 +275,7 @@ fn lock(file: &File) -> io::Result<()> {
 
 /// Where results go.
 pub(super) enum Target {
-    Standard(Box<dyn Write>),
+    Standard(Box<dyn Write + Send>),
     File(NewFile),
 }
 
@@ -324,7 +324,7 @@ impl Write for Target {
 
 /// Standard output without a buffer: results come in large blocks, std's line buffer would hide how much reached a full
 /// disk, and std takes writing to a descriptor that is not open for writing as done.
-fn standard_output() -> io::Result<Box<dyn Write>> {
+fn standard_output() -> io::Result<Box<dyn Write + Send>> {
     #[cfg(unix)]
     {
         let standard_output = std::os::fd::AsFd::as_fd(&io::stdout()).try_clone_to_owned()?;
