@@ -185,10 +185,6 @@ impl<F: FnMut(&[u8]) + Send> Sink for Bytes<F> {
         (self.0)(&block.out);
         Ok(())
     }
-
-    fn idle(&mut self) -> heelstrike::Result<()> {
-        Ok(())
-    }
 }
 
 fn question(robot: &Robot, brief: bool) -> Question<'_> {

@@ -3,7 +3,7 @@
 use crate::answers::{Answers, Table};
 use crate::robot::{Model, Robot, friction};
 use crate::values::{refused, to_json};
-use crate::watch::{budget, look, without_python};
+use crate::watch::{budget, interrupted, without_python};
 use heelstrike::batch::{Sink, TaskSource, run};
 use heelstrike::budget::TotalBudget;
 use heelstrike::cli::threads;
@@ -294,7 +294,7 @@ impl<'py> Rows<'py> {
                 let mut worker = Worker::new(&model, asker, &scene);
                 for row in 0..rows {
                     worker.row(numbers, row, total, &mut all.0);
-                    if row % TOGETHER == TOGETHER - 1 && look() {
+                    if row % TOGETHER == TOGETHER - 1 && interrupted() {
                         break;
                     }
                 }
@@ -304,11 +304,11 @@ impl<'py> Rows<'py> {
             let caller = thread::current().id();
             let answerer = || {
                 let mut worker = Worker::new(&model, asker, &scene);
-                let (is_raised, looks) = (&is_raised, thread::current().id() == caller);
+                let (is_raised, is_caller) = (&is_raised, thread::current().id() == caller);
                 move |rows: Range<usize>| {
                     let mut block = table.empty.for_states(rows.len());
                     rows.for_each(|row| worker.row(numbers, row, total, &mut block));
-                    if looks && look() {
+                    if is_caller && interrupted() {
                         is_raised.store(true, Relaxed);
                     }
                     block
@@ -433,9 +433,5 @@ impl Sink<Arrays> for All<'_> {
     fn block(&mut self, block: Arrays) -> heelstrike::Result<()> {
         self.0.append(block);
         if self.1.load(Relaxed) { Err(Reason::BeyondBudget.into()) } else { Ok(()) }
-    }
-
-    fn idle(&mut self) -> heelstrike::Result<()> {
-        Ok(())
     }
 }

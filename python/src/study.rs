@@ -19,6 +19,7 @@ use std::fs::File;
 use std::io::Cursor;
 use std::path::PathBuf;
 use std::sync::Mutex;
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 /// How a study is worked on.
@@ -141,9 +142,10 @@ fn found(
         keyframes: false,
     };
     let (thresholds, dropped, seen) = (recording.thresholds(robot, feet)?, Mutex::default(), Mutex::default());
-    let rows = states.samples(&header, robot, &defaults).take_while(|_| !interrupted());
+    let pauses = AtomicBool::new(false);
+    let rows = states.samples(&header, robot, &defaults, &pauses).take_while(|_| !interrupted());
     let rows = recording.chosen(Box::new(rows), &header, (robot, feet), thresholds, (&dropped, &seen))?;
-    let (mut source, mut batch, mut lines) = (Recording::new(rows), Batch::new(&question), Vec::new());
+    let (mut source, mut batch, mut lines) = (Recording::new(rows, &pauses), Batch::new(&question), Vec::new());
     let mut summary = Summary::default();
     while let Some(states) = source.next()? {
         let block = batch.samples(states);

@@ -54,7 +54,7 @@ pub fn raised() -> bool {
 }
 
 /// Runs Python's signal handlers; whether one of them raised.
-pub fn look() -> bool {
+fn look() -> bool {
     let raised = Python::attach(|py| py.check_signals()).err();
     RAISED.with_borrow_mut(|all| {
         *all = raised.or(all.take());

@@ -161,7 +161,7 @@ impl<R: Read + Send> Chunks<R> {
     }
 
     /// Whether no whole line is buffered.
-    fn keeps_waiting(&self) -> bool {
+    pub fn keeps_waiting(&self) -> bool {
         let again = &self.again.0[self.again.1..];
         memchr(b'\n', again).is_none() && memchr(b'\n', self.input.buffer()).is_none()
     }
@@ -292,6 +292,9 @@ impl<R: Read + Send> TaskSource for Chunks<R> {
 #[cfg(feature = "columnar")]
 impl TaskSource for Parts {
     type Task = Part;
+
+    // They are long.
+    const AHEAD: usize = 2;
 
     fn next(&mut self) -> Result<Option<Part>> {
         self.part()

@@ -12,8 +12,9 @@ use crate::state::Defaults;
 use crate::{Error, Reason, Result, Robot};
 use serde_json::Value;
 use std::io::Read;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-/// How many states make a task.
+/// How many states make a task at most.
 const STATES: usize = 16;
 
 /// The row that a state comes from; for a touchdown the last one before it.
@@ -28,12 +29,14 @@ pub struct RowOrigin {
     pub excerpt: Option<Excerpt>,
 }
 
-/// The rows of a table with their times. If reading fails, the last sample is refused with [`Reason::Io`].
+/// The rows of a table with their times. If reading fails, the last sample is refused with [`Reason::Io`]. `pauses` becomes
+/// whether the next row may take long to arrive.
 pub(super) fn samples<'h, R: Read + Send>(
     mut chunks: Chunks<R>,
     header: &'h Header,
     robot: &'h Robot,
     defaults: &'h Defaults,
+    pauses: &'h AtomicBool,
 ) -> impl Iterator<Item = Sampled<RowOrigin>> {
     let mut rows = header.rows();
     let mut read = move |line: usize, record: &[u8]| {
@@ -45,7 +48,11 @@ pub(super) fn samples<'h, R: Read + Send>(
             (source, error)
         }))
     };
-    let chunks = std::iter::from_fn(move || chunks.record().transpose());
+    let chunks = std::iter::from_fn(move || {
+        let chunk = chunks.record().transpose();
+        pauses.store(chunks.keeps_waiting(), Relaxed);
+        chunk
+    });
     chunks.flat_map(move |chunk| match chunk {
         Ok(chunk) => {
             let mut samples: Vec<_> = chunk.records().filter_map(|(line, record)| read(line, record)).collect();
@@ -84,24 +91,27 @@ fn sample(row: Result<Row>, robot: &Robot, defaults: &Defaults) -> Sampled<RowOr
 
 /// States of a recording as tasks.
 #[derive(Debug)]
-pub struct Recording<I> {
+pub struct Recording<'p, I> {
     samples: I,
+    /// Whether the next row may take long to arrive.
+    pauses: &'p AtomicBool,
     /// Why the input ended early; reported after what came before.
     broken: Option<Error>,
 }
 
-impl<I: Iterator<Item = Sampled<RowOrigin>> + Send> Recording<I> {
-    pub fn new(samples: I) -> Self {
-        Self { samples, broken: None }
+impl<'p, I: Iterator<Item = Sampled<RowOrigin>> + Send> Recording<'p, I> {
+    /// The samples of rows of which [`States::samples`](super::States::samples) says by `pauses` when they come later.
+    pub fn new(samples: I, pauses: &'p AtomicBool) -> Self {
+        Self { samples, pauses, broken: None }
     }
 }
 
-impl<I: Iterator<Item = Sampled<RowOrigin>> + Send> TaskSource for Recording<I> {
+impl<I: Iterator<Item = Sampled<RowOrigin>> + Send> TaskSource for Recording<'_, I> {
     type Task = Vec<Sampled<RowOrigin>>;
 
     fn next(&mut self) -> Result<Option<Self::Task>> {
         let mut task = Vec::new();
-        while self.broken.is_none() && task.len() < STATES {
+        while self.broken.is_none() && task.len() < STATES && (task.is_empty() || !self.pauses.load(Relaxed)) {
             match self.samples.next() {
                 None => break,
                 Some(Err((_, error))) if matches!(error.reason(), Reason::Io(_)) => self.broken = Some(error),

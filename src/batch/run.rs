@@ -1,12 +1,13 @@
 //! Answers the tasks of a source in several threads, and passes the answers on in order.
 //!
 //! ```text
-//!     Source --task--> thread --block--> Line --next block--> Sink
+//!     Source --task--> thread --block--> ReorderBuffer --next block--> Sink
 //! ```
 //!
-//! Each thread takes a task from the source, answers it, and puts the block in its place in the line; if the blocks before
-//! it have left, it also hands on what is ready. So no thread waits for another unless the line is full or the
-//! source is busy, and none has to be woken for a block. No answer depends on another: the bytes are those of one thread.
+//! Each thread takes a task from the source, answers it, and puts the block into the buffer. If all blocks before it
+//! were handed on, and no other thread does so, it hands on what is ready. So no thread waits for another unless
+//! the buffer is full or the source busy, and none has to be woken for a block. No answer depends on another: the bytes
+//! are those of one thread.
 
 use super::Summary;
 use crate::draw::ListedKeyframe;
@@ -19,12 +20,12 @@ use std::mem;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, Builder};
 
-/// Places in the line per thread: as long as a thread takes for a slow task, the others go on.
-const AHEAD: usize = 4;
-
 /// Gives tasks, one after the other.
 pub trait TaskSource: Send {
     type Task: Send;
+
+    /// How many blocks per thread the buffer holds: while one thread takes long for a task, the others answer as many.
+    const AHEAD: usize = 16;
 
     /// The next records; `None` at the end. After that, and after an error of reading, this is not called again.
     fn next(&mut self) -> Result<Option<Self::Task>>;
@@ -73,17 +74,11 @@ pub struct RefusedRecord {
 
 /// Takes the answers in the order of the input, on whichever thread has the next one.
 pub trait Sink<B = Block>: Send {
-    /// Takes the next answers.
+    /// Takes the next answers, and keeps none of them back: more may take long to arrive.
     ///
     /// # Errors
-    /// Those of writing; nothing here is called again then.
+    /// Those of writing; this is not called again then.
     fn block(&mut self, block: B) -> Result<()>;
-
-    /// Writes what is buffered: everything read so far is answered, and more may take long to arrive.
-    ///
-    /// # Errors
-    /// As above.
-    fn idle(&mut self) -> Result<()>;
 }
 
 /// Answers all tasks of `source` in `threads` threads, the caller's among them, each with what `answerer` makes. If fewer
@@ -110,163 +105,138 @@ fn in_threads<S: TaskSource, B: Send, F: FnMut(S::Task) -> B>(
 ) -> Result<()> {
     // Until it ends or fails.
     let source = Mutex::new(Some(source));
-    let line = Line::new(AHEAD * threads.max(1), sink);
-    // The next task and its place. Here a thread waits for the others, for input and for the sink.
+    let buffer = ReorderBuffer::new(S::AHEAD * threads.max(1), sink);
+    // The next task and its number. Here a thread waits for the others, for input and for the sink.
     let next_task = || {
-        let mut left = source.lock().ok()?;
-        line.wait_for_room();
-        let next = left.as_mut().filter(|_| !line.lock().is_broken)?.next();
+        let mut source = source.lock().ok()?;
+        let next = source.as_mut().filter(|_| buffer.wait_for_room())?.next();
         if !matches!(next, Ok(Some(_))) {
-            *left = None;
+            *source = None;
         }
-        line.place(next)
+        buffer.number(next)
     };
     let work = || {
-        let _break = BreakOnPanic(&line);
+        let _end = EndOnPanic(&buffer);
         let mut answer = answerer();
-        while let Some((task, place)) = next_task() {
-            line.put(answer(task), place);
+        while let Some((task, number)) = next_task() {
+            buffer.put(answer(task), number);
         }
     };
     thread::scope(|scope| {
         (1..threads).map_while(|k| builder(k).spawn_scoped(scope, work).ok()).for_each(drop);
         work();
     });
-    line.end()
+    buffer.end()
 }
 
-/// The blocks that are answered, in order, and where they go.
-struct Line<'s, B, K> {
-    places: Mutex<Places<'s, B, K>>,
-    freed: Condvar,
+/// The blocks that are answered before their turn, and where they go.
+struct ReorderBuffer<'s, B, K> {
+    pending: Mutex<Pending<'s, B, K>>,
+    has_room: Condvar,
 }
 
-struct Places<'s, B, K> {
+struct Pending<'s, B, K> {
     /// From the block that the sink takes next; `None` while it is answered.
     blocks: VecDeque<Option<B>>,
-    /// How many places there are.
-    room: usize,
+    capacity: usize,
     /// How many blocks the sink has taken.
     taken: usize,
-    /// `None` while a thread uses it.
+    /// `None` while a thread uses it, and after its failure.
     sink: Option<&'s mut K>,
-    /// Whether the sink has taken blocks since it was idle.
-    is_behind: bool,
     /// Whether a thread waits for room.
-    is_awaited: bool,
+    is_waited_for: bool,
     /// Of the sink, or else of the source.
     error: Option<Error>,
-    /// Whether the sink has failed or a thread panicked, so that the sink takes nothing any more.
-    is_broken: bool,
+    /// Whether no more tasks are taken, since the sink has failed or a thread panicked.
+    is_ending: bool,
 }
 
-impl<'s, B, K: Sink<B>> Line<'s, B, K> {
-    fn new(room: usize, sink: &'s mut K) -> Self {
-        let places = Places {
-            blocks: VecDeque::with_capacity(room),
-            room,
+impl<'s, B, K: Sink<B>> ReorderBuffer<'s, B, K> {
+    fn new(capacity: usize, sink: &'s mut K) -> Self {
+        let pending = Pending {
+            blocks: VecDeque::with_capacity(capacity),
+            capacity,
             taken: 0,
             sink: Some(sink),
-            is_behind: false,
-            is_awaited: false,
+            is_waited_for: false,
             error: None,
-            is_broken: false,
+            is_ending: false,
         };
-        Self { places: Mutex::new(places), freed: Condvar::new() }
+        Self { pending: Mutex::new(pending), has_room: Condvar::new() }
     }
 
-    /// Nothing panics while it holds the places.
-    fn lock(&self) -> MutexGuard<'_, Places<'s, B, K>> {
-        self.places.lock().unwrap_or_else(PoisonError::into_inner)
+    /// Nothing panics while it holds the blocks.
+    fn lock(&self) -> MutexGuard<'_, Pending<'s, B, K>> {
+        self.pending.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Returns once a block has room, or none is taken any more.
-    fn wait_for_room(&self) {
-        let is_full = |places: &mut Places<B, K>| {
-            places.is_awaited = places.blocks.len() >= places.room && !places.is_broken;
-            places.is_awaited
+    /// Waits until there is room for a block; whether any more is taken.
+    fn wait_for_room(&self) -> bool {
+        let is_full = |pending: &mut Pending<B, K>| {
+            pending.is_waited_for = pending.blocks.len() >= pending.capacity && !pending.is_ending;
+            pending.is_waited_for
         };
-        drop(self.freed.wait_while(self.lock(), is_full));
+        !self.has_room.wait_while(self.lock(), is_full).unwrap_or_else(PoisonError::into_inner).is_ending
     }
 
-    /// Gives a task its place.
-    fn place<T>(&self, task: Result<Option<T>>) -> Option<(T, usize)> {
-        let mut places = self.lock();
+    /// Numbers a task.
+    fn number<T>(&self, task: Result<Option<T>>) -> Option<(T, usize)> {
+        let mut pending = self.lock();
         let task = task.unwrap_or_else(|error| {
-            places.error.get_or_insert(error);
+            pending.error.get_or_insert(error);
             None
         })?;
-        places.blocks.push_back(None);
-        Some((task, places.taken + places.blocks.len() - 1))
+        pending.blocks.push_back(None);
+        Some((task, pending.taken + pending.blocks.len() - 1))
     }
 
-    /// Puts a block in its place, and gives the sink what is ready unless another thread does.
-    fn put(&self, block: B, place: usize) {
-        let mut places = self.lock();
-        let at = place - places.taken;
-        places.blocks[at] = Some(block);
-        let Some(sink) = places.sink.take() else { return };
-        while let Some(next) = places.next() {
-            self.wake(&mut places);
-            drop(places);
-            let done = match next {
-                Next::Block(block) => sink.block(block),
-                Next::Pause => sink.idle(),
-            };
-            places = self.lock();
+    /// Takes the block of a task, and gives the sink what is ready unless another thread does.
+    fn put(&self, block: B, number: usize) {
+        let mut pending = self.lock();
+        let at = number - pending.taken;
+        pending.blocks[at] = Some(block);
+        let Some(sink) = pending.sink.take() else { return };
+        while let Some(block) = pending.blocks.front_mut().and_then(Option::take) {
+            pending.blocks.pop_front();
+            pending.taken += 1;
+            self.wake(&mut pending);
+            drop(pending);
+            let done = sink.block(block);
+            pending = self.lock();
             if let Err(error) = done {
-                places.error = Some(error);
-                places.is_broken = true;
-                self.wake(&mut places);
+                pending.error = Some(error);
+                return self.stop(pending);
             }
         }
-        places.sink = Some(sink);
+        pending.sink = Some(sink);
+    }
+
+    /// Lets no more tasks be taken.
+    fn stop(&self, mut pending: MutexGuard<'_, Pending<'s, B, K>>) {
+        pending.is_ending = true;
+        self.wake(&mut pending);
     }
 
     /// Wakes the thread that waits for room.
-    fn wake(&self, places: &mut Places<B, K>) {
-        if mem::take(&mut places.is_awaited) {
-            self.freed.notify_one();
+    fn wake(&self, pending: &mut Pending<B, K>) {
+        if mem::take(&mut pending.is_waited_for) {
+            self.has_room.notify_one();
         }
     }
 
     fn end(self) -> Result<()> {
-        let places = self.places.into_inner().unwrap_or_else(PoisonError::into_inner);
-        places.error.map_or(Ok(()), Err)
+        let pending = self.pending.into_inner().unwrap_or_else(PoisonError::into_inner);
+        pending.error.map_or(Ok(()), Err)
     }
 }
 
-/// What the sink does next.
-enum Next<B> {
-    Block(B),
-    Pause,
-}
+/// Lets the other threads end if one panics, for whose block they would wait.
+struct EndOnPanic<'b, 's, B, K: Sink<B>>(&'b ReorderBuffer<'s, B, K>);
 
-impl<B, K> Places<'_, B, K> {
-    fn next(&mut self) -> Option<Next<B>> {
-        if self.is_broken {
-            return None;
-        }
-        let Some(first) = self.blocks.front_mut() else {
-            return mem::take(&mut self.is_behind).then_some(Next::Pause);
-        };
-        let block = first.take()?;
-        self.blocks.pop_front();
-        self.taken += 1;
-        self.is_behind = true;
-        Some(Next::Block(block))
-    }
-}
-
-/// Lets the other threads end if one panics, whose block they would wait for.
-struct BreakOnPanic<'l, 's, B, K: Sink<B>>(&'l Line<'s, B, K>);
-
-impl<B, K: Sink<B>> Drop for BreakOnPanic<'_, '_, B, K> {
+impl<B, K: Sink<B>> Drop for EndOnPanic<'_, '_, B, K> {
     fn drop(&mut self) {
         if thread::panicking() {
-            let mut places = self.0.lock();
-            places.is_broken = true;
-            self.0.wake(&mut places);
+            self.0.stop(self.0.lock());
         }
     }
 }
@@ -277,17 +247,30 @@ mod tests {
     use crate::Reason;
     use std::panic::{AssertUnwindSafe, catch_unwind};
     use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
-    use std::time::Duration;
+    use std::time::{Duration, Instant};
 
-    /// The numbers below a limit.
-    struct Numbers(u32, u32);
+    /// The numbers below a limit, and then the end or an error.
+    struct Numbers {
+        next: u32,
+        end: u32,
+        fails: bool,
+    }
+
+    fn numbers(end: u32) -> Numbers {
+        Numbers { next: 0, end, fails: false }
+    }
 
     impl TaskSource for Numbers {
         type Task = u32;
 
         fn next(&mut self) -> Result<Option<u32>> {
-            self.0 += 1;
-            Ok((self.0 <= self.1).then_some(self.0 - 1))
+            assert!(self.next <= self.end, "asked again after the end");
+            self.next += 1;
+            match self.next <= self.end {
+                true => Ok(Some(self.next - 1)),
+                false if self.fails => Err(Reason::BeyondBudget.into()),
+                false => Ok(None),
+            }
         }
     }
 
@@ -296,10 +279,18 @@ mod tests {
             self.push(number);
             Ok(())
         }
+    }
 
-        fn idle(&mut self) -> Result<()> {
-            Ok(())
+    const AHEAD: usize = Numbers::AHEAD;
+
+    /// Until a count is reached, and then until it might have gone on.
+    fn wait_until(count: &AtomicUsize, reached: usize) {
+        let start = Instant::now();
+        while count.load(Relaxed) < reached {
+            assert!(start.elapsed() < Duration::from_secs(20), "{} of {reached}", count.load(Relaxed));
+            thread::yield_now();
         }
+        thread::sleep(Duration::from_millis(5));
     }
 
     #[test]
@@ -308,93 +299,131 @@ mod tests {
             // No system has room for such a stack.
             let stack = |thread| if missing.contains(&thread) { usize::MAX / 4 } else { 1 << 20 };
             let builder = |thread| Builder::new().stack_size(stack(thread));
-            let mut numbers = Vec::new();
-            in_threads(Numbers(0, 1000), 3, || |number| number, &mut numbers, builder).unwrap();
-            assert_eq!(numbers, Vec::from_iter(0..1000), "without {missing:?}");
+            let mut written = Vec::new();
+            in_threads(numbers(1000), 3, || |number| number, &mut written, builder).unwrap();
+            assert_eq!(written, Vec::from_iter(0..1000), "without {missing:?}");
         }
     }
 
     #[test]
-    fn a_thread_with_a_slow_task_keeps_the_others_from_filling_the_memory() {
+    fn while_a_task_takes_long_the_others_fill_the_buffer_and_no_more() {
         let answered = AtomicUsize::new(0);
         let answer = |number| {
-            // Until the others have done all that they can.
-            while number == 0 && answered.load(Relaxed) < 4 * AHEAD - 1 {
-                thread::yield_now();
-            }
             if number == 0 {
-                thread::sleep(Duration::from_millis(20));
+                wait_until(&answered, 4 * AHEAD - 1);
                 assert_eq!(answered.load(Relaxed), 4 * AHEAD - 1);
             }
             answered.fetch_add(1, Relaxed);
             number
         };
-        let mut numbers = Vec::new();
-        run(Numbers(0, 1000), 4, || answer, &mut numbers).unwrap();
-        assert_eq!(numbers, Vec::from_iter(0..1000));
+        let mut written = Vec::new();
+        run(numbers(1000), 4, || answer, &mut written).unwrap();
+        assert_eq!(written, Vec::from_iter(0..1000));
     }
 
     #[test]
-    fn a_panic_ends_all_threads() {
-        for (panics_at, threads) in [(0, 1), (0, 3), (500, 2), (500, 3)] {
+    fn a_panic_ends_all_threads_with_all_before_it_written() {
+        for (panics_at, threads) in [(0, 1), (0, 3), (500, 1), (500, 2), (500, 3)] {
+            let answered = AtomicUsize::new(0);
             let answer = |number| {
+                if number == panics_at && threads > 1 {
+                    wait_until(&answered, panics_at as usize + AHEAD);
+                }
                 assert_ne!(number, panics_at);
+                answered.fetch_add(1, Relaxed);
                 number
             };
-            let mut numbers = Vec::new();
-            let ended = catch_unwind(AssertUnwindSafe(|| run(Numbers(0, 1000), threads, || answer, &mut numbers)));
-            assert!(ended.is_err());
-            assert_eq!(numbers, Vec::from_iter(0..numbers.len() as u32));
-            assert!(numbers.len() <= panics_at as usize);
+            let mut written = Vec::new();
+            let run = || run(numbers(1000), threads, || answer, &mut written);
+            assert!(catch_unwind(AssertUnwindSafe(run)).is_err());
+            assert_eq!(written, Vec::from_iter(0..panics_at));
         }
     }
 
-    /// Says when it was idle, and fails at a number.
-    struct Output<'a>(u32, &'a AtomicUsize, Vec<u32>);
+    /// Counts the numbers; at the last one it waits until so many are answered, and fails.
+    struct Failing<'a> {
+        written: Vec<u32>,
+        last: u32,
+        until: usize,
+        answered: &'a AtomicUsize,
+    }
 
-    impl Sink<u32> for Output<'_> {
+    impl Sink<u32> for Failing<'_> {
         fn block(&mut self, number: u32) -> Result<()> {
-            self.2.push(number);
-            if number == self.0 { Err(Reason::BeyondBudget.into()) } else { Ok(()) }
-        }
-
-        fn idle(&mut self) -> Result<()> {
-            self.1.store(self.2.len(), Relaxed);
-            Ok(())
+            self.written.push(number);
+            if number < self.last {
+                return Ok(());
+            }
+            wait_until(self.answered, self.until);
+            Err(Error::new(Reason::Io("full".into())))
         }
     }
 
-    /// Some numbers, and more only once all of these are answered; then it fails.
+    #[test]
+    fn nothing_is_asked_or_written_after_the_sink_has_failed() {
+        for threads in 1..4 {
+            let answered = AtomicUsize::new(0);
+            let answer = |number| {
+                answered.fetch_add(1, Relaxed);
+                number
+            };
+            // The other threads answer what there is room for.
+            let until = if threads == 1 { 71 } else { 71 + AHEAD * threads };
+            let mut sink = Failing { written: Vec::new(), last: 70, until, answered: &answered };
+            let error = run(numbers(u32::MAX), threads, || answer, &mut sink).unwrap_err();
+            assert!(matches!(error.reason(), Reason::Io(_)));
+            assert_eq!((sink.written, answered.load(Relaxed)), (Vec::from_iter(0..=70), until));
+        }
+    }
+
+    #[test]
+    fn the_earlier_error_is_the_one_of_all() {
+        for threads in 1..4 {
+            let answered = AtomicUsize::new(0);
+            let answer = |number| {
+                answered.fetch_add(1, Relaxed);
+                number
+            };
+            let failing = || Numbers { fails: true, ..numbers(10) };
+            let mut written = Vec::new();
+            let error = run(failing(), threads, || answer, &mut written).unwrap_err();
+            assert_eq!((written, error.reason()), (Vec::from_iter(0..10), &Reason::BeyondBudget));
+            // By then the source has failed, unless one thread does all.
+            answered.store(0, Relaxed);
+            let until = if threads == 1 { 4 } else { 10 };
+            let mut sink = Failing { written: Vec::new(), last: 3, until, answered: &answered };
+            let error = run(failing(), threads, || answer, &mut sink).unwrap_err();
+            assert!(matches!(error.reason(), Reason::Io(_)), "{error}");
+        }
+    }
+
+    /// Gives the next number once all before it are written.
     struct Live<'a>(Numbers, &'a AtomicUsize);
 
     impl TaskSource for Live<'_> {
         type Task = u32;
 
         fn next(&mut self) -> Result<Option<u32>> {
-            let Self(Numbers(given, end), idle) = self;
-            while given == end && idle.load(Relaxed) < *end as usize {
-                thread::yield_now();
-            }
-            if given == end { Err(Reason::BeyondBudget.into()) } else { self.0.next() }
+            wait_until(self.1, self.0.next as usize);
+            self.0.next()
+        }
+    }
+
+    struct Counting<'a>(&'a AtomicUsize);
+
+    impl Sink<u32> for Counting<'_> {
+        fn block(&mut self, number: u32) -> Result<()> {
+            assert_eq!(number as usize, self.0.fetch_add(1, Relaxed));
+            Ok(())
         }
     }
 
     #[test]
-    fn all_is_written_before_the_source_goes_on_or_fails() {
+    fn an_answer_does_not_wait_for_the_source() {
         for threads in 1..4 {
-            let idle = AtomicUsize::new(0);
-            let mut output = Output(u32::MAX, &idle, Vec::new());
-            run(Live(Numbers(0, 100), &idle), threads, || |number| number, &mut output).unwrap_err();
-            assert_eq!(output.2, Vec::from_iter(0..100));
-        }
-    }
-
-    #[test]
-    fn nothing_is_written_after_the_sink_has_failed() {
-        for threads in 1..4 {
-            let mut output = Output(70, &AtomicUsize::new(0), Vec::new());
-            run(Numbers(0, 1000), threads, || |number| number, &mut output).unwrap_err();
-            assert_eq!(output.2, Vec::from_iter(0..=70));
+            let written = AtomicUsize::new(0);
+            run(Live(numbers(10), &written), threads, || |number| number, &mut Counting(&written)).unwrap();
+            assert_eq!(written.into_inner(), 10);
         }
     }
 }

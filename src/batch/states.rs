@@ -12,6 +12,7 @@ use crate::read::table::{Form, Header, Rates, is_flat};
 use crate::state::Defaults;
 use crate::{Result, Robot};
 use std::io::Read;
+use std::sync::atomic::AtomicBool;
 
 /// The states of an input.
 pub enum States {
@@ -83,15 +84,16 @@ impl States {
         with_time(header).map(Some).map_err(|error| refused(error.on(line, 1)))
     }
 
-    /// The rows with their times.
+    /// The rows with their times; `pauses` becomes whether the next row may take long to arrive.
     pub fn samples<'h>(
         self,
         header: &'h Header,
         robot: &'h Robot,
         defaults: &'h Defaults,
+        pauses: &'h AtomicBool,
     ) -> Box<dyn Iterator<Item = Sampled<RowOrigin>> + Send + 'h> {
         match self {
-            Self::Text(chunks, _) => Box::new(samples(chunks, header, robot, defaults)),
+            Self::Text(chunks, _) => Box::new(samples(chunks, header, robot, defaults, pauses)),
             #[cfg(feature = "columnar")]
             Self::Columns(parts) => Box::new(super::recording::samples_of_parts(parts, header, robot, defaults)),
         }

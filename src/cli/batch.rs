@@ -30,6 +30,7 @@ use indicatif::ProgressBar;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
+use std::sync::atomic::AtomicBool;
 
 /// Find every outcome of many states: one line of JSON or row of CSV each, answered in order
 ///
@@ -334,14 +335,15 @@ impl Args {
                 }
             };
         };
-        let samples = states.samples(header, robot, defaults);
+        let pauses = AtomicBool::new(false);
+        let samples = states.samples(header, robot, defaults, &pauses);
         let known = (robot, &question.options.feet[..]);
         let samples = self.recording.chosen(samples, header, known, thresholds, (dropped, seen))?.skip(answered);
         let answerer = || {
             let mut batch = Batch::new(question);
             move |samples| batch.samples(samples)
         };
-        batch::run(Recording::new(samples), threads, answerer, sink)
+        batch::run(Recording::new(samples, &pauses), threads, answerer, sink)
     }
 
     /// Notes what all answers have in common, and writes the summary.

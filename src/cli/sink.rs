@@ -123,16 +123,11 @@ impl Sink for OutputSink<'_> {
             let bytes = writer.write(columns)?;
             self.write(&bytes).unwrap_or_else(|error| self.end(error));
         }
-        self.write(&block.out).unwrap_or_else(|error| self.end(error));
+        self.write(&block.out).and_then(|()| self.output.flush()).unwrap_or_else(|error| self.end(error));
         // On a terminal the answers come before the errors.
         block.refused.into_iter().for_each(|refused| self.report(refused));
         self.summary.merge(block.summary);
         block.keyframes.into_iter().for_each(|keyframe| self.gait.push(keyframe));
-        Ok(())
-    }
-
-    fn idle(&mut self) -> crate::Result<()> {
-        self.output.flush().unwrap_or_else(|error| self.end(error));
         Ok(())
     }
 }

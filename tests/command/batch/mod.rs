@@ -195,6 +195,23 @@ fn an_answer_does_not_wait_for_the_next_line() {
     }
 }
 
+#[test]
+fn a_row_of_a_recording_waits_for_the_next_one_alone() {
+    for threads in ["1", "2"] {
+        let (mut child, mut stdin) = spawned(threads, &["--input-format", "csv", "--velocity", "backward"]);
+        let mut answers = BufReader::new(child.stdout.take().expect("piped")).lines();
+        stdin.write_all(b"time,q_base_z\n0,0.7\n").expect("it reads");
+        for row in 1..20 {
+            stdin.write_all(format!("{row},{}\n", 0.7 - 0.01 * f64::from(row)).as_bytes()).expect("it reads");
+            let answer = answers.next().expect("an answer").expect("UTF-8");
+            assert_eq!(parsed(&answer)["line"], row + 1);
+        }
+        drop(stdin);
+        assert!(answers.next().is_some() && answers.next().is_none());
+        assert!(child.wait().expect("it ends").success());
+    }
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_is_reported_with_what_was_written() {
