@@ -1,6 +1,6 @@
 //! XML elements -> links and joints: checked and located.
 
-use super::elements::{ByName, EXPAND, IgnoredCount, WORLD, limits, misspelt, undefined_world};
+use super::elements::{ByName, EXPAND, IgnoredCount, WORLD, limits, misspelt, rotors, undefined_world};
 use super::repair::Repaired;
 use super::xml::{self, Cursor, MOST_LINKS, Unparsed};
 use super::{Description, JointKind, UrdfJoint, UrdfLink, joint_place, link_place, values};
@@ -65,6 +65,7 @@ fn read_document(document: &Document<'_>) -> Result<Description> {
         root: 0,
         ignored: Vec::new(),
         misspelt: misspelt(robot),
+        rotors: rotors(robot),
     };
     let mut shapes = 0;
     for &(name, element, location) in &links.elements {

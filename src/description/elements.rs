@@ -109,6 +109,18 @@ pub(super) fn limits(limit: Node<'_, '_>) -> Option<[f64; 2]> {
     (!limits.iter().any(|end| end.is_nan())).then_some(limits)
 }
 
+/// The joints whose transmissions have a rotor inertia, as Drake reads it.
+pub(super) fn rotors(robot: Node<'_, '_>) -> Vec<String> {
+    let tagged = |tag: &'static str| move |node: &Node<'_, '_>| node.tag_name().name() == tag;
+    let has_rotor = |transmission: &Node<'_, '_>| {
+        let value = |rotor: Node<'_, '_>| rotor.attribute("value")?.trim().parse::<f64>().ok();
+        transmission.descendants().filter(tagged("rotor_inertia")).filter_map(value).any(|inertia| inertia != 0.0)
+    };
+    let transmissions = xml::children(robot).filter(tagged("transmission")).filter(has_rotor);
+    let joints = transmissions.flat_map(|own| xml::children(own).filter(tagged("joint")));
+    joints.filter_map(|joint| joint.attribute("name").map(str::to_owned)).collect()
+}
+
 /// The most misspelt names that are kept.
 const MOST_MISSPELT: usize = 100;
 
@@ -200,8 +212,23 @@ fn meant<'a>(
         // As MJCF, SDF and others call them.
         let is_named = match known {
             "xyz" => matches!(name, "pos" | "position" | "translation"),
-            "rpy" => matches!(name, "euler" | "rotation" | "quat" | "quaternion" | "rpydeg" | "rpy_deg"),
+            "rpy" => matches!(
+                name,
+                "euler"
+                    | "rotation"
+                    | "quat"
+                    | "quaternion"
+                    | "rpydeg"
+                    | "rpy_deg"
+                    | "ypr"
+                    | "orientation"
+                    | "rot"
+                    | "angle"
+            ),
             "origin" => matches!(name, "pose" | "com" | "frame"),
+            "multiplier" => matches!(name, "ratio" | "gearing" | "scale" | "gain"),
+            "lower" => matches!(name, "min" | "low"),
+            "upper" => matches!(name, "max" | "high"),
             _ => false,
         };
         is_named

@@ -50,6 +50,8 @@ pub struct Description {
     /// Attributes and elements that are not read and perhaps misspelt, and limits that cannot be, each with its
     /// line.
     pub misspelt: Vec<String>,
+    /// The joints whose transmissions in the file have a rotor inertia, which is not read.
+    pub rotors: Vec<String>,
 }
 
 /// A link of the file.

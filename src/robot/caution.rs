@@ -111,6 +111,12 @@ pub(super) fn about_spelling(description: &Description) -> Option<String> {
     Some(format!("not read, and perhaps misspelt: {}", names(&description.misspelt)?))
 }
 
+/// The caution about rotor inertia in the file.
+pub(super) fn about_rotors(description: &Description) -> Option<String> {
+    let joints = names(&description.rotors)?;
+    Some(format!("rotor inertia of the file is not read ({joints}): give `rotor_inertia` in each state"))
+}
+
 /// The caution about elements that close loops, which a tree of joints has no place for.
 pub(super) fn about_loops(description: &Description) -> Option<String> {
     let closing = description.ignored.iter().filter(|own| closes_loops(own.parent, &own.tag));

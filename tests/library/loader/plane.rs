@@ -341,6 +341,17 @@ fn a_joint_held_in_degrees_is_named() {
 }
 
 #[test]
+fn rotor_inertia_of_the_file_is_noted() {
+    let caution = |value: &str| {
+        let rotor = format!("<drake:gear_ratio value=\"9\"/><drake:rotor_inertia value=\"{value}\"/>");
+        let more = format!("<transmission><joint name=\"j\"/><actuator name=\"m\">{rotor}</actuator></transmission>");
+        load(&massive(&[PITCH]).replace("</robot>", &(more + "</robot>"))).reading.cautions
+    };
+    assert_eq!(caution("0"), Vec::<String>::new());
+    assert_eq!(caution("1e-4"), ["rotor inertia of the file is not read (j): give `rotor_inertia` in each state"]);
+}
+
+#[test]
 fn misspelt_names_are_named_with_their_lines() {
     let text = massive(&[PITCH]);
     let caution = |from: &str, to: &str| {
@@ -377,6 +388,9 @@ fn misspelt_names_are_named_with_their_lines() {
         assert!(limits(given).is_some_and(|caution| caution.ends_with(&format!(" (from {named}?)"))), "{given}");
     }
     assert_eq!(limits("effort=\"1\" velocity=\"x\""), None);
+    // As other formats call them.
+    let named = limits("min=\"-1\" max=\"1\"").unwrap();
+    assert!(named.contains("min of <limit> on line 4 (lower?), max of <limit> on line 4 (upper?)"), "{named}");
 }
 
 #[test]
