@@ -10,7 +10,7 @@ use std::sync::Mutex;
 
 /// What no touchdowns can be asked with. Each of their options has this list: one that `requires` what is in conflict with
 /// another is not missed.
-const OTHERS: &[&str] = &["place", "forces"];
+const OTHERS: &[&str] = &["place", "forces", "contact_tolerance"];
 
 /// Options for rows that follow each other in time.
 #[derive(Debug, clap::Args)]

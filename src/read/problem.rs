@@ -58,6 +58,13 @@ impl Problem {
             }
         }
 
+        if let Some(uncertainty) = field("uncertainty") {
+            let reason = Reason::Unsupported("a contact problem is taken as exact".into());
+            return Err(uncertainty
+                .refuse(reason)
+                .hint("give the state it comes from to `impact`, with its uncertainty"));
+        }
+
         let laws = |contacts: usize| -> Result<_> {
             check_matrix_size(contacts)?;
             let friction = match (field("friction"), defaults.friction) {
@@ -198,5 +205,7 @@ mod tests {
             assert_eq!(hint(meant).as_deref(), Some("did you mean restitution?"));
         }
         assert_eq!(hint("\"friction\": 0.1, \"mu\": 0.1, \"note\": 1"), None);
+        let whose = "give the state it comes from to `impact`, with its uncertainty";
+        assert_eq!(hint("\"uncertainty\": {\"friction\": 0.1}").as_deref(), Some(whose));
     }
 }
