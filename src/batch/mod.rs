@@ -18,7 +18,7 @@ pub use chunk::{Chunk, Chunks, RECORD_LIMIT};
 pub use recording::{Recording, RowOrigin};
 pub use run::{Block, RefusedRecord, Sink, TaskSource, run};
 pub use states::States;
-pub use summary::{ModeCount, MoreFriction, Nearest, Needed, OddJoint, OddJoints, StateRef, Summary, Verdicts};
+pub use summary::{ModeCount, MoreFriction, Nearest, Needed, OddStates, Oddity, StateRef, Summary, Verdicts};
 
 use crate::budget::TotalBudget;
 use crate::draw::{Keyframe, ListedKeyframe};
@@ -275,10 +275,10 @@ impl Answerer<'_> {
         let place = || StateRef { id: state.id.clone().map(short_id), line: around.line };
         // They are noted first.
         if !impact.notes.is_empty()
-            && let Some(what) = state.odd_joints(robot).next()
+            && let Some(what) = state.oddities(robot).next()
         {
-            let first = Some(OddJoint { state: place(), what });
-            block.summary.odd_joints.add(OddJoints { states: 1, first });
+            let first = Some(Oddity { state: place(), what });
+            block.summary.odd_states.add(OddStates { states: 1, first });
         }
         match impact.analyzed() {
             Ok(analysis) => {

@@ -54,9 +54,9 @@ pub struct Summary {
     /// States with friction of their own, where another one is given for states without.
     #[serde(skip_serializing_if = "is_zero")]
     pub own_friction: u64,
-    /// States with a joint outside its limits or turned by more than a turn.
-    #[serde(skip_serializing_if = "OddJoints::is_empty")]
-    pub odd_joints: OddJoints,
+    /// States with odd numbers, as in other units.
+    #[serde(skip_serializing_if = "OddStates::is_empty")]
+    pub odd_states: OddStates,
     /// Touchdowns that were taken above the ground, of feet whose heights have no noise.
     #[serde(skip_serializing_if = "is_zero")]
     pub early: u64,
@@ -118,18 +118,18 @@ pub struct MoreFriction {
     pub greatest: Option<Needed>,
 }
 
-/// States with a joint outside its limits, or turned by more than a turn as if angles were in degrees.
+/// States with odd numbers (see [`State::oddities`](crate::State::oddities)).
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
-pub struct OddJoints {
+pub struct OddStates {
     /// How many there are.
     pub states: u64,
     /// The first of them.
-    pub first: Option<OddJoint>,
+    pub first: Option<Oddity>,
 }
 
-/// A state of the batch, and what is odd about the first such joint.
+/// A state of the batch, and the first thing that is odd about it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct OddJoint {
+pub struct Oddity {
     /// Which state it is.
     #[serde(flatten)]
     pub state: StateRef,
@@ -137,7 +137,7 @@ pub struct OddJoint {
     pub what: String,
 }
 
-impl OddJoints {
+impl OddStates {
     fn is_empty(&self) -> bool {
         self.states == 0
     }
@@ -240,7 +240,7 @@ impl Summary {
         }
         self.other_modes += following.other_modes;
         self.own_friction += following.own_friction;
-        self.odd_joints.add(following.odd_joints);
+        self.odd_states.add(following.odd_states);
         self.early += following.early;
         self.deep += following.deep;
         self.no_strike += following.no_strike;
@@ -352,12 +352,12 @@ impl fmt::Display for Summary {
             let states = self.resting;
             writeln!(f, "slow contacts are taken as exactly at rest: {states}; `resting_speed: 0` turns this off")?;
         }
-        if let OddJoints { states, first: Some(OddJoint { state, what }) } = &self.odd_joints {
-            writeln!(
-                f,
-                "states with joints outside their limits or beyond a turn: {states}, the first {state}: {}",
-                visible(what)
-            )?;
+        if let OddStates { states, first: Some(Oddity { state, what }) } = &self.odd_states {
+            writeln!(f, "states with odd numbers, as in other units: {states}, the first {state}: {}", visible(what))?;
+        }
+        let open = self.verdicts.0[Verdict::NoContact as usize];
+        if open > 1 && open + self.refused == self.states {
+            writeln!(f, "no foot touches the ground in any state: `place: lowest` puts the lowest one there")?;
         }
         self.of_touchdowns().try_for_each(|note| writeln!(f, "{note}"))?;
         let mut lists: Vec<&ModeCount> = self.modes.iter().filter(|list| !list.modes.is_empty()).collect();

@@ -374,8 +374,8 @@ impl Args {
                 writeln!(io::stderr(), "{}", with_flags(&self.recording.nothing_found(thresholds, seen)))
             }
             0 | 1 if self.summary.is_none() => {
-                let odd = counts.odd_joints.first.as_ref().map(|odd| &odd.what);
-                note_all(odd.or(seen.odd_joint.as_ref()).cloned());
+                let odd = counts.odd_states.first.as_ref().map(|odd| &odd.what);
+                note_all(odd.or(seen.oddity.as_ref()).cloned());
                 note_all(counts.of_touchdowns());
                 Ok(())
             }

@@ -2,30 +2,19 @@
 //! pose than it was meant.
 
 use super::{NearestFoot, Pipeline};
-use crate::contact::{Contact, Placement};
+use crate::contact::{Contact, Footing, Placement};
 use crate::dynamics::plan::PlanBody;
 use crate::error::{along_normal, rounded};
 use crate::planar::Vector;
-use crate::state::{Ground, Scene, State};
+use crate::state::{Scene, State};
 
 /// A foot that comes down from no more than this part of the robot's size has nearly touched.
 const NEAR_MISS: f64 = 1e-2;
 
-/// A slope beyond this is noted \[rad\].
-const STEEP: f64 = 0.8;
-
-/// No legged robot is faster \[m/s\].
-const FASTEST: f64 = 100.0;
+/// Named contacts that differ in height by more than this part of the robot's size cannot touch the ground together.
+const UNEVEN: f64 = 5e-2;
 
 impl Pipeline<'_> {
-    /// Notes a base that is faster than any robot, as in millimeters per second.
-    pub(super) fn note_speed(&self, velocity: &[f64], notes: &mut Vec<String>) {
-        let base = velocity.iter().zip(["x", "z"]).take(self.robot.base_dofs());
-        base.filter(|(rate, _)| rate.abs() > FASTEST).for_each(|(rate, name)| {
-            notes.push(format!("velocity.base.{name} is {rate} m/s: velocities are in m/s and rad/s"));
-        });
-    }
-
     /// Notes friction and restitution of links on which nothing can touch.
     pub(super) fn note_unused_laws(&self, State { scene, uncertainty, .. }: &State, notes: &mut Vec<String>) {
         let named = |link| scene.contacts.iter().flatten().any(|contact| contact.link == link);
@@ -45,18 +34,22 @@ impl Pipeline<'_> {
         &self,
         scene: &Scene,
         (contacts, nearest): (&[Contact], Option<NearestFoot>),
-        placement: &Placement,
+        (placement, footing): (&Placement, &Footing),
         notes: &mut Vec<String>,
     ) {
         match scene.contacts {
-            Some(_) => notes.extend(nearest.and_then(|foot| self.sunk_besides(foot))),
+            Some(_) => {
+                notes.extend(nearest.and_then(|foot| self.sunk_besides(foot)));
+                notes.extend(self.uneven(contacts));
+                notes.extend(self.doubled(contacts));
+                notes.extend(footing.below_contacts(contacts).and_then(|below| self.inside(below)));
+            }
             None => {
                 notes.extend(wide_tolerance(self.tolerance(), self.feet.size()));
                 self.note_near_miss(contacts, nearest, notes);
             }
         }
         notes.extend(self.upside_down(contacts, placement));
-        notes.extend(steep(&scene.ground));
     }
 
     /// That the robot's center of mass is below all contacts, as of a robot that is drawn head down.
@@ -71,6 +64,38 @@ impl Pipeline<'_> {
         let above = |contact: &Contact| contact.normal().dot(contact.point - center);
         let depth = contacts.iter().map(above).reduce(f64::min).filter(|&depth| depth > 0.0 && mass > 0.0)?;
         Some(format!("the center of mass is {depth:.3} m below all contacts: is the pose upside down?"))
+    }
+
+    /// That a link reaches so far \[m\] below the named contacts of its body.
+    fn inside(&self, (link, depth): (usize, f64)) -> Option<String> {
+        let name = &self.robot.links[link].name;
+        (depth > NEAR_MISS * self.feet.size()).then(|| {
+            format!(
+                "{name} reaches {} m below the contact that is named on its body: is a radius or another contact missing?",
+                rounded(depth)
+            )
+        })
+    }
+
+    /// That a contact is named twice, one right after the other.
+    fn doubled(&self, contacts: &[Contact]) -> Option<String> {
+        let is_same = |pair: &&[Contact]| {
+            let place = |at: usize| (pair[at].link, pair[at].offset, pair[at].radius);
+            place(0) == place(1)
+        };
+        let name = &self.robot.links[contacts.windows(2).find(is_same)?[0].link].name;
+        Some(format!("a contact of {name} is named twice: its impulse is shared by both"))
+    }
+
+    /// That one of the named contacts is high above another one.
+    fn uneven(&self, contacts: &[Contact]) -> Option<String> {
+        let by_height = |a: &&Contact, b: &&Contact| a.gap.total_cmp(&b.gap);
+        let (lowest, highest) = (contacts.iter().min_by(by_height)?, contacts.iter().max_by(by_height)?);
+        let height = highest.gap - lowest.gap;
+        (height > UNEVEN * self.feet.size()).then(|| {
+            let [high, low] = [highest, lowest].map(|contact| &contact.name);
+            format!("{high} is {} m higher above the ground than {low}: both are taken to touch it", rounded(height))
+        })
     }
 
     /// The note of a foot that is deep in the ground where other contacts are named.
@@ -106,7 +131,7 @@ impl Pipeline<'_> {
         notes.push(match (contacts.is_empty(), is_near) {
             (true, true) => format!(
                 "nothing touches the ground: the lowest foot, {name}, is {height} m above it and {moving}; to let \
-                 it touch, put it there by `place: lowest`, or give `contact_tolerance: {enough:.1e}`"
+                 it touch, put it there by `place: lowest`, or by the option `contact_tolerance: {enough:.1e}`"
             ),
             (true, false) => format!(
                 "nothing touches the ground: the lowest foot, {name}, is {height} m above it and {moving}; \
@@ -117,7 +142,7 @@ impl Pipeline<'_> {
                 let which = if touches { "another point of " } else { "" };
                 format!(
                     "{which}{name} nearly touches, {height} m above the ground: to let it touch, give \
-                     `contact_tolerance: {enough:.1e}`, or correct the pose"
+                     the option `contact_tolerance: {enough:.1e}`, or correct the pose"
                 )
             }
         });
@@ -129,14 +154,5 @@ pub fn wide_tolerance(tolerance: f64, size: f64) -> Option<String> {
     (tolerance > size).then(|| {
         let [tolerance, size] = [tolerance, size].map(rounded);
         format!("a contact tolerance of {tolerance} m is more than the robot's size, {size} m: is it in meters?")
-    })
-}
-
-/// That the ground is steeper than a legged robot stands on, as one of 1 degree taken for 1 rad.
-fn steep(ground: &Ground) -> Option<String> {
-    let &Ground::Slope(slope) = ground else { return None };
-    (slope.abs() > STEEP).then(|| {
-        let degrees = slope.to_degrees();
-        format!("the ground's slope of {slope} rad is one of {degrees:.1} degrees: was it meant in degrees?")
     })
 }

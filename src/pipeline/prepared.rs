@@ -20,7 +20,7 @@ use crate::impact::{ContactProblem, Errors};
 use crate::planar::{Pair, Vector};
 use crate::robot::Robot;
 use crate::scalar::Residue;
-use crate::state::{NamedContact, NamedLoop, Scene, State, check_length};
+use crate::state::{NamedLoop, Scene, State, check_length};
 use std::mem::take;
 
 /// A foot that does not touch.
@@ -123,9 +123,7 @@ impl Pipeline<'_> {
         left_out.clear();
         notes.clear();
         // `for_each` runs within the chain; `extend` asks it for each next one, which takes longer.
-        state.odd_joints(self.robot).for_each(|note| notes.push(note));
-        let out_of_scale = |contact: &NamedContact| contact.out_of_scale(self.robot);
-        scene.contacts.iter().flatten().filter_map(out_of_scale).for_each(|note| notes.push(note));
+        state.oddities(self.robot).for_each(|note| notes.push(note));
         self.note_unused_laws(state, notes);
         state.velocity.clone_into(velocity);
         (*placement, *foot) = self.stand(state, &surface, velocity, take(placement))?;
@@ -137,8 +135,7 @@ impl Pipeline<'_> {
             .map_err(|error| self.sunk(error, state, self.open_foot(&footing, &[], velocity)))?;
         *nearest = if self.options.brief { None } else { self.open_foot(&footing, contacts, velocity) };
         if !self.options.brief {
-            self.note_speed(&state.velocity, notes);
-            self.note_contacts(scene, (contacts, *nearest), placement, notes);
+            self.note_contacts(scene, (contacts, *nearest), (placement, &footing), notes);
         }
         check_matrix_size(contacts.len())?;
         *stance = foot.as_ref().and_then(|foot| place_of(foot, contacts));
@@ -372,7 +369,7 @@ impl Pipeline<'_> {
             ),
             (None, Some(remedy)) => format!("{remedy}; `place: lowest` puts the lowest foot on the ground"),
         };
-        let hint = state.odd_joints(self.robot).take(1).fold(hint, |hint, odd| format!("{hint}; {odd}"));
+        let hint = state.oddities(self.robot).take(1).fold(hint, |hint, odd| format!("{hint}; {odd}"));
         Error::new(Reason::Penetration { link: link.clone(), depth: *depth, tolerance: *tolerance, velocity })
             .hint(hint)
     }

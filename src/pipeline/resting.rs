@@ -83,7 +83,7 @@ impl Pipeline<'_> {
             } else if !self.options.brief && bound > 0.0 && slow <= bound {
                 notes.push(format!(
                     "{name} moves at {slow:.1e} m/s, which is within the rounding of its velocity: if it is at rest, \
-                     say so by `stance` or `resting_speed`"
+                     say so by `stance` or the option `resting_speed`"
                 ));
             }
         }

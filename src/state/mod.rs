@@ -3,12 +3,12 @@
 mod ground;
 mod named;
 mod scene;
-mod limits;
+mod oddities;
 
 pub use ground::{Ground, Profile};
-pub use limits::OutsideLimits;
 pub(crate) use named::Entries;
 pub use named::Named;
+pub use oddities::OutsideLimits;
 pub use scene::{
     AppliedImpulse, ByLink, LinkPoint, NamedContact, NamedLoop, Scene, SpringEnd, SpringLaw, VirtualSpring,
 };

@@ -1,12 +1,19 @@
-//! Joints of a state that are outside the limits of the robot's file, and angles that look like degrees.
+//! What is odd about the numbers of a state: joints outside the limits of the robot's file, angles and rates that look like
+//! degrees, speeds, slopes and places that no legged robot has.
 
-use super::State;
+use super::{Ground, State};
 use crate::robot::{Joint, Robot};
 use std::f64::consts::TAU;
 use std::fmt;
 
 /// Files and recordings round limits and positions by this part of the limits.
 const ROUNDING: f64 = 1e-6;
+
+/// No legged robot moves faster \[m/s\], and no part of it turns faster \[rad/s\].
+const FASTEST: f64 = 100.0;
+
+/// A slope beyond this is one of degrees \[rad\].
+const STEEP: f64 = 0.8;
 
 /// A joint that is outside its limits by more than rounding.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,12 +47,53 @@ impl State {
         })
     }
 
-    /// What is odd about the joints, in sentences: those outside their limits, and angles that look like degrees.
-    pub fn odd_joints(&self, robot: &Robot) -> impl Iterator<Item = String> {
+    /// What is odd about the numbers, in sentences: joints outside their limits, what looks like degrees or millimeters, and
+    /// a box without width.
+    pub fn oddities(&self, robot: &Robot) -> impl Iterator<Item = String> {
         let like_degrees = self.like_degrees(robot);
         let like_degrees =
             like_degrees.map(|(name, angle)| format!("{name} = {angle} rad is more than a turn; degrees?"));
-        self.outside_limits(robot).map(|outside| outside.to_string()).chain(like_degrees)
+        let contacts = self.scene.contacts.iter().flatten();
+        self.outside_limits(robot)
+            .map(|outside| outside.to_string())
+            .chain(like_degrees)
+            .chain(self.fast(robot))
+            .chain(contacts.filter_map(|contact| contact.out_of_scale(robot)))
+            .chain(self.steep())
+            .chain(self.point_box())
+    }
+
+    /// The rates that no robot has, but those of wheels.
+    fn fast(&self, robot: &Robot) -> impl Iterator<Item = String> {
+        let base = robot.base_dofs();
+        let rates = self.velocity.iter().copied().take(robot.dofs()).enumerate();
+        rates.filter(|(_, rate)| rate.abs() > FASTEST).filter_map(move |(at, rate)| {
+            let name = robot.coordinates().nth(at)?;
+            let turns = at.checked_sub(base).map_or(at == 2, |joint| robot.joints[joint].axis.is_revolute());
+            match turns {
+                true if is_wheel(robot, at) => None,
+                true => Some(format!("the rate of {name} is {rate} rad/s; degrees per second?")),
+                false => Some(format!("the rate of {name} is {rate} m/s: velocities are in m/s and rad/s")),
+            }
+        })
+    }
+
+    /// That the ground is steeper than a legged robot stands on.
+    fn steep(&self) -> Option<String> {
+        let Ground::Slope(slope) = self.scene.ground else { return None };
+        (slope.abs() > STEEP).then(|| {
+            let degrees = slope.to_degrees();
+            format!("the ground's slope of {slope} rad is one of {degrees:.1} degrees: was it meant in degrees?")
+        })
+    }
+
+    /// That the box of the uncertainty is the state alone.
+    fn point_box(&self) -> Option<String> {
+        let uncertainty = self.uncertainty.as_ref()?;
+        let friction = uncertainty.friction.default.iter().chain(uncertainty.friction.links.values());
+        let widths = uncertainty.position.iter().chain(&uncertainty.velocity).chain(&uncertainty.rotor_inertia);
+        let is_point = widths.chain(friction).all(|&width| width == 0.0);
+        is_point.then(|| "every half-width of the uncertainty is 0: its box is the state alone".to_owned())
     }
 
     /// The pitch and the joints without limits that are more than a turn, as degrees are: name and angle \[rad\]. Wheels,
@@ -56,16 +104,20 @@ impl State {
             Some(joint) => robot.joints[joint].limits.is_none() && robot.joints[joint].axis.is_revolute(),
             None => at == 2,
         };
-        let joints = || robot.joints.iter().chain(robot.mimic_joints.iter().map(|mimic| &mimic.joint));
-        let is_wheel = move |at: usize| match at.checked_sub(base) {
-            Some(joint) => joints().all(|other| other.parent != robot.joints[joint].child),
-            None => robot.joints.is_empty(),
-        };
         let like = move |&(at, angle): &(usize, f64)| {
-            angle.abs() > TAU && is_free_angle(at) && (angle.fract() == 0.0 || !is_wheel(at))
+            angle.abs() > TAU && is_free_angle(at) && (angle.fract() == 0.0 || !is_wheel(robot, at))
         };
         let angles = self.position.iter().copied().take(robot.dofs()).enumerate().filter(like);
         angles.filter_map(|(at, angle)| Some((robot.coordinates().nth(at)?, angle)))
+    }
+}
+
+/// Whether nothing else moves with what a coordinate turns.
+fn is_wheel(robot: &Robot, at: usize) -> bool {
+    let mut joints = robot.joints.iter().chain(robot.mimic_joints.iter().map(|mimic| &mimic.joint));
+    match at.checked_sub(robot.base_dofs()) {
+        Some(joint) => joints.all(|other| other.parent != robot.joints[joint].child),
+        None => robot.joints.is_empty(),
     }
 }
 

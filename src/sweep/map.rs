@@ -48,8 +48,8 @@ pub struct Map {
     pub curves: Vec<BorderCurve>,
     /// Whether contacts depend on each other somewhere: combinations without a unique solution are not followed.
     pub dependent: bool,
-    /// What is odd about the joints in the middle and at the ends of the ranges, in sentences.
-    pub odd_joints: Vec<String>,
+    /// What is odd about the states in the middle and at the ends of the ranges, in sentences.
+    pub oddities: Vec<String>,
 }
 
 /// Where one regime holds.
@@ -251,7 +251,7 @@ impl Map {
                 }
             }
         }
-        Self { curves, areas, dependent, odd_joints: model.odd_joints() }
+        Self { curves, areas, dependent, oddities: model.oddities() }
     }
 
     /// Refuses a study whose grid does not fit into the memory that a map may take.

@@ -68,27 +68,51 @@ pub(super) struct Inner {
 /// The inequalities of up to this many contacts are followed: 4^n combinations.
 pub const WATCHED_CONTACTS: usize = 4;
 
+/// The note of a study whose state has an uncertainty.
+const BOXES: &str = "the regions are those of the states as given: whether these hold within their uncertainty, the samples in JSON say";
+
 /// So many points are remembered: the nodes of an interval, of its halves and of theirs.
 const RECENT: usize = 16;
 
 impl RobotStudy<'_> {
-    /// What is odd about the joints in the middle and at the ends of the ranges, in sentences, each joint once.
-    pub(super) fn odd_joints(&self) -> Vec<String> {
+    /// What a reader should know of the states, in sentences, each once but for its numbers: what is odd in the middle and
+    /// at the ends of the ranges, and which parameter changes no contact problem there.
+    pub(super) fn oddities(&self) -> Vec<String> {
         let parameters = self.study.parameters();
         let mut solver = Solver::new(self);
         let mut found: Vec<String> = Vec::new();
+        let mut problems = Vec::new();
         // Three places along each parameter.
         for at in 0..3_usize.pow(parameters.len() as u32) {
             let place = |index: u32| 0.5 * (at / 3_usize.pow(index) % 3) as f64;
             let along = parameters.iter().zip(0..).map(|(parameter, index)| (parameter, place(index)));
             let point: Vec<f64> = along.map(|(own, part)| own.from + part * own.range()).collect();
+            let seen = solver.at(&point, |robot, state, pipeline| {
+                let boxed = state.uncertainty.is_some().then(|| BOXES.to_owned());
+                let odd = state.oddities(robot).chain(boxed).collect::<Vec<_>>();
+                Ok((odd, pipeline.answer(&State { uncertainty: None, ..state }).map(|impact| impact.problem).ok()))
+            });
             // Where a state is refused, its region says why.
-            let odd = solver.at(&point, |robot, state, _| Ok(state.odd_joints(robot).collect::<Vec<_>>()));
-            for sentence in odd.unwrap_or_default() {
-                let joint = |sentence: &str| sentence.split(" = ").next().map(str::to_owned);
-                if !found.iter().any(|known| joint(known) == joint(&sentence)) {
+            let (odd, problem) = seen.unwrap_or_default();
+            problems.push(problem);
+            for sentence in odd {
+                let words = |sentence: &str| sentence.replace(|c: char| c.is_ascii_digit() || c == '.', "");
+                if !found.iter().any(|known| words(known) == words(&sentence)) {
                     found.push(sentence);
                 }
+            }
+        }
+        let unused = self.study.unused();
+        for (parameter, stride) in parameters.iter().zip([1, 3]).filter(|(own, _)| !unused.contains(&&*own.name)) {
+            let is_same = |at: usize| {
+                let problem = problems[at - at / stride % 3 * stride].as_ref();
+                problem.is_some_and(|problem| problem.contacts() > 0) && problem == problems[at].as_ref()
+            };
+            if (0..problems.len()).all(is_same) {
+                found.push(format!(
+                    "nothing changes with {}: no contact, and no number of the contacts' problem, depends on it",
+                    parameter.name
+                ));
             }
         }
         found

@@ -19,8 +19,8 @@ pub struct Survey {
     pub borders: Vec<RegionBorder>,
     /// Whether contacts depend on each other somewhere: combinations without a unique solution are not followed.
     pub dependent: bool,
-    /// What is odd about the joints in the middle and at the ends of the range, in sentences.
-    pub odd_joints: Vec<String>,
+    /// What is odd about the states in the middle and at the ends of the range, in sentences.
+    pub oddities: Vec<String>,
 }
 
 /// A stretch of the parameter with one set of outcomes.
@@ -90,7 +90,7 @@ impl Survey {
         };
         let quiet = Workers { done: &|| (), ..workers };
         let borders = quiet.map(brackets.len(), begin, border);
-        Self { regions, borders, dependent, odd_joints: model.odd_joints() }
+        Self { regions, borders, dependent, oddities: model.oddities() }
     }
 
     /// How many pieces of work a survey of `model` has.

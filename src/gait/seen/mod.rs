@@ -19,7 +19,7 @@ pub struct Seen {
     /// The least height of a foot \[m\].
     lowest: Option<f64>,
     /// What is odd about the joints of the first state with such joints, in words.
-    pub odd_joint: Option<String>,
+    pub oddity: Option<String>,
     order: Order,
     motion: Motion,
     /// How far below z = 0 each touchdown was found where heights are recorded, apart from deep ones \[m\].
@@ -31,8 +31,8 @@ impl Seen {
     pub(super) fn add<S>(&mut self, sample: &Sample<S>, step: ClockStep, lowest: f64, robot: &Robot) {
         self.lowest = Some(self.lowest.map_or(lowest, |before| before.min(lowest)));
         let Sample { state, time, .. } = sample;
-        if self.odd_joint.is_none() {
-            self.odd_joint = state.odd_joints(robot).next();
+        if self.oddity.is_none() {
+            self.oddity = state.oddities(robot).next();
         }
         self.order.add(*time, step);
         // Velocities that were taken from positions fit them.
@@ -60,7 +60,7 @@ impl Seen {
                 ", faster than {slow:.4} m/s, to at most {ground:.4} m above the ground (see `drop`, `ground_height`)"
             ),
         };
-        let odd = self.odd_joint.as_ref().map_or(String::new(), |odd| format!("; {odd}"));
+        let odd = self.oddity.as_ref().map_or(String::new(), |odd| format!("; {odd}"));
         let step = self.order.long_step().map(rounded);
         let long = step.map_or(String::new(), |step| format!("; rows are {step} s apart: is the time in seconds?"));
         format!("no touchdown found: {reached}a foot must descend {drop:.4} m or more{must}{odd}{long}")

@@ -8,7 +8,7 @@ use crate::planar::Pair;
 use crate::scalar::{Real, dot, subtract};
 
 /// M, J and v as they were given, every digit meant; of M only what is on and below its diagonal.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Dynamics {
     /// dofs x dofs.
     mass_matrix: Vec<Vec<f64>>,

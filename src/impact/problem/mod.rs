@@ -28,7 +28,7 @@ use crate::scalar::{Ball, DoubleDouble, Ordered, Real, Sign};
 ///
 /// It runs on any [`Real`]; [`ContactProblem::map`] makes one in another number. [`Analysis`](crate::Analysis) has an
 /// example.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct ContactProblem<T = f64> {
     /// G, 2n x 2n by rows \[1/kg\].
     delassus: Vec<T>,
@@ -46,7 +46,7 @@ pub struct ContactProblem<T = f64> {
 }
 
 /// What the numbers of a problem that is its own source come from.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq)]
 enum Origin {
     #[default]
     Given,

@@ -6,7 +6,7 @@ use crate::impact::linear::{Unsettled, are_zero, settled};
 use crate::scalar::{Ordered, Real, dot, subtract};
 
 /// Rows Z of G = Z Z^T, taken exactly.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct FactorRows(Vec<Vec<f64>>);
 
 impl FactorRows {

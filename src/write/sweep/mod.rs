@@ -35,7 +35,7 @@ pub struct Sweep<'a> {
     pub regions: Vec<RegionRecord<'a>>,
     /// The border between each two of them.
     pub borders: &'a [RegionBorder],
-    /// Limits of the search, and joints beyond their limits, as sentences.
+    /// Limits of the search, and what is odd about the states, as sentences.
     pub notes: Vec<String>,
     /// How many samples there are.
     #[serde(skip)]
@@ -148,7 +148,7 @@ impl<'a> Sweep<'a> {
             parameter: &parameter.name,
             regions: survey.regions.iter().map(region).collect(),
             borders: &survey.borders,
-            notes: [not_guaranteed(contacts, survey.dependent), survey.odd_joints.clone()].concat(),
+            notes: [not_guaranteed(contacts, survey.dependent), survey.oddities.clone()].concat(),
             steps: parameter.steps,
         }
     }
@@ -168,7 +168,7 @@ pub struct MapSweep<'a> {
     pub regions: Vec<MapRegion<'a>>,
     /// The borders between them.
     pub borders: &'a [BorderCurve],
-    /// Limits of the search, and joints beyond their limits, as sentences.
+    /// Limits of the search, and what is odd about the states, as sentences.
     pub notes: Vec<String>,
     /// How many samples there are.
     #[serde(skip)]
@@ -210,7 +210,7 @@ impl<'a> MapSweep<'a> {
              cells is not found"
             ));
         }
-        notes.extend_from_slice(&map.odd_joints);
+        notes.extend_from_slice(&map.oddities);
         Self {
             question: study.question(),
             parameters: parameters.iter().map(|parameter| parameter.name.as_str()).collect(),

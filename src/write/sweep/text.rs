@@ -26,7 +26,9 @@ impl Regions<'_> {
             Self::Along(sweep) => sweep.write(palette, out)?,
             Self::Map(map) => map.write(palette, out)?,
         }
-        notes.iter().try_for_each(|note| writeln!(out, "\nNote: {}.", visible(note)))
+        notes.iter().try_for_each(|note| {
+            writeln!(out, "\nNote: {}{}", visible(note), if note.ends_with('?') { "" } else { "." })
+        })
     }
 }
 

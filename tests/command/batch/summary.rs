@@ -56,16 +56,25 @@ all outcomes slide because friction is too small: 2; most is needed by 3 (line 3
 }
 
 #[test]
-fn odd_joints_are_counted_and_the_first_is_named() {
+fn odd_states_are_counted_and_the_first_is_named() {
     let path = place("odd.json");
     let turned = |pitch: f64| json!({"position": {"base": {"z": 0.5, "pitch": pitch}}});
     let states = [1.0, 90.0, 180.0].map(|pitch| format!("{}\n", turned(pitch))).concat();
     let run = batch(&["-", "--brief", "--friction", "1", "--summary", &path], states);
     let what = "pitch = 90 rad is more than a turn; degrees?";
     let expected = json!({"states": 2, "first": {"line": 2, "what": what}});
-    assert_eq!(parsed(&read(&path))["odd_joints"], expected);
-    let line = format!("states with joints outside their limits or beyond a turn: 2, the first line 2: {what}\n");
+    assert_eq!(parsed(&read(&path))["odd_states"], expected);
+    let line = format!("states with odd numbers, as in other units: 2, the first line 2: {what}\n");
     assert!(run.stderr.contains(&line), "{}", run.stderr);
+}
+
+#[test]
+fn a_batch_in_which_nothing_touches_says_so() {
+    let line = "no foot touches the ground in any state: --place lowest puts the lowest one there\n";
+    let raised = |z: f64| format!("{}\n", json!({"position": {"base": {"z": z}}, "velocity": {"base": {"z": -1}}}));
+    let said = |states: String| batch(&["-", "--brief", "--friction", "1"], states).stderr.contains(line);
+    assert!(said([500.0, 501.0].map(raised).concat() + "{oops\n"));
+    assert!(!said([0.5, 501.0, 502.0].map(raised).concat()));
 }
 
 /// The disc slows down to the ground at 10 m/s^2.

@@ -7,6 +7,8 @@ use heelstrike::pipeline::{Impact, NearestFoot, Options};
 use heelstrike::{Reason, Robot};
 use serde_json::{Value, json};
 
+const RAMONE: &str = include_str!("../../../urdf/ramone.urdf");
+
 /// A body with a point at its CoG, and another link that is fixed to it with a point 1 m ahead and `height` above.
 fn two_feet(height: f64) -> Robot {
     robot(&urdf::robot(&[
@@ -34,7 +36,7 @@ fn near_miss_is_named_with_height_and_velocity() {
     let NearestFoot { link, height, velocity } = nearest(&impact);
     assert_eq!(link, 1);
     assert_close(&[height, velocity[0], velocity[1]], &[3e-5, 1.5e-5, -1.1]);
-    let expected = "other nearly touches, 3e-5 m above the ground: to let it touch, give `contact_tolerance: 3.3e-5`, or \
+    let expected = "other nearly touches, 3e-5 m above the ground: to let it touch, give the option `contact_tolerance: 3.3e-5`, or \
                     correct the pose";
     assert_eq!(impact.notes, [expected]);
 }
@@ -80,7 +82,7 @@ fn nearest_over_a_profile_is_found_at_its_edge() {
 fn foot_in_the_air_is_named_with_a_remedy() {
     let impact = impact(&two_feet(0.5), striking(1e-3, json!({})));
     let expected = "nothing touches the ground: the lowest foot, body, is 0.001 m above it and moves toward it at \
-                    0.6 m/s; to let it touch, put it there by `place: lowest`, or give `contact_tolerance: 1.1e-3`";
+                    0.6 m/s; to let it touch, put it there by `place: lowest`, or by the option `contact_tolerance: 1.1e-3`";
     assert_eq!(impact.notes, [expected]);
 }
 
@@ -186,7 +188,47 @@ fn ground_speed_and_pose_beyond_any_robots_are_noted() {
     assert_eq!(steep(-1.0), ["the ground's slope of -1 rad is one of -57.3 degrees: was it meant in degrees?"]);
     let falling = |z: f64| notes(json!({"velocity": {"base": {"z": z}}}));
     assert!(falling(-100.0).is_empty(), "{:?}", falling(-100.0));
-    assert_eq!(falling(-500.0), ["velocity.base.z is -500 m/s: velocities are in m/s and rad/s"]);
+    assert_eq!(falling(-500.0), ["the rate of z is -500 m/s: velocities are in m/s and rad/s"]);
+    let turning = |rate: f64| {
+        let joints = json!({"left_hip": rate});
+        impact(&robot(RAMONE), json!({"velocity": {"joints": joints}, "place": "lowest", "friction": 1})).notes
+    };
+    assert!(turning(100.0).is_empty(), "{:?}", turning(100.0));
+    assert_eq!(turning(286.0), ["the rate of left_hip is 286 rad/s; degrees per second?"]);
+    let boxed = |width: f64| notes(json!({"uncertainty": {"velocity": {"base": {"z": width}}}}));
+    assert!(boxed(0.1).is_empty(), "{:?}", boxed(0.1));
+    assert_eq!(boxed(0.0), ["every half-width of the uncertainty is 0: its box is the state alone"]);
     let at_the_head = notes(json!({"contacts": [{"link": "body", "offset": [0, 0, 0.25]}]}));
-    assert_eq!(at_the_head, ["the center of mass is 0.250 m below all contacts: is the pose upside down?"]);
+    let [_, upside_down] = &at_the_head[..] else { panic!("{at_the_head:?}") };
+    assert_eq!(upside_down, "the center of mass is 0.250 m below all contacts: is the pose upside down?");
+}
+
+#[test]
+fn named_contacts_that_cannot_be_meant_are_noted() {
+    let robot = robot(RAMONE);
+    let notes = |left: Value, right: Value, knee: f64| {
+        let joints = json!({"left_hip": 0.3, "left_knee": -0.5, "right_hip": 0.3, "right_knee": knee});
+        let contacts: Vec<Value> = [left, right]
+            .into_iter()
+            .filter(|own| !own.is_null())
+            .map(|own| {
+                let mut contact = json!({"link": "left_foot", "radius": 0.02815});
+                contact.as_object_mut().unwrap().extend(own.as_object().cloned().unwrap());
+                contact
+            })
+            .collect();
+        let state = json!({"position": {"joints": joints}, "velocity": {"base": {"z": -1}}, "place": "lowest",
+                           "contacts": contacts, "friction": 1});
+        impact(&robot, state).notes
+    };
+    let (left, right) = (json!({}), json!({"link": "right_foot"}));
+    assert!(notes(left.clone(), right.clone(), -0.5).is_empty(), "{:?}", notes(left, right, -0.5));
+    let raised = notes(json!({}), right.clone(), -1.2);
+    assert!(raised[0].ends_with("m higher above the ground than left_foot: both are taken to touch it"), "{raised:?}");
+    let twice = notes(json!({}), json!({}), -0.6);
+    assert_eq!(twice[0], "a contact of left_foot is named twice: its impulse is shared by both");
+    let point = notes(json!({"radius": 0}), Value::Null, -0.6);
+    let missing = "left_foot reaches 0.02815 m below the contact that is named on its body: is a radius or another \
+                   contact missing?";
+    assert!(point.iter().any(|note| note == missing), "{point:?}");
 }

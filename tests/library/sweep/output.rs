@@ -78,6 +78,29 @@ fn joints_beyond_a_turn_are_noted_once() {
     }
 }
 
+/// Only a sample's answer says whether it holds, and no impact depends on gravity.
+#[test]
+fn parameters_without_effect_and_boxes_are_noted() {
+    let notes = |of_b: Value| {
+        let state = json!({"position": {"joints": {"left_hip": "a"}}, "velocity": {"base": {"z": -1}}, "place": "lowest",
+                           "friction": 1, "gravity": "b", "uncertainty": {"position": 1e-3}});
+        let mut parameters = json!({"a": {"from": 0.1, "to": 0.2, "steps": 2}});
+        parameters.as_object_mut().expect("an object").extend(of_b.as_object().cloned().expect("an object"));
+        let constants = if parameters["b"].is_null() { json!({"b": 1}) } else { json!({}) };
+        let study = json!({"parameters": parameters, "constants": constants, "state": state});
+        let found: Value = written("urdf/ramone.urdf", &study, &[]);
+        let all = found["notes"].as_array().expect("a list").iter().filter_map(Value::as_str);
+        all.filter(|note| note.contains("uncertainty") || note.contains("depends on it"))
+            .map(str::to_owned)
+            .collect::<Vec<_>>()
+    };
+    let boxes = "the regions are those of the states as given: whether these hold within their uncertainty, the samples \
+                 in JSON say";
+    let without = "nothing changes with b: no contact, and no number of the contacts' problem, depends on it";
+    assert_eq!(notes(json!({})), [boxes]);
+    assert_eq!(notes(json!({"b": {"from": 1, "to": 9, "steps": 2}})), [boxes, without]);
+}
+
 /// Above 0.3 the cone's half-angle has no value; below, nothing touches.
 fn partly_refused() -> Value {
     json!({
