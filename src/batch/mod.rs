@@ -275,7 +275,7 @@ impl Answerer<'_> {
         let place = || StateRef { id: state.id.clone().map(short_id), line: around.line };
         // They are noted first.
         if !impact.notes.is_empty()
-            && let Some(what) = state.oddities(robot).next()
+            && let Some(what) = state.oddities(robot).into_iter().next()
         {
             let first = Some(Oddity { state: place(), what });
             block.summary.odd_states.add(OddStates { states: 1, first });

@@ -122,8 +122,7 @@ impl Pipeline<'_> {
         (*sustained, *holds, *matrices) = (None, None, None);
         left_out.clear();
         notes.clear();
-        // `for_each` runs within the chain; `extend` asks it for each next one, which takes longer.
-        state.oddities(self.robot).for_each(|note| notes.push(note));
+        notes.append(&mut state.oddities(self.robot));
         self.note_unused_laws(state, notes);
         state.velocity.clone_into(velocity);
         (*placement, *foot) = self.stand(state, &surface, velocity, take(placement))?;
@@ -369,7 +368,7 @@ impl Pipeline<'_> {
             ),
             (None, Some(remedy)) => format!("{remedy}; `place: lowest` puts the lowest foot on the ground"),
         };
-        let hint = state.oddities(self.robot).take(1).fold(hint, |hint, odd| format!("{hint}; {odd}"));
+        let hint = state.oddities(self.robot).into_iter().take(1).fold(hint, |hint, odd| format!("{hint}; {odd}"));
         Error::new(Reason::Penetration { link: link.clone(), depth: *depth, tolerance: *tolerance, velocity })
             .hint(hint)
     }

@@ -49,18 +49,19 @@ impl State {
 
     /// What is odd about the numbers, in sentences: joints outside their limits, what looks like degrees or millimeters, and
     /// a box without width.
-    pub fn oddities(&self, robot: &Robot) -> impl Iterator<Item = String> {
-        let like_degrees = self.like_degrees(robot);
-        let like_degrees =
-            like_degrees.map(|(name, angle)| format!("{name} = {angle} rad is more than a turn; degrees?"));
-        let contacts = self.scene.contacts.iter().flatten();
-        self.outside_limits(robot)
-            .map(|outside| outside.to_string())
-            .chain(like_degrees)
-            .chain(self.fast(robot))
-            .chain(contacts.filter_map(|contact| contact.out_of_scale(robot)))
-            .chain(self.steep())
-            .chain(self.point_box())
+    pub fn oddities(&self, robot: &Robot) -> Vec<String> {
+        let mut odd = Vec::new();
+        self.outside_limits(robot).for_each(|outside| odd.push(outside.to_string()));
+        self.like_degrees(robot).for_each(|(name, angle)| {
+            odd.push(format!("{name} = {angle} rad is more than a turn; degrees?"));
+        });
+        if self.velocity.iter().any(|rate| rate.abs() > FASTEST) {
+            odd.extend(self.fast(robot));
+        }
+        odd.extend(self.scene.contacts.iter().flatten().filter_map(|contact| contact.out_of_scale(robot)));
+        odd.extend(self.steep());
+        odd.extend(self.point_box());
+        odd
     }
 
     /// The rates that no robot has, but those of wheels.

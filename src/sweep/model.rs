@@ -88,8 +88,8 @@ impl RobotStudy<'_> {
             let along = parameters.iter().zip(0..).map(|(parameter, index)| (parameter, place(index)));
             let point: Vec<f64> = along.map(|(own, part)| own.from + part * own.range()).collect();
             let seen = solver.at(&point, |robot, state, pipeline| {
-                let boxed = state.uncertainty.is_some().then(|| BOXES.to_owned());
-                let odd = state.oddities(robot).chain(boxed).collect::<Vec<_>>();
+                let mut odd = state.oddities(robot);
+                odd.extend(state.uncertainty.is_some().then(|| BOXES.to_owned()));
                 Ok((odd, pipeline.answer(&State { uncertainty: None, ..state }).map(|impact| impact.problem).ok()))
             });
             // Where a state is refused, its region says why.
