@@ -18,12 +18,12 @@ use crate::batch::{self, Batch, Question, Recording, RefusedRecord, States, Summ
 use crate::budget::TotalBudget;
 use crate::contact::Feet;
 use crate::draw::page::Gait;
-use crate::gait::{Dropped, Seen, Thresholds};
+use crate::gait::{Dropped, Seen, Thresholds, unwrapped};
 use crate::pipeline::{Aspect, Options, wide_tolerance};
-use crate::read::table::Header;
 #[cfg(feature = "columnar")]
 use crate::read::table::Parts;
-use crate::state::NamedContact;
+use crate::read::table::{Header, Rates};
+use crate::state::{Defaults, NamedContact};
 use crate::write::{self, Columns, Layout, notes};
 use crate::{Error, Reason, Robot};
 use indicatif::ProgressBar;
@@ -31,6 +31,9 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
+
+/// So many rows show whether velocities fit positions.
+const FIRST_ROWS: usize = 300;
 
 /// Find every outcome of many states: one line of JSON or row of CSV each, answered in order
 ///
@@ -124,6 +127,7 @@ pub(super) fn run(args: &Args) -> Completion {
         return Err(in_input(Error::new(Reason::Missing("a state".into()))).hint(hint).into());
     }
     note_all(header.as_ref().and_then(notes::missing));
+    note_all(header.as_ref().and_then(|header| args.misfit(&robot, header, input_format)));
     // Before any file is replaced: does this robot have feet to look for?
     let thresholds = args.recording.thresholds(&robot, &feet);
     let thresholds = thresholds.map_err(|error| error.in_file(input::name(&args.robot.robot)))?;
@@ -209,6 +213,19 @@ impl Args {
             return refuse(reason, "name the file, or give an Arrow stream: --input-format arrows");
         }
         Ok([input, output])
+    }
+
+    /// That the velocities of a table with times do not fit its positions, as its first rows say: a file can be read twice.
+    fn misfit(&self, robot: &Robot, header: &Header, format: RecordFormat) -> Option<String> {
+        let has_all = header.missing().is_empty() && !header.is_spatial();
+        if self.recording.is_in_order() || !has_all || !self.states.is_file() {
+            return None;
+        }
+        let mut states = self.open(format, &Origin::of(None, false), &ProgressBar::hidden()).ok()?;
+        let header = states.header(robot, Rates::Columns, &self.foreign, true).ok()??;
+        let (defaults, pauses) = (Defaults::default(), AtomicBool::new(false));
+        let samples = states.samples(&header, robot, &defaults, &pauses).take(FIRST_ROWS);
+        Seen::misfit(unwrapped(samples, robot), robot)
     }
 
     /// Opens the input.

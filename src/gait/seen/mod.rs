@@ -5,8 +5,8 @@ mod motion;
 
 use self::motion::Motion;
 use self::order::Order;
-use super::clip::ClockStep;
-use super::{Heights, Sample, Thresholds};
+use super::clip::{Clock, ClockStep};
+use super::{Heights, Sample, Sampled, Thresholds};
 use crate::Robot;
 use crate::error::rounded;
 
@@ -27,6 +27,15 @@ pub struct Seen {
 }
 
 impl Seen {
+    /// That the velocities of samples are not the rates of their positions, as in other units or of other sign.
+    pub fn misfit<S>(samples: impl Iterator<Item = Sampled<S>>, robot: &Robot) -> Option<String> {
+        let (mut clock, mut motion) = (Clock::default(), Motion::default());
+        for Sample { state, time, .. } in samples.flatten() {
+            motion.add(&state, time, clock.step(time), true, robot);
+        }
+        motion.misfit(robot)
+    }
+
     /// Adds the next sample, whose lowest foot is at this height \[m\].
     pub(super) fn add<S>(&mut self, sample: &Sample<S>, step: ClockStep, lowest: f64, robot: &Robot) {
         self.lowest = Some(self.lowest.map_or(lowest, |before| before.min(lowest)));

@@ -134,7 +134,7 @@ impl Motion {
     }
 
     /// That velocities of the recording are not the rates of its positions, as in other units or of other sign.
-    fn misfit(&self, robot: &Robot) -> Option<String> {
+    pub fn misfit(&self, robot: &Robot) -> Option<String> {
         let misfit = |(name, &[squared, rates, product]): (&str, &[f64; 3])| {
             let (correlation, factor) = (product / (squared * rates).sqrt(), product / rates);
             if squared == 0.0 && rates > MOVING * MOVING * self.steps as f64 {

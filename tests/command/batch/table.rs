@@ -191,6 +191,19 @@ fn recordings_in_other_units_or_axes_are_noted() {
         assert!(note.contains(words), "{note}");
         assert!(!stderr.contains("positions jump"), "of units, not of outliers: {stderr}");
     }
+    // Without touchdowns the first rows of a file say so.
+    for (factor, is_noted) in [(1.0, false), (57.3, true)] {
+        let (names, rows) = walk_cells();
+        let scaled = |(name, cell): (&String, &String)| match cell.parse::<f64>() {
+            Ok(number) if name.starts_with("v_left") => (factor * number).to_string(),
+            _ => cell.clone(),
+        };
+        let lines = rows.iter().map(|row| names.iter().zip(row).map(scaled).collect::<Vec<_>>().join(","));
+        let table: Vec<String> = std::iter::once(names.join(",")).chain(lines).collect();
+        let states = file("rates.csv", table.join("\n"));
+        let run = heelstrike(&["batch", RAMONE, &states, "--friction", "0.6", "--brief"]);
+        assert_eq!(run.stderr.contains(misfit), is_noted, "{}", run.stderr);
+    }
     let deep = stderr(|name, cell| if name == "q_base_z" { cell - 0.5 } else { cell });
     assert!(deep.contains("touchdowns of feet far under z = 0, which were lifted to it: "), "{deep}");
     let degrees =
