@@ -5,10 +5,10 @@ use crate::values::{from_json, refused, to_json, warn};
 use crate::watch::{budget, interrupted, raised, shared, without_python};
 use heelstrike::batch::{Batch, Question, Recording, States, Summary, TaskSource};
 use heelstrike::budget::TotalBudget;
-use heelstrike::cli::{RecordFormat, RecordingOptions, Seconds, seconds, threads};
+use heelstrike::cli::{RecordingOptions, Seconds, seconds, table as form_of, threads};
 use heelstrike::impact::{AnalysisOptions, Scratch};
 use heelstrike::read::Problem;
-use heelstrike::read::table::Form;
+use heelstrike::read::table::{Form, Parts};
 use heelstrike::sweep::{Findings, RobotStudy, Solver, Workers};
 use heelstrike::write::notes;
 use heelstrike::write::sweep::{Regions, SampleRecord};
@@ -105,12 +105,12 @@ pub fn touchdowns<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let py = robot.py();
     let path = table.extract::<PathBuf>().ok();
-    let format = path.as_deref().and_then(RecordFormat::table);
+    let format = path.as_deref().and_then(form_of);
     let states = match (path, format) {
-        (Some(path), Some(format)) if !format.is_text() => format.parts(File::open(path)?).map(States::Columns),
+        (Some(path), Some(format)) if !format.is_text() => Parts::open(File::open(path)?, format).map(States::Columns),
         _ => {
             let text = py.import("heelstrike._values")?.call_method1("to_csv", (table,))?;
-            States::of_text(Cursor::new(text.extract::<Vec<u8>>()?), format.map_or(Form::Csv, RecordFormat::form))
+            States::of_text(Cursor::new(text.extract::<Vec<u8>>()?), format.unwrap_or(Form::Csv))
         }
     };
     let states = states.map_err(refused)?;

@@ -28,9 +28,9 @@ use crate::gait::{Landing, Sample, Sampled};
 use crate::pipeline::{Options, Pipeline};
 use crate::read::documents::utf8;
 use crate::read::lines::StateLines;
-use crate::read::table::{Carried, Header, Row, Rows};
 #[cfg(feature = "columnar")]
-use crate::read::table::{Form, Part};
+use crate::read::table::Part;
+use crate::read::table::{Carried, Header, Row, Rows};
 use crate::state::{Defaults, State};
 use crate::write::{self, Columns, Detail, Refused, Report, Touchdown, short_id};
 use crate::{Error, Reason, Result, Robot};
@@ -194,7 +194,7 @@ impl Answerer<'_> {
             columns: self
                 .question
                 .columns
-                .filter(|columns| columns.form() == Form::Columns)
+                .filter(|columns| !columns.form().is_text())
                 .map(|columns| write::ColumnBlock::new(columns, records)),
             ..Block::default()
         }

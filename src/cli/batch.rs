@@ -1,7 +1,7 @@
 //! `heelstrike batch`: the answers to many states, in order.
 
 use super::diagnostic::{is_quiet, note, note_all, with_flags};
-use super::format::RecordFormat;
+use super::format;
 use super::options::{
     BudgetOptions, Choices, CsvOptions, DetailOptions, NextOption, SceneOptions, Seconds, ThreadOptions, choice,
     pipeline_options, seconds,
@@ -22,8 +22,10 @@ use crate::gait::{Dropped, Seen, Thresholds, unwrapped};
 use crate::pipeline::{Aspect, Options, wide_tolerance};
 #[cfg(feature = "columnar")]
 use crate::read::table::Parts;
-use crate::read::table::{Header, Rates};
+use crate::read::table::{Form, Header, Rates};
 use crate::state::{Defaults, NamedContact};
+#[cfg(feature = "columnar")]
+use crate::write::ColumnWriter;
 use crate::write::{self, Columns, Layout, notes};
 use crate::{Error, Reason, Robot};
 use indicatif::ProgressBar;
@@ -53,7 +55,7 @@ pub struct Args {
     states: PathBuf,
     /// The format of the input [default: by its ending, else ndjson]
     #[arg(long, value_name = "FORMAT", value_enum)]
-    input_format: Option<RecordFormat>,
+    input_format: Option<Form>,
     /// Copy this column of a table to the results although its name resembles that of a coordinate [repeatable]
     #[arg(long, value_name = "NAME")]
     foreign: Vec<String>,
@@ -80,7 +82,7 @@ pub struct Args {
     resume: bool,
     /// The format of the results [default: by the output's ending, else ndjson]
     #[arg(long, alias = "format", value_name = "FORMAT", value_enum, help_heading = "Output")]
-    output_format: Option<RecordFormat>,
+    output_format: Option<Form>,
     #[command(flatten)]
     csv: CsvOptions,
     /// Also write the summary to this file, as JSON
@@ -137,9 +139,9 @@ pub(super) fn run(args: &Args) -> Completion {
         next: args.next.next,
         brief: args.detail.brief,
         guarded: args.csv.csv_safe,
-        form: format.form(),
+        form: format,
     };
-    let columns = (format != RecordFormat::Ndjson).then(|| Columns::new(&robot, &feet, header.as_ref(), layout));
+    let columns = (format != Form::Ndjson).then(|| Columns::new(&robot, &feet, header.as_ref(), layout));
     let size = Feet::new(&robot, &feet).size();
     let question = args.question(&robot, feet, header.as_ref(), columns.as_ref())?;
     // Full results note it themselves.
@@ -160,7 +162,7 @@ pub(super) fn run(args: &Args) -> Completion {
     }
     #[cfg(feature = "columnar")]
     if let Some(columns) = &columns {
-        sink.columns = format.writer(columns)?;
+        sink.columns = (!format.is_text()).then(|| ColumnWriter::new(columns, format)).transpose()?;
     }
 
     let (dropped, seen) = (Mutex::new(Dropped::default()), Mutex::new(Seen::default()));
@@ -195,11 +197,11 @@ impl Args {
     }
 
     /// The formats of input and output, which must have room for what is asked.
-    fn formats(&self) -> Result<[RecordFormat; 2], Failure> {
-        let input = RecordFormat::of((Some(&self.states), false), self.input_format, "--input-format")?;
-        let output = RecordFormat::of((self.output.as_deref(), true), self.output_format, "--output-format")?;
-        self.csv.check(matches!(output, RecordFormat::Csv | RecordFormat::Tsv))?;
-        if output != RecordFormat::Ndjson {
+    fn formats(&self) -> Result<[Form; 2], Failure> {
+        let input = format::form((Some(&self.states), false), self.input_format, "--input-format")?;
+        let output = format::form((self.output.as_deref(), true), self.output_format, "--output-format")?;
+        self.csv.check(matches!(output, Form::Csv | Form::Tsv))?;
+        if output != Form::Ndjson {
             self.detail.check_table("--output-format")?;
         }
         let refuse = |reason: &str, hint: &str| {
@@ -208,7 +210,7 @@ impl Args {
         if self.resume && !(input.is_text() && output.is_text()) {
             return refuse("--resume continues text, and not Parquet or Arrow", "leave it out");
         }
-        if input == RecordFormat::Parquet && self.states == Path::new("-") {
+        if input == Form::Parquet && self.states == Path::new("-") {
             let reason = "Parquet is read from its end, and standard input has none";
             return refuse(reason, "name the file, or give an Arrow stream: --input-format arrows");
         }
@@ -216,7 +218,7 @@ impl Args {
     }
 
     /// That the velocities of a table with times do not fit its positions, as its first rows say: a file can be read twice.
-    fn misfit(&self, robot: &Robot, header: &Header, format: RecordFormat) -> Option<String> {
+    fn misfit(&self, robot: &Robot, header: &Header, format: Form) -> Option<String> {
         let has_all = header.missing().is_empty() && !header.is_spatial();
         if self.recording.is_in_order() || !has_all || !self.states.is_file() {
             return None;
@@ -229,18 +231,18 @@ impl Args {
     }
 
     /// Opens the input.
-    fn open(&self, format: RecordFormat, origin: &Origin, progress: &ProgressBar) -> crate::Result<States> {
+    fn open(&self, format: Form, origin: &Origin, progress: &ProgressBar) -> crate::Result<States> {
         if format.is_text() {
             let states = origin.watch(progress.wrap_read(input::stream(&self.states)?));
-            return States::of_text(states, format.form());
+            return States::of_text(states, format);
         }
         #[cfg(feature = "columnar")]
         return Ok(States::Columns(match self.states == Path::new("-") {
             true => Parts::arrow_stream(io::stdin())?,
-            false => format.parts(input::file(&self.states)?)?,
+            false => Parts::open(input::file(&self.states)?, format)?,
         }));
         #[cfg(not(feature = "columnar"))]
-        Err(format.absent())
+        Err(format::absent())
     }
 
     /// Refuses outputs that would replace an input or each other.
@@ -295,7 +297,7 @@ impl Args {
     fn begin(
         &self,
         question: &Question<'_>,
-        (input, format): (RecordFormat, RecordFormat),
+        (input, format): (Form, Form),
         head: &[u8],
         origin: Origin,
     ) -> io::Result<BatchOutput> {
@@ -311,7 +313,7 @@ impl Args {
     }
 
     /// What the answers depend on, apart from the input.
-    fn asked(&self, question: &Question<'_>, format: RecordFormat) -> Asked {
+    fn asked(&self, question: &Question<'_>, format: Form) -> Asked {
         // The address of a budget's clock differs in each run; the summary is none of the answers.
         let options = Options { budget: None, friction_needed: false, ..question.options.clone() };
         let Question { robot, defaults, detail, header, .. } = question;
@@ -405,14 +407,14 @@ impl Args {
     }
 
     /// The columns of a table, if the input is one.
-    fn header(&self, robot: &Robot, states: &mut States, format: RecordFormat) -> Result<Option<Header>, Failure> {
+    fn header(&self, robot: &Robot, states: &mut States, format: Form) -> Result<Option<Header>, Failure> {
         let in_order = self.recording.is_in_order();
         let header = states.header(robot, self.recording.rates(), &self.foreign, in_order);
         let header = header.map_err(|RefusedRecord { error, excerpt }| {
             Failure::Refused(error.in_file(input::name(&self.states)), excerpt)
         })?;
         // A table without any line has no states, like lines of JSON.
-        if header.is_none() && format == RecordFormat::Ndjson && (in_order || !self.foreign.is_empty()) {
+        if header.is_none() && format == Form::Ndjson && (in_order || !self.foreign.is_empty()) {
             let what = if in_order { "touchdowns and velocities over time need" } else { "--foreign needs" };
             let error = Error::new(Reason::Inconsistent(format!("{what} a table")));
             let hint = "give CSV with a header (--input-format csv), or a flat object on each line: `jq -c '.[]'` takes a \

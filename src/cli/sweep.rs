@@ -1,7 +1,7 @@
 //! `heelstrike sweep`: outcomes against one or two parameters.
 
 use super::diagnostic::{note_all, report};
-use super::format::RecordFormat;
+use super::format;
 use super::input::InputFile;
 use super::options::{
     BudgetOptions, Choices, CsvOptions, DetailOptions, SceneOptions, ThreadOptions, choice, pipeline_options,
@@ -14,10 +14,11 @@ use super::{Answered, Completion, Failure};
 use crate::budget::SharedBudget;
 use crate::draw::page::{Page, Stops};
 use crate::draw::sweep as picture;
+use crate::read::table::Form;
 use crate::sweep::{Findings, Regime, RobotStudy, Solver, Study, Workers, letter};
-#[cfg(feature = "columnar")]
-use crate::write::ColumnBlock;
 use crate::write::sweep::{Regions, SampleRecord, columns};
+#[cfg(feature = "columnar")]
+use crate::write::{ColumnBlock, ColumnWriter};
 use crate::write::{Layout, notes};
 use crate::{Error, Reason};
 use std::io::Write;
@@ -62,32 +63,32 @@ pub struct Args {
 }
 
 /// The form of what is written: a format of batches, or `None` for text.
-type SweepFormat = Option<RecordFormat>;
+type SweepFormat = Option<Form>;
 
 const FORMATS: Choices<SweepFormat> = &[
     ("text", "Regions and borders for people", None),
-    ("json|ndjson", "One object: regions, borders, samples", Some(RecordFormat::Ndjson)),
-    ("csv", "A table of samples, one row per outcome", Some(RecordFormat::Csv)),
-    ("tsv", "The same with tabs between columns", Some(RecordFormat::Tsv)),
-    ("parquet", "The same as a Parquet file", Some(RecordFormat::Parquet)),
-    ("arrow", "The same as an Arrow IPC file", Some(RecordFormat::Arrow)),
-    ("arrows", "The same as an Arrow IPC stream", Some(RecordFormat::Arrows)),
+    ("json|ndjson", "One object: regions, borders, samples", Some(Form::Ndjson)),
+    ("csv", "A table of samples, one row per outcome", Some(Form::Csv)),
+    ("tsv", "The same with tabs between columns", Some(Form::Tsv)),
+    ("parquet", "The same as a Parquet file", Some(Form::Parquet)),
+    ("arrow", "The same as an Arrow IPC file", Some(Form::Arrow)),
+    ("arrows", "The same as an Arrow IPC stream", Some(Form::Arrows)),
 ];
 
 /// The form chosen by option or by the output's ending; refuses an ending that means something else.
 fn format(args: &Args) -> Result<SweepFormat, Failure> {
     let ending = args.output.as_deref().and_then(Path::extension).and_then(|ending| ending.to_str());
     let by_ending = match ending.map(str::to_ascii_lowercase).as_deref() {
-        Some("json" | "ndjson" | "jsonl") => Some(Some(RecordFormat::Ndjson)),
+        Some("json" | "ndjson" | "jsonl") => Some(Some(Form::Ndjson)),
         None | Some("" | "txt") => Some(None),
-        Some(_) => args.output.as_deref().and_then(RecordFormat::table).map(Some),
+        Some(_) => args.output.as_deref().and_then(format::table).map(Some),
     };
     let format = args.format.or(by_ending).ok_or_else(|| {
         let reason = Reason::Unsupported("a study is written as .json, .csv, .tsv, .parquet, .arrow or .txt".into());
         let hint = "name a file with one of these endings, or say --format; pictures and pages go to --plot";
         Failure::Usage(Error::new(reason).at("--output").hint(hint))
     })?;
-    RecordFormat::of((args.output.as_deref(), true), format.or(Some(RecordFormat::Ndjson)), "--format")?;
+    format::form((args.output.as_deref(), true), format.or(Some(Form::Ndjson)), "--format")?;
     Ok(format)
 }
 
@@ -99,8 +100,8 @@ pub(super) fn run(args: &Args) -> Completion {
     args.plot.claim(&inputs, args.output.as_deref())?;
     writable(args.output.as_deref())?;
     let format = format(args)?;
-    args.csv.check(matches!(format, Some(RecordFormat::Csv | RecordFormat::Tsv)))?;
-    if format.is_some_and(|format| format != RecordFormat::Ndjson) {
+    args.csv.check(matches!(format, Some(Form::Csv | Form::Tsv)))?;
+    if format.is_some_and(|format| format != Form::Ndjson) {
         args.detail.check_table("--format")?;
     }
     let (description, reduction, robot) = args.robot.described()?;
@@ -145,7 +146,7 @@ pub(super) fn run(args: &Args) -> Completion {
             writer.write_all(regions.text(&robot.name, &output.palette).as_bytes())?;
             samples(&model, (workers, &budget), || (), |solver, sample, ()| sample.is_answered(solver), |()| Ok(()))?
         }
-        Some(RecordFormat::Ndjson) => {
+        Some(Form::Ndjson) => {
             let mut head = Vec::new();
             regions.append_head(&mut head);
             writer.write_all(&head)?;
@@ -160,7 +161,7 @@ pub(super) fn run(args: &Args) -> Completion {
         Some(table) => {
             let contacts = regimes.iter().flat_map(|(regime, ..)| regime.contacts()).map(String::as_str);
             let Args { csv, detail, .. } = args;
-            let layout = Layout { brief: detail.brief, guarded: csv.csv_safe, form: table.form(), ..Layout::default() };
+            let layout = Layout { brief: detail.brief, guarded: csv.csv_safe, form: table, ..Layout::default() };
             let columns = columns(&model, &feet, contacts, layout);
             let kind = |regime: &Regime| regimes.iter().find(|(known, ..)| ***known == *regime);
             let letter = |regime: &Regime| kind(regime).map_or_else(String::new, |(_, kind, _)| letter(*kind));
@@ -174,8 +175,10 @@ pub(super) fn run(args: &Args) -> Completion {
                 samples(&model, (workers, &budget), Vec::new, append, |out| Ok(writer.write_all(&out)?))
             };
             #[cfg(feature = "columnar")]
-            let refused = match table.writer(&columns)? {
-                Some(mut typed) => {
+            let refused = match table.is_text() {
+                true => as_text(writer)?,
+                false => {
+                    let mut typed = ColumnWriter::new(&columns, table)?;
                     let append = |solver: &mut Solver, sample: &SampleRecord, out: &mut ColumnBlock| {
                         sample.append_rows(solver, &columns, letter, out)
                     };
@@ -185,7 +188,6 @@ pub(super) fn run(args: &Args) -> Completion {
                     writer.write_all(&typed.finish()?)?;
                     refused
                 }
-                None => as_text(writer)?,
             };
             #[cfg(not(feature = "columnar"))]
             let refused = as_text(writer)?;

@@ -5,7 +5,7 @@
 //! ```
 
 use super::csv::{Cell, Columns, Kind, Row, RowSink};
-use crate::read::table::Carried;
+use crate::read::table::{Carried, Form};
 use crate::{Error, Reason, Result};
 use arrow_array::builder::{ArrayBuilder, BooleanBuilder, Float64Builder, Int64Builder, StringBuilder};
 use arrow_array::{Array, ArrayRef, RecordBatch, new_null_array};
@@ -23,17 +23,6 @@ use std::sync::Arc;
 /// So many rows are written together, and to a row group of Parquet.
 pub(super) const TOGETHER: usize = 1 << 13;
 const ROW_GROUP: usize = 1 << 17;
-
-/// What columns with types are written as.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ColumnarFormat {
-    /// Parquet, compressed by Snappy.
-    Parquet,
-    /// Arrow's file, also called Feather.
-    Arrow,
-    /// Arrow's stream.
-    ArrowStream,
-}
 
 /// Rows of results in the making.
 #[derive(Debug)]
@@ -195,7 +184,7 @@ impl ColumnWriter {
     ///
     /// # Errors
     /// Columns that are carried through and that the format has no type for.
-    pub fn new(columns: &Columns, format: ColumnarFormat) -> Result<Self> {
+    pub fn new(columns: &Columns, form: Form) -> Result<Self> {
         let field = |(name, kind): (&String, &Kind)| match *kind {
             Kind::Text => Field::new(name, DataType::Utf8, true),
             Kind::Number => Field::new(name, DataType::Float64, true),
@@ -205,8 +194,8 @@ impl ColumnWriter {
         };
         let fields: Vec<Field> = columns.names().iter().zip(columns.kinds()).map(field).collect();
         let schema = Arc::new(Schema::new(fields));
-        let writer = match format {
-            ColumnarFormat::Parquet => {
+        let writer = match form {
+            Form::Parquet => {
                 let mut properties = WriterProperties::builder()
                     .set_compression(Compression::SNAPPY)
                     .set_created_by(concat!("heelstrike ", env!("CARGO_PKG_VERSION")).to_owned())
@@ -228,10 +217,9 @@ impl ColumnWriter {
                 let writer = ArrowWriter::try_new(Vec::new(), Arc::clone(&schema), Some(properties.build()));
                 Writer::Parquet(Box::new(writer.map_err(unwritable)?))
             }
-            ColumnarFormat::Arrow => {
-                Writer::Arrow(Box::new(FileWriter::try_new(Vec::new(), &schema).map_err(unwritable)?))
-            }
-            ColumnarFormat::ArrowStream => {
+            Form::Arrow => Writer::Arrow(Box::new(FileWriter::try_new(Vec::new(), &schema).map_err(unwritable)?)),
+            Form::Ndjson | Form::Csv | Form::Tsv => return Err(unwritable("text has no types")),
+            Form::Arrows => {
                 Writer::ArrowStream(Box::new(StreamWriter::try_new(Vec::new(), &schema).map_err(unwritable)?))
             }
         };
@@ -303,7 +291,7 @@ mod tests {
         for verdicts in [&["unique", "none"][..], &[], &["ambiguous"]] {
             block.row(&columns, |row| verdicts.iter().for_each(|verdict| row.set(1, Cell::Text(verdict))));
         }
-        let schema = ColumnWriter::new(&columns, ColumnarFormat::Arrow)?.schema;
+        let schema = ColumnWriter::new(&columns, Form::Arrow)?.schema;
         let batch = block.finish(&schema)?;
         assert_eq!((batch.num_rows(), batch.num_columns()), (3, columns.names().len()));
         let texts: Vec<_> = batch.column(1).as_string::<i32>().iter().collect();

@@ -37,7 +37,7 @@ pub mod schema;
 pub use accuracy::{Accuracy, Compliant};
 pub use arrays::{Arrays, Texts};
 #[cfg(feature = "columnar")]
-pub use columnar::{ColumnBlock, ColumnWriter, ColumnarFormat};
+pub use columnar::{ColumnBlock, ColumnWriter};
 pub use csv::{Cell, Columns, Kind, Layout, Row, RowSink};
 pub use forces::{ForceOutcome, ForcesRecord, RejectedForces, SustainedContact};
 pub use inspection::Inspection;

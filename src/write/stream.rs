@@ -1,8 +1,9 @@
 //! Arrays of answers as a table.
 
-use super::columnar::{ColumnBlock, ColumnWriter, ColumnarFormat, TOGETHER};
+use super::columnar::{ColumnBlock, ColumnWriter, TOGETHER};
 use super::csv::{Cell, Row, RowSink};
 use super::{Arrays, Columns};
+use crate::read::table::Form;
 use crate::{Mode, Result, Verdict};
 use std::ops::Range;
 
@@ -69,7 +70,7 @@ impl Arrays {
     /// # Errors
     /// As [`ColumnWriter::new`].
     pub fn arrow_stream(&self, columns: &Columns) -> Result<Vec<u8>> {
-        let mut writer = ColumnWriter::new(columns, ColumnarFormat::ArrowStream)?;
+        let mut writer = ColumnWriter::new(columns, Form::Arrows)?;
         let (mut bytes, states) = (Vec::new(), self.verdict.len());
         for start in (0..states).step_by(TOGETHER) {
             let states = start..states.min(start + TOGETHER);

@@ -51,11 +51,15 @@ pub struct Part {
 }
 
 impl Parts {
-    /// A Parquet file.
+    /// A file of Parquet or Arrow.
     ///
     /// # Errors
     /// A file that is none, or that is compressed as is not read here.
-    pub fn parquet(file: File) -> Result<Self> {
+    pub fn open(file: File, form: Form) -> Result<Self> {
+        if form == Form::Parquet { Self::parquet(file) } else { Self::arrow(file) }
+    }
+
+    fn parquet(file: File) -> Result<Self> {
         let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(unreadable)?;
         let schema = Arc::clone(builder.schema());
         let batches = builder.with_batch_size(8 * TOGETHER).build().map_err(unreadable)?;
@@ -63,10 +67,7 @@ impl Parts {
     }
 
     /// Arrow's file or stream, whichever it is.
-    ///
-    /// # Errors
-    /// As above.
-    pub fn arrow(mut file: File) -> Result<Self> {
+    fn arrow(mut file: File) -> Result<Self> {
         let mut magic = Vec::new();
         (&mut file).take(6).read_to_end(&mut magic).and_then(|_| file.rewind()).map_err(unreadable)?;
         if magic != b"ARROW1" {
@@ -116,7 +117,7 @@ impl Parts {
     /// As there, and columns that do not hold what they are for; without a line.
     pub fn header(&mut self, robot: &Robot, rates: Rates, foreign: &[String]) -> Result<Header> {
         let names = self.schema.fields().iter().map(|field| field.name().trim().to_owned()).collect();
-        let record = Record { bytes: b"", form: Form::Columns };
+        let record = Record { bytes: b"", form: Form::Parquet };
         let mut header = Header::named(names, record, robot, rates, foreign).map_err(Error::nowhere)?;
         for (at, (&column, field)) in header.columns.iter().zip(self.schema.fields()).enumerate() {
             let expected = match (column, kind(field.data_type())) {

@@ -13,16 +13,24 @@ use std::borrow::Cow;
 
 /// How the records of a table are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Form {
-    /// Fields with commas between them.
+    /// One JSON object per line; as a table, its keys are the names of the columns.
+    #[cfg_attr(feature = "cli", value(alias = "json", alias = "jsonl", help = "One JSON object per line"))]
+    Ndjson,
+    /// A table with a header and commas between columns.
     #[default]
     Csv,
-    /// Fields with tabs between them.
+    /// A table with a header and tabs between columns.
     Tsv,
-    /// An object of JSON on each line, whose keys are the names of the columns.
-    Ndjson,
-    /// Columns with types (feature `columnar`).
-    Columns,
+    /// A Parquet file (feature `columnar`, as those below).
+    #[cfg_attr(feature = "cli", value(help = "A Parquet file"))]
+    Parquet,
+    /// An Arrow IPC file, as Feather; read also as a stream.
+    #[cfg_attr(feature = "cli", value(alias = "feather", alias = "ipc"))]
+    Arrow,
+    /// An Arrow IPC stream.
+    Arrows,
 }
 
 /// What is in a cell.
@@ -75,6 +83,11 @@ pub enum Quoting {
 }
 
 impl Form {
+    /// Whether it is text; else its columns have types.
+    pub fn is_text(self) -> bool {
+        matches!(self, Self::Ndjson | Self::Csv | Self::Tsv)
+    }
+
     /// What separates the fields of a record of text.
     pub fn delimiter(self) -> u8 {
         if self == Self::Tsv { b'\t' } else { b',' }
