@@ -90,6 +90,9 @@ impl RobotStudy<'_> {
             let seen = solver.at(&point, |robot, state, pipeline| {
                 let mut odd = state.oddities(robot);
                 odd.extend(state.uncertainty.is_some().then(|| BOXES.to_owned()));
+                // Of a varied robot.
+                let is_new = |caution: &&String| !self.robot.reading.cautions.contains(caution);
+                odd.extend(robot.reading.cautions.iter().filter(is_new).cloned());
                 Ok((odd, pipeline.answer(&State { uncertainty: None, ..state }).map(|impact| impact.problem).ok()))
             });
             // Where a state is refused, its region says why.

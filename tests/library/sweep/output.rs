@@ -78,6 +78,22 @@ fn joints_beyond_a_turn_are_noted_once() {
     }
 }
 
+#[test]
+fn cautions_about_a_varied_robot_are_noted() {
+    let state = json!({"velocity": {"base": {"z": -1}}, "place": "lowest", "friction": 1});
+    let notes = |mass: [f64; 2]| {
+        let parameters = json!({"m": {"from": mass[0], "to": mass[1], "steps": 2}});
+        let study = json!({"parameters": parameters, "state": state, "robot": {"links": {"torso": {"mass": "m"}}}});
+        written::<Value>("urdf/ramone.urdf", &study, &[])["notes"].to_string()
+    };
+    assert!(!notes([5.0, 10.0]).contains("ball of steel"), "{}", notes([5.0, 10.0]));
+    assert!(
+        notes([5000.0, 90000.0]).contains("kg, more than a ball of steel around all of it"),
+        "{}",
+        notes([5e3, 9e4])
+    );
+}
+
 /// Only a sample's answer says whether it holds, and no impact depends on gravity.
 #[test]
 fn parameters_without_effect_and_boxes_are_noted() {
