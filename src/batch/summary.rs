@@ -54,7 +54,7 @@ pub struct Summary {
     /// States with friction of their own, where another one is given for states without.
     #[serde(skip_serializing_if = "is_zero")]
     pub own_friction: u64,
-    /// States with odd numbers, as in other units.
+    /// States with odd numbers: beyond limits, or as in other units.
     #[serde(skip_serializing_if = "OddStates::is_empty")]
     pub odd_states: OddStates,
     /// Touchdowns that were taken above the ground, of feet whose heights have no noise.
@@ -353,11 +353,10 @@ impl fmt::Display for Summary {
             writeln!(f, "slow contacts are taken as exactly at rest: {states}; `resting_speed: 0` turns this off")?;
         }
         if let OddStates { states, first: Some(Oddity { state, what }) } = &self.odd_states {
-            writeln!(f, "states with odd numbers, as in other units: {states}, the first {state}: {}", visible(what))?;
+            writeln!(f, "states with odd numbers: {states}, the first {state}: {}", visible(what))?;
         }
-        let open = self.verdicts.0[Verdict::NoContact as usize];
-        if open > 1 && open + self.refused == self.states {
-            writeln!(f, "no foot touches the ground in any state: `place: lowest` puts the lowest one there")?;
+        if self.states > 1 && self.verdicts.0[Verdict::NoContact as usize] == self.states {
+            writeln!(f, "no foot touches the ground in any state (see `place`, and `touchdowns` of recordings)")?;
         }
         self.of_touchdowns().try_for_each(|note| writeln!(f, "{note}"))?;
         let mut lists: Vec<&ModeCount> = self.modes.iter().filter(|list| !list.modes.is_empty()).collect();

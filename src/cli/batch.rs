@@ -220,7 +220,8 @@ impl Args {
     /// That the velocities of a table with times do not fit its positions, as its first rows say: a file can be read twice.
     fn misfit(&self, robot: &Robot, header: &Header, format: Form) -> Option<String> {
         let has_all = header.missing().is_empty() && !header.is_spatial();
-        if self.recording.is_in_order() || !has_all || !self.states.is_file() {
+        let is_stream = self.states == Path::new("-") || self.states.starts_with("/dev") || !self.states.is_file();
+        if self.recording.is_in_order() || !has_all || is_stream {
             return None;
         }
         let mut states = self.open(format, &Origin::of(None, false), &ProgressBar::hidden()).ok()?;

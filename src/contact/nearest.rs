@@ -44,14 +44,20 @@ impl Footing<'_> {
     /// The link of the shape that reaches farthest below all of the `contacts` of its body, and how far \[m\].
     pub fn below_contacts(&self, contacts: &[Contact]) -> Option<(usize, f64)> {
         let Self { placement, surface, .. } = self;
-        let below = self.feet.iter().filter_map(|foot| {
+        let mut farthest: Option<(usize, f64)> = None;
+        for foot in self.feet.iter() {
             let body = |body: usize| self.robot.rigid_body(body);
             let of_body = contacts.iter().filter(|contact| body(contact.body) == body(foot.body));
-            let lowest = of_body.map(|contact| contact.gap).reduce(f64::min)?;
-            let touch = surface.first_touch(foot, placement, surface.rounding(placement, self.feet.size()))?;
-            Some((foot.link, lowest - touch.gap))
-        });
-        below.max_by(|a, b| a.1.total_cmp(&b.1))
+            let Some(lowest) = of_body.map(|contact| contact.gap).reduce(f64::min) else { continue };
+            let depth = farthest.map_or(0.0, |(_, depth)| depth);
+            if lowest - surface.least_gap(foot, placement) <= depth {
+                continue;
+            }
+            let touch = surface.first_touch(foot, placement, surface.rounding(placement, self.feet.size()));
+            let below = touch.map(|touch| (foot.link, lowest - touch.gap));
+            farthest = below.filter(|(_, own)| *own > depth).or(farthest);
+        }
+        farthest
     }
 
     /// Rises at which a corner of the profile is inside of a foot: one that reaches beyond both ends of the profile has no

@@ -114,7 +114,11 @@ pub(super) fn rotors(robot: Node<'_, '_>) -> Vec<String> {
     let tagged = |tag: &'static str| move |node: &Node<'_, '_>| node.tag_name().name() == tag;
     let has_rotor = |transmission: &Node<'_, '_>| {
         let value = |rotor: Node<'_, '_>| rotor.attribute("value")?.trim().parse::<f64>().ok();
-        transmission.descendants().filter(tagged("rotor_inertia")).filter_map(value).any(|inertia| inertia != 0.0)
+        transmission
+            .descendants()
+            .filter(tagged("rotor_inertia"))
+            .filter_map(value)
+            .any(|inertia| inertia.is_finite() && inertia > 0.0)
     };
     let transmissions = xml::children(robot).filter(tagged("transmission")).filter(has_rotor);
     let joints = transmissions.flat_map(|own| xml::children(own).filter(tagged("joint")));

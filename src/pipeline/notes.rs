@@ -12,7 +12,7 @@ use crate::state::{Scene, State};
 const NEAR_MISS: f64 = 1e-2;
 
 /// Named contacts that differ in height by more than this part of the robot's size cannot touch the ground together.
-const UNEVEN: f64 = 5e-2;
+const UNEVEN: f64 = 0.1;
 
 impl Pipeline<'_> {
     /// Notes friction and restitution of links on which nothing can touch.
@@ -40,8 +40,10 @@ impl Pipeline<'_> {
         match scene.contacts {
             Some(_) => {
                 notes.extend(nearest.and_then(|foot| self.sunk_besides(foot)));
-                notes.extend(self.uneven(contacts));
-                notes.extend(self.doubled(contacts));
+                if self.options.aspect.is_impact() {
+                    notes.extend(self.uneven(contacts));
+                    notes.extend(self.doubled(contacts));
+                }
                 notes.extend(footing.below_contacts(contacts).and_then(|below| self.inside(below)));
             }
             None => {
@@ -77,13 +79,11 @@ impl Pipeline<'_> {
         })
     }
 
-    /// That a contact is named twice, one right after the other.
+    /// That a contact is named twice.
     fn doubled(&self, contacts: &[Contact]) -> Option<String> {
-        let is_same = |pair: &&[Contact]| {
-            let place = |at: usize| (pair[at].link, pair[at].offset, pair[at].radius);
-            place(0) == place(1)
-        };
-        let name = &self.robot.links[contacts.windows(2).find(is_same)?[0].link].name;
+        let place = |contact: &Contact| (contact.link, contact.offset, contact.radius);
+        let is_known = |at: &usize| contacts[..*at].iter().any(|other| place(other) == place(&contacts[*at]));
+        let name = &self.robot.links[contacts[(1..contacts.len()).find(is_known)?].link].name;
         Some(format!("a contact of {name} is named twice: its impulse is shared by both"))
     }
 

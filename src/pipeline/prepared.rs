@@ -20,7 +20,7 @@ use crate::impact::{ContactProblem, Errors};
 use crate::planar::{Pair, Vector};
 use crate::robot::Robot;
 use crate::scalar::Residue;
-use crate::state::{NamedLoop, Scene, State, check_length};
+use crate::state::{NamedLoop, Scene, State, Uncertainty, check_length};
 use std::mem::take;
 
 /// A foot that does not touch.
@@ -132,11 +132,12 @@ impl Pipeline<'_> {
         (*contacts, *merged, *out_of_reach) = self
             .contacts(&footing, foot.as_ref(), take(contacts), notes)
             .map_err(|error| self.sunk(error, state, self.open_foot(&footing, &[], velocity)))?;
+        check_matrix_size(contacts.len())?;
         *nearest = if self.options.brief { None } else { self.open_foot(&footing, contacts, velocity) };
         if !self.options.brief {
             self.note_contacts(scene, (contacts, *nearest), (placement, &footing), notes);
+            notes.extend(state.uncertainty.as_ref().and_then(Uncertainty::without_width));
         }
-        check_matrix_size(contacts.len())?;
         *stance = foot.as_ref().and_then(|foot| place_of(foot, contacts));
         self.assembly.points.clear();
         self.assembly.points.extend(contacts.iter().map(Contact::point_of));

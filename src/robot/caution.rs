@@ -111,10 +111,16 @@ pub(super) fn about_spelling(description: &Description) -> Option<String> {
     Some(format!("not read, and perhaps misspelt: {}", names(&description.misspelt)?))
 }
 
-/// The caution about rotor inertia in the file.
-pub(super) fn about_rotors(description: &Description) -> Option<String> {
-    let joints = names(&description.rotors)?;
-    Some(format!("rotor inertia of the file is not read ({joints}): give `rotor_inertia` in each state"))
+/// The caution about rotor inertia in the file, of joints that move.
+pub(super) fn about_rotors(description: &Description, roles: &[Role]) -> Option<String> {
+    let moves = |(joint, role): &(&UrdfJoint, &Role)| {
+        matches!(role, Role::Moves { .. }) && description.rotors.contains(&joint.name)
+    };
+    let joints = names(description.joints.iter().zip(roles).filter(moves).map(|(joint, _)| &joint.name))?;
+    Some(format!(
+        "rotor inertia of the file is not read ({joints}): give it times the gear ratio squared, by `rotor_inertia` in each \
+         state"
+    ))
 }
 
 /// The caution about elements that close loops, which a tree of joints has no place for.

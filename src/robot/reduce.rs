@@ -90,7 +90,7 @@ impl Robot {
         cautions.extend(caution::about_outside(description, &outside));
         cautions.extend(caution::about_shapes(description));
         cautions.extend(caution::about_spelling(description));
-        cautions.extend(caution::about_rotors(description));
+        cautions.extend(caution::about_rotors(description, &roles));
         cautions.extend(caution::about_loops(description));
         cautions.extend(caution::about_axes(description));
         cautions.extend(caution::about_planar(description, &pose, plane));

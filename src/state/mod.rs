@@ -105,6 +105,17 @@ pub struct Uncertainty {
     pub rotor_inertia: Vec<f64>,
 }
 
+impl Uncertainty {
+    /// That its box is the state alone, in words.
+    pub(crate) fn without_width(&self) -> Option<String> {
+        let friction = self.friction.default.iter().chain(self.friction.links.values());
+        let mut widths = self.position.iter().chain(&self.velocity).chain(&self.rotor_inertia).chain(friction);
+        widths
+            .all(|&width| width == 0.0)
+            .then(|| "every half-width of the uncertainty is 0: its box is the state alone".to_owned())
+    }
+}
+
 /// What a state takes from elsewhere if it does not give it itself.
 ///
 /// ```

@@ -9,7 +9,7 @@ use std::fmt;
 /// Files and recordings round limits and positions by this part of the limits.
 const ROUNDING: f64 = 1e-6;
 
-/// No legged robot moves faster \[m/s\], and no part of it turns faster \[rad/s\].
+/// No legged robot moves faster \[m/s\], and few parts turn faster \[rad/s\].
 const FASTEST: f64 = 100.0;
 
 /// A slope beyond this is one of degrees \[rad\].
@@ -47,8 +47,8 @@ impl State {
         })
     }
 
-    /// What is odd about the numbers, in sentences: joints outside their limits, what looks like degrees or millimeters, and
-    /// a box without width.
+    /// What is odd about the numbers, in sentences: joints outside their limits, and what looks like degrees or
+    /// millimeters.
     pub fn oddities(&self, robot: &Robot) -> Vec<String> {
         let mut odd = Vec::new();
         self.outside_limits(robot).for_each(|outside| odd.push(outside.to_string()));
@@ -60,19 +60,18 @@ impl State {
         }
         odd.extend(self.scene.contacts.iter().flatten().filter_map(|contact| contact.out_of_scale(robot)));
         odd.extend(self.steep());
-        odd.extend(self.point_box());
         odd
     }
 
-    /// The rates that no robot has, but those of wheels.
+    /// The rates that no robot has, but those of wheels without limits.
     fn fast(&self, robot: &Robot) -> impl Iterator<Item = String> {
         let base = robot.base_dofs();
         let rates = self.velocity.iter().copied().take(robot.dofs()).enumerate();
         rates.filter(|(_, rate)| rate.abs() > FASTEST).filter_map(move |(at, rate)| {
             let name = robot.coordinates().nth(at)?;
-            let turns = at.checked_sub(base).map_or(at == 2, |joint| robot.joints[joint].axis.is_revolute());
-            match turns {
-                true if is_wheel(robot, at) => None,
+            let joint = at.checked_sub(base).map(|joint| &robot.joints[joint]);
+            match joint.map_or(at == 2, |joint| joint.axis.is_revolute()) {
+                true if joint.is_none_or(|joint| joint.limits.is_none()) && is_wheel(robot, at) => None,
                 true => Some(format!("the rate of {name} is {rate} rad/s; degrees per second?")),
                 false => Some(format!("the rate of {name} is {rate} m/s: velocities are in m/s and rad/s")),
             }
@@ -86,15 +85,6 @@ impl State {
             let degrees = slope.to_degrees();
             format!("the ground's slope of {slope} rad is one of {degrees:.1} degrees: was it meant in degrees?")
         })
-    }
-
-    /// That the box of the uncertainty is the state alone.
-    fn point_box(&self) -> Option<String> {
-        let uncertainty = self.uncertainty.as_ref()?;
-        let friction = uncertainty.friction.default.iter().chain(uncertainty.friction.links.values());
-        let widths = uncertainty.position.iter().chain(&uncertainty.velocity).chain(&uncertainty.rotor_inertia);
-        let is_point = widths.chain(friction).all(|&width| width == 0.0);
-        is_point.then(|| "every half-width of the uncertainty is 0: its box is the state alone".to_owned())
     }
 
     /// The pitch and the joints without limits that are more than a turn, as degrees are: name and angle \[rad\]. Wheels,

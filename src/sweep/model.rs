@@ -6,7 +6,7 @@ use crate::budget::is_spent;
 use crate::description::Description;
 use crate::impact::{Analysis, Inequalities, InequalityScratch, Verdict};
 use crate::law::Mode;
-use crate::pipeline::{Impact, Options, Pipeline, Unsolved};
+use crate::pipeline::{Aspect, Impact, Options, Pipeline, Unsolved};
 use crate::robot::Reduction;
 use crate::state::{Defaults, State};
 use crate::{Error, Reason, Result, Robot};
@@ -69,56 +69,73 @@ pub(super) struct Inner {
 pub const WATCHED_CONTACTS: usize = 4;
 
 /// The note of a study whose state has an uncertainty.
-const BOXES: &str = "the regions are those of the states as given: whether these hold within their uncertainty, the samples in JSON say";
+const BOXES: &str = "the regions are those of the states as given: whether these hold within their uncertainty, the \
+                     samples of JSON and tables say";
+
+/// What a sentence is about, but for its numbers.
+fn subject(sentence: &str) -> Vec<&str> {
+    if let Some((subject, _)) = sentence.split_once(" = ") {
+        return vec![subject];
+    }
+    let is_number = |word: &str| word.trim_matches([',', ';', ':', '"', '(', ')']).parse::<f64>().is_ok();
+    sentence.split(' ').filter(|word| !is_number(word)).collect()
+}
 
 /// So many points are remembered: the nodes of an interval, of its halves and of theirs.
 const RECENT: usize = 16;
 
 impl RobotStudy<'_> {
     /// What a reader should know of the states, in sentences, each once but for its numbers: what is odd in the middle and
-    /// at the ends of the ranges, and which parameter changes no contact problem there.
+    /// at the ends of the ranges.
     pub(super) fn oddities(&self) -> Vec<String> {
         let parameters = self.study.parameters();
         let mut solver = Solver::new(self);
         let mut found: Vec<String> = Vec::new();
-        let mut problems = Vec::new();
         // Three places along each parameter.
         for at in 0..3_usize.pow(parameters.len() as u32) {
             let place = |index: u32| 0.5 * (at / 3_usize.pow(index) % 3) as f64;
             let along = parameters.iter().zip(0..).map(|(parameter, index)| (parameter, place(index)));
             let point: Vec<f64> = along.map(|(own, part)| own.from + part * own.range()).collect();
-            let seen = solver.at(&point, |robot, state, pipeline| {
+            let odd = solver.at(&point, |robot, state, _| {
                 let mut odd = state.oddities(robot);
                 odd.extend(state.uncertainty.is_some().then(|| BOXES.to_owned()));
                 // Of a varied robot.
-                let is_new = |caution: &&String| !self.robot.reading.cautions.contains(caution);
+                let is_new =
+                    |own: &&String| self.robot.reading.cautions.iter().all(|known| subject(known) != subject(own));
                 odd.extend(robot.reading.cautions.iter().filter(is_new).cloned());
-                Ok((odd, pipeline.answer(&State { uncertainty: None, ..state }).map(|impact| impact.problem).ok()))
+                Ok(odd)
             });
             // Where a state is refused, its region says why.
-            let (odd, problem) = seen.unwrap_or_default();
-            problems.push(problem);
-            for sentence in odd {
-                let words = |sentence: &str| sentence.replace(|c: char| c.is_ascii_digit() || c == '.', "");
-                if !found.iter().any(|known| words(known) == words(&sentence)) {
+            for sentence in odd.unwrap_or_default() {
+                if !found.iter().any(|known| subject(known) == subject(&sentence)) {
                     found.push(sentence);
                 }
             }
         }
-        let unused = self.study.unused();
-        for (parameter, stride) in parameters.iter().zip([1, 3]).filter(|(own, _)| !unused.contains(&&*own.name)) {
-            let is_same = |at: usize| {
-                let problem = problems[at - at / stride % 3 * stride].as_ref();
-                problem.is_some_and(|problem| problem.contacts() > 0) && problem == problems[at].as_ref()
-            };
-            if (0..problems.len()).all(is_same) {
-                found.push(format!(
-                    "nothing changes with {}: no contact, and no number of the contacts' problem, depends on it",
-                    parameter.name
-                ));
-            }
-        }
         found
+    }
+
+    /// That the parameter of a study in which nothing changes alters neither a state nor its contact problem at some places,
+    /// as what an impact does not depend on.
+    pub(super) fn idle_parameter(&self) -> Option<String> {
+        let [parameter] = self.study.parameters() else { return None };
+        if self.study.question() == Aspect::Forces || !self.study.unused().is_empty() {
+            return None;
+        }
+        let mut solver = Solver::new(self);
+        // Unevenly spaced, so that no period fits them.
+        let mut seen = [0.0, 0.271, 0.618, 1.0].map(|part| {
+            let at = [parameter.from + part * parameter.range()];
+            let seen = solver.at(&at, |_, state, pipeline| {
+                let Unsolved { contacts, problem, .. } = pipeline.unsolved(&state)?;
+                let names: Vec<_> = contacts.into_iter().map(|contact| contact.name).collect();
+                Ok((state.position, state.velocity, state.uncertainty, state.scene.rotor_inertia, names, problem))
+            });
+            seen.ok().filter(|(.., names, _)| !names.is_empty())
+        });
+        let first = seen[0].take()?;
+        let is_idle = seen[1..].iter().all(|other| other.as_ref() == Some(&first));
+        is_idle.then(|| format!("nothing was found that depends on {}: has it an effect on an impact?", parameter.name))
     }
 
     /// The options for what the study asks.

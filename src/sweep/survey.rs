@@ -83,14 +83,16 @@ impl Survey {
             dependent |= inner.dependent;
             Region { from, to, regime, kind, verdict: inner.verdict, refused: inner.refused }
         };
-        let regions = stretches.into_iter().enumerate().map(&mut region).collect();
+        let regions: Vec<Region> = stretches.into_iter().enumerate().map(&mut region).collect();
         let border = |solver: &mut Solver, index: usize| {
             let bracket: &Bracket = &brackets[index];
             RegionBorder { at: bracket.at(), transition: Transition::at(solver, bracket, |at| vec![at]) }
         };
         let quiet = Workers { done: &|| (), ..workers };
         let borders = quiet.map(brackets.len(), begin, border);
-        Self { regions, borders, dependent, oddities: model.oddities() }
+        let mut oddities = model.oddities();
+        oddities.extend(if regions.len() == 1 { model.idle_parameter() } else { None });
+        Self { regions, borders, dependent, oddities }
     }
 
     /// How many pieces of work a survey of `model` has.

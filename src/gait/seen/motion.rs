@@ -27,8 +27,11 @@ const APART: f64 = 0.01;
 /// What has been seen of the motion.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Motion {
-    /// Of each coordinate the sums of v^2, of (dq/dt)^2 and of their product over steps from row to row.
-    sums: Vec<[f64; 3]>,
+    /// Of each coordinate the sums of v^2, of (dq/dt)^2, of their product, and of the squared change of dq/dt, over
+    /// steps from row to row.
+    sums: Vec<[f64; 4]>,
+    /// dq/dt in the step before.
+    rates: Vec<f64>,
     /// Of the base's velocity, as it is and turned by the pitch, the sums of squared differences from dq/dt.
     errors: [f64; 2],
     steps: usize,
@@ -92,10 +95,12 @@ impl Motion {
 
     /// Compares recorded velocities with positions, `half` a step \[s\] after the middle.
     fn compare(&mut self, rates: &[f64], velocities: &[f64], half: f64, state: &State, robot: &Robot) {
-        self.sums.resize(rates.len(), [0.0; 3]);
+        self.sums.resize(rates.len(), [0.0; 4]);
+        self.rates.resize(rates.len(), 0.0);
         self.steps += 1;
-        for (sums, (&rate, &velocity)) in self.sums.iter_mut().zip(rates.iter().zip(velocities)) {
-            let own = [velocity * velocity, rate * rate, velocity * rate];
+        let before = self.rates.iter_mut().zip(rates).map(|(before, &rate)| std::mem::replace(before, rate) - rate);
+        for ((sums, change), (&rate, &velocity)) in self.sums.iter_mut().zip(before).zip(rates.iter().zip(velocities)) {
+            let own = [velocity * velocity, rate * rate, velocity * rate, change * change];
             sums.iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
         }
         if let (Base::Floating, &[x, z, turning, ..]) = (robot.base, rates) {
@@ -135,9 +140,12 @@ impl Motion {
 
     /// That velocities of the recording are not the rates of its positions, as in other units or of other sign.
     pub fn misfit(&self, robot: &Robot) -> Option<String> {
-        let misfit = |(name, &[squared, rates, product]): (&str, &[f64; 3])| {
+        let misfit = |(name, &[squared, rates, product, changes]): (&str, &[f64; 4])| {
             let (correlation, factor) = (product / (squared * rates).sqrt(), product / rates);
-            if squared == 0.0 && rates > MOVING * MOVING * self.steps as f64 {
+            if changes > rates {
+                // Poses without an order, or too far apart for a difference to be a rate.
+                None
+            } else if squared == 0.0 && rates > MOVING * MOVING * self.steps as f64 {
                 Some(format!("{name} is 0 although it moves"))
             } else if correlation < -CORRELATED {
                 Some(format!("{name} has the opposite sign of dq/dt"))

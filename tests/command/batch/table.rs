@@ -191,19 +191,25 @@ fn recordings_in_other_units_or_axes_are_noted() {
         assert!(note.contains(words), "{note}");
         assert!(!stderr.contains("positions jump"), "of units, not of outliers: {stderr}");
     }
-    // Without touchdowns the first rows of a file say so.
-    for (factor, is_noted) in [(1.0, false), (57.3, true)] {
+    // Without touchdowns the first rows of a file say so; poses without an order have no rates.
+    let is_noted = |order: fn(usize) -> usize, factor: f64| {
         let (names, rows) = walk_cells();
-        let scaled = |(name, cell): (&String, &String)| match cell.parse::<f64>() {
-            Ok(number) if name.starts_with("v_left") => (factor * number).to_string(),
-            _ => cell.clone(),
+        let line = |at: usize| {
+            let cell = |(column, name): (usize, &String)| match name.starts_with("v_") {
+                true => (factor * rows[order(at) % 100][column].parse::<f64>().expect("a rate")).to_string(),
+                false if name == "time" => rows[at][column].clone(),
+                false => rows[order(at) % 100][column].clone(),
+            };
+            names.iter().enumerate().map(cell).collect::<Vec<_>>().join(",")
         };
-        let lines = rows.iter().map(|row| names.iter().zip(row).map(scaled).collect::<Vec<_>>().join(","));
-        let table: Vec<String> = std::iter::once(names.join(",")).chain(lines).collect();
+        let table: Vec<String> = std::iter::once(names.join(",")).chain((0..100).map(line)).collect();
         let states = file("rates.csv", table.join("\n"));
         let run = heelstrike(&["batch", RAMONE, &states, "--friction", "0.6", "--brief"]);
-        assert_eq!(run.stderr.contains(misfit), is_noted, "{}", run.stderr);
-    }
+        assert!(run.stderr.contains(" states: "), "{}", run.stderr);
+        run.stderr.contains(misfit)
+    };
+    assert!(!is_noted(|at| at, 1.0) && is_noted(|at| at, 57.3) && is_noted(|at| at, 0.0));
+    assert!(!is_noted(|at| 37 * at, 0.0), "they stand still");
     let deep = stderr(|name, cell| if name == "q_base_z" { cell - 0.5 } else { cell });
     assert!(deep.contains("touchdowns of feet far under z = 0, which were lifted to it: "), "{deep}");
     let degrees =

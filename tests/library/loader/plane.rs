@@ -347,8 +347,10 @@ fn rotor_inertia_of_the_file_is_noted() {
         let more = format!("<transmission><joint name=\"j\"/><actuator name=\"m\">{rotor}</actuator></transmission>");
         load(&massive(&[PITCH]).replace("</robot>", &(more + "</robot>"))).reading.cautions
     };
+    let words = "rotor inertia of the file is not read (j): give it times the gear ratio squared, by `rotor_inertia` in each \
+                 state";
     assert_eq!(caution("0"), Vec::<String>::new());
-    assert_eq!(caution("1e-4"), ["rotor inertia of the file is not read (j): give `rotor_inertia` in each state"]);
+    assert_eq!(caution("1e-4"), [words]);
 }
 
 #[test]
