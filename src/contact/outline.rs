@@ -104,12 +104,9 @@ impl<'p> Outline<'p> {
 
     /// The box about the outline, grown by `margin` \[m\]: its low and its high end.
     pub fn region(&self, margin: f64) -> [Vector<f64>; 2] {
-        let margin = self.rim.bound() + margin;
-        let infinite = Vector::new(f64::INFINITY, f64::INFINITY);
-        let (low, high) = self
-            .corners
-            .iter()
-            .fold((infinite, -infinite), |(low, high), &corner| (low.least(corner), high.greatest(corner)));
+        let (margin, far) = (self.rim.bound() + margin, Vector::new(f64::INFINITY, f64::INFINITY));
+        let corners = || self.corners.iter().copied();
+        let (low, high) = (corners().fold(far, Vector::least), corners().fold(-far, Vector::greatest));
         [low.map(|entry| entry - margin), high.map(|entry| entry + margin)]
     }
 

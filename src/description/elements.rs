@@ -214,28 +214,16 @@ fn meant<'a>(
     let is_near = |name: &str, known: &str| {
         let [own, other] = [name, known].map(str::as_bytes);
         // As MJCF, SDF and others call them.
-        let is_named = match known {
-            "xyz" => matches!(name, "pos" | "position" | "translation"),
-            "rpy" => matches!(
-                name,
-                "euler"
-                    | "rotation"
-                    | "quat"
-                    | "quaternion"
-                    | "rpydeg"
-                    | "rpy_deg"
-                    | "ypr"
-                    | "orientation"
-                    | "rot"
-                    | "angle"
-            ),
-            "origin" => matches!(name, "pose" | "com" | "frame"),
-            "multiplier" => matches!(name, "ratio" | "gearing" | "scale" | "gain"),
-            "lower" => matches!(name, "min" | "low"),
-            "upper" => matches!(name, "max" | "high"),
-            _ => false,
+        let others = match known {
+            "xyz" => "pos position translation",
+            "rpy" => "euler rotation quat quaternion rpydeg rpy_deg ypr orientation rot angle",
+            "origin" => "pose com frame",
+            "multiplier" => "ratio gearing scale gain",
+            "lower" => "min low",
+            "upper" => "max high",
+            _ => "",
         };
-        is_named
+        others.split_whitespace().any(|other| other == name)
             || name.eq_ignore_ascii_case(known)
             // Known names have three letters and more, so that one slip leaves the first or the last of them.
             || name.len().abs_diff(known.len()) <= 1

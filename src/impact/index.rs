@@ -79,13 +79,11 @@ fn lowest_coefficient<T: Ordered>(matrix: &[Vec<T>]) -> Result<Option<i8>, Unset
         (0..size).map(|i| (0..size).map(|j| if i == j { T::one() } else { T::zero() }).collect()).collect();
     let mut coefficients = vec![T::one()];
     for k in 1..=size {
-        let product: Vec<Vec<T>> = negative
-            .iter()
-            .map(|row| {
-                let entry = |j: usize| row.iter().zip(&power).fold(T::zero(), |sum, (&a, other)| sum + a * other[j]);
-                (0..size).map(entry).collect()
-            })
-            .collect();
+        let product = |row: &Vec<T>| -> Vec<T> {
+            let entry = |j: usize| row.iter().zip(&power).fold(T::zero(), |sum, (&a, other)| sum + a * other[j]);
+            (0..size).map(entry).collect()
+        };
+        let product: Vec<Vec<T>> = negative.iter().map(product).collect();
         let trace = (0..size).fold(T::zero(), |sum, i| sum + product[i][i]);
         let coefficient = -(trace / T::from_f64(k as f64));
         power = product;

@@ -150,11 +150,8 @@ impl Scale {
 
     /// Whether products of the problem's magnitudes stay so far from underflow that all rounding is relative.
     pub fn is_far_from_underflow(&self) -> bool {
-        let ends = (f64::INFINITY, 0.0);
-        let (least, most) = self
-            .mobility
-            .iter()
-            .fold(ends, |(least, most): (f64, f64), &mobility| (least.min(mobility), most.max(mobility)));
+        let least = self.mobility.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = self.mobility.iter().copied().fold(0.0, f64::max);
         self.mobility.is_empty() || (self.speed * least > 1e-200 && self.speed * most < 1e200 && most < 1e60 * least)
     }
 

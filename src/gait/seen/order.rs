@@ -107,18 +107,13 @@ impl Order {
     /// What is odd about them.
     pub fn notes(&self) -> impl Iterator<Item = String> {
         let few_gaps = self.gaps.count as f64 <= FEW_GAPS * self.rows as f64;
-        let returns = self
-            .returns
-            .text()
-            .map(|when| format!("rows are not in the order of time, which goes back {when}: a new clip begins there"));
-        let gaps =
-            self.gaps.text().filter(|_| few_gaps).map(|when| {
-                format!("rows seem to be missing {when}: a touchdown there may be missed or less accurate")
-            });
-        let halts =
-            self.halts.text().filter(|_| !self.stands_still()).map(|when| {
-                format!("more than two rows have the same time {when}: is it rounded? each row needs its own")
-            });
-        [returns, gaps, halts].into_iter().flatten()
+        let gaps = self.gaps.text().filter(|_| few_gaps);
+        let halts = self.halts.text().filter(|_| !self.stands_still());
+        let odd = [
+            (self.returns.text(), "rows are not in the order of time, which goes back", "a new clip begins there"),
+            (gaps, "rows seem to be missing", "a touchdown there may be missed or less accurate"),
+            (halts, "more than two rows have the same time", "is it rounded? each row needs its own"),
+        ];
+        odd.into_iter().filter_map(|(when, what, then)| Some(format!("{what} {}: {then}", when?)))
     }
 }

@@ -79,24 +79,19 @@ impl Relaxation {
         let scaled = |i: usize, j: usize| problem.delassus(i, j) / (mobility[i] * mobility[j]);
         // Scaled impulses along each ray; their entries' sizes add up to one. Friction may be so great that its products
         // with mobilities are not.
-        let along: Vec<Pair<f64>> = self
-            .rays
-            .iter()
-            .map(|ray| {
-                let greatest = ray.entries[0].abs().max(ray.entries[1].abs());
-                let [t, n] = [0, 1].map(|row| ray.entries[row] / greatest * mobility[2 * ray.contact + row]);
-                [t, n].map(|entry| entry / (t.abs() + n.abs()))
-            })
-            .collect();
+        let along = |ray: &Ray| {
+            let greatest = ray.entries[0].abs().max(ray.entries[1].abs());
+            let [t, n] = [0, 1].map(|row| ray.entries[row] / greatest * mobility[2 * ray.contact + row]);
+            [t, n].map(|entry| entry / (t.abs() + n.abs()))
+        };
+        let along: Vec<Pair<f64>> = self.rays.iter().map(along).collect();
         self.response.clear();
         let width = (self.rays.len() + 1).next_multiple_of(LANES);
         for (row, own) in mobility.iter().enumerate() {
-            let by_rays = self
-                .rays
-                .iter()
-                .zip(&along)
-                .map(|(ray, [t, n])| t * scaled(row, 2 * ray.contact) + n * scaled(row, 2 * ray.contact + 1));
-            self.response.extend(by_rays);
+            let by_ray = |(ray, [t, n]): (&Ray, &Pair<f64>)| {
+                t * scaled(row, 2 * ray.contact) + n * scaled(row, 2 * ray.contact + 1)
+            };
+            self.response.extend(self.rays.iter().zip(&along).map(by_ray));
             self.response.resize((row + 1) * width - 1, 0.0);
             self.response.push(problem.free_row(row) / (own * scale.speed));
         }
