@@ -167,14 +167,14 @@ impl Scratch {
             let without_slip = self.tableau.without_slip;
             let posed = (problem, remembered, &*shared);
             let search = Search::of(posed, &self.scale, &mut self.relaxation, without_slip, options.rejections);
-            (pass.collected.effort, kernel) = (search.effort, search.kernel);
+            (pass.collected.found.effort, kernel) = (search.effort, search.kernel);
             pass.shares = false;
             for modes in &search.survivors {
                 self.tableau.visit_one(modes, &mut pass);
             }
-            pass.collected.total = combinations(problem.laws()) - search.unvisited;
+            pass.collected.found.visited = combinations(problem.laws()) - search.unvisited;
             if lists_all {
-                pass.collected.unlisted = pass.collected.total - search.survivors.len() as u64;
+                pass.collected.found.unlisted = pass.collected.found.visited - search.survivors.len() as u64;
             }
         }
         let F64Pass { mut regular, mut undecided, .. } = pass;
@@ -188,7 +188,7 @@ impl Scratch {
             sharp_scale.measure(problem, errors);
             scale = &sharp_scale;
             self.tableau.load_entries(problem.laws(), scale.delassus(problem, errors), scale.free(problem, errors));
-            collected.total -= undecided.len() as u64;
+            collected.found.visited -= undecided.len() as u64;
             (collected.problem, collected.scale) = (problem, scale);
             let again = std::mem::take(&mut undecided);
             let (labels, collected) = (&mut self.labels, &mut collected);

@@ -123,6 +123,7 @@ pub enum Corner {
 }
 
 /// All that was found, in the order of the combinations.
+#[derive(Default)]
 pub struct Findings {
     pub outcomes: Vec<Outcome>,
     pub families: Vec<Family>,
@@ -141,17 +142,14 @@ pub struct Collected<'a> {
     pub scale: &'a Scale,
     pub options: AnalysisOptions<'a>,
     name: &'a dyn Fn(usize) -> String,
-    pub total: u64,
-    pub effort: Effort,
-    /// Combinations that no precision decided.
-    pub undecided: u64,
+    /// Its lists stay empty to the end.
+    pub found: Findings,
     memory: &'a mut OutcomeMemory,
     /// Combinations whose velocities form a set.
     pub pending_families: Vec<Pending>,
     /// Corners are still in the order in which they were found.
     families: Vec<(u64, Family)>,
     rejected: Vec<(u64, Rejection)>,
-    pub unlisted: u64,
 }
 
 impl<'a> Collected<'a> {
@@ -169,14 +167,11 @@ impl<'a> Collected<'a> {
             scale,
             options,
             name,
-            total: 0,
-            effort: Effort::default(),
-            undecided: 0,
+            found: Findings::default(),
             memory,
             pending_families: Vec::new(),
             families: Vec::new(),
             rejected: Vec::new(),
-            unlisted: 0,
         }
     }
 
@@ -227,8 +222,8 @@ impl<'a> Collected<'a> {
     /// Counts a combination that no precision decided, and lists one of the first with zeros for the impulses that are
     /// not known.
     pub fn add_undecided(&mut self, Pending { number, modes }: Pending) {
-        self.undecided += 1;
-        if self.undecided > LISTED {
+        self.found.undecided += 1;
+        if self.found.undecided > LISTED {
             return;
         }
         let velocity_after = self.problem.velocity_free().to_vec();
@@ -280,7 +275,8 @@ impl<'a> Collected<'a> {
     }
 
     pub fn finish(mut self) -> Findings {
-        self.effort.bound = self.total - self.effort.ball - self.effort.double_double - self.effort.precise;
+        let found = &mut self.found;
+        found.effort.bound = found.visited - found.effort.ball - found.effort.double_double - found.effort.precise;
         if !self.families.is_empty() {
             let numbers = &self.memory.numbers;
             let mut order: Vec<usize> = (0..numbers.len()).collect();
@@ -302,15 +298,8 @@ impl<'a> Collected<'a> {
             outcomes.extend(numbered.into_iter().map(|(_, outcome)| outcome));
         }
         self.rejected.sort_by_key(|(number, _)| *number);
-        Findings {
-            outcomes,
-            families: unnumbered(self.families),
-            rejected: unnumbered(self.rejected),
-            unlisted: self.unlisted,
-            effort: self.effort,
-            visited: self.total,
-            undecided: self.undecided,
-        }
+        let (families, rejected) = (unnumbered(self.families), unnumbered(self.rejected));
+        Findings { outcomes, families, rejected, ..self.found }
     }
 
     /// Adds a decided outcome, where it stays: what is large and was just written is slow to move.

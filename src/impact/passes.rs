@@ -44,7 +44,7 @@ impl Visitor<Rounded> for F64Pass<'_, '_> {
         // A leaf may stand for others, and that in which all stick may show that G is regular.
         let is_wanted = *shares || !*regular && is_free(modes, laws) || collected.options.rejections.contain(modes);
         let drops = !is_wanted && rejects(last, mode, law);
-        collected.total += u64::from(drops);
+        collected.found.visited += u64::from(drops);
         drops
     }
 
@@ -55,7 +55,7 @@ impl Visitor<Rounded> for F64Pass<'_, '_> {
         // If every impulse is free, the pivots are those of the whole matrix.
         *regular = *regular || is_free(leaf.modes, laws) && leaf.is_known();
         labels.visit(leaf.modes, laws, *shares, |modes| {
-            collected.total += 1;
+            collected.found.visited += 1;
             let mut contacts = modes.iter().zip(laws).enumerate();
             let is_rejected = contacts.any(|(contact, (&mode, law))| rejects(leaf.numbers(contact), mode, law));
             if is_rejected && !options.rejections.contain(modes) {
@@ -155,7 +155,7 @@ impl PrecisionTask for UndecidedPass<'_, '_> {
                 Err(Unsettled) => undecided.push(pending),
             }
         }
-        *precision.share(&mut collected.effort) += (before - undecided.len()) as u64;
+        *precision.share(&mut collected.found.effort) += (before - undecided.len()) as u64;
         undecided.is_empty()
     }
 }
