@@ -19,7 +19,7 @@ use crate::budget::TotalBudget;
 use crate::contact::Feet;
 use crate::draw::page::Gait;
 use crate::gait::{Dropped, Seen, Thresholds, unwrapped};
-use crate::pipeline::{Aspect, Options, wide_tolerance};
+use crate::pipeline::{Aspect, Options, beyond_size};
 #[cfg(feature = "columnar")]
 use crate::read::table::Parts;
 use crate::read::table::{Form, Header, Rates};
@@ -146,7 +146,8 @@ pub(super) fn run(args: &Args) -> Completion {
     let question = args.question(&robot, feet, header.as_ref(), columns.as_ref())?;
     // Full results note it themselves.
     let tolerance = question.options.contact_tolerance.filter(|_| args.detail.brief);
-    note_all(tolerance.and_then(|tolerance| wide_tolerance(tolerance, size)));
+    let lengths = args.recording.lengths().chain([("a contact tolerance", tolerance)]);
+    note_all(lengths.filter_map(|(what, length)| beyond_size(what, length?, size)));
     // Tried before the work, which would otherwise be lost.
     writable(args.summary.as_deref())?;
     let mut head = Vec::new();

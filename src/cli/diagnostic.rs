@@ -27,6 +27,7 @@ const FLAGS: &[(&str, &str)] = &[
     ("foreign", "--foreign"),
     ("touchdowns", "--touchdowns"),
     ("at", "--at"),
+    ("touching", "--touching"),
     ("input_format", "--input-format"),
     ("format", "--format"),
     ("budget", "--budget"),

@@ -74,6 +74,15 @@ impl RecordingOptions {
         self.touchdowns || self.velocity.is_some()
     }
 
+    /// The lengths that touchdowns are found by \[m\], as far as they are given.
+    pub fn lengths(&self) -> impl Iterator<Item = (&'static str, Option<f64>)> {
+        let height = match self.touching {
+            Touching::Slow { height, .. } | Touching::Near { height } => Some(height),
+            Touching::Strike => None,
+        };
+        [("`drop`", self.drop), ("`ground_height`", self.ground_height), ("`touching`", height)].into_iter()
+    }
+
     /// Where velocities come from.
     pub fn rates(&self) -> Rates {
         if self.velocity.is_some() { Rates::Time } else { Rates::Columns }

@@ -20,7 +20,7 @@ pub mod robust;
 use self::assembly::Assembly;
 use self::exact::{Asked, ExactState};
 pub use self::forces::Sustained;
-pub use self::notes::wide_tolerance;
+pub use self::notes::beyond_size;
 pub use self::prepared::NearestFoot;
 pub(crate) use self::prepared::Prepared;
 use self::response::Unstruck;

@@ -47,7 +47,7 @@ impl Pipeline<'_> {
                 notes.extend(footing.below_contacts(contacts).and_then(|below| self.inside(below)));
             }
             None => {
-                notes.extend(wide_tolerance(self.tolerance(), self.feet.size()));
+                notes.extend(beyond_size("a contact tolerance", self.tolerance(), self.feet.size()));
                 self.note_near_miss(contacts, nearest, notes);
             }
         }
@@ -149,10 +149,10 @@ impl Pipeline<'_> {
     }
 }
 
-/// That a contact tolerance exceeds the size of the robot, as one in millimeters does; both in \[m\].
-pub fn wide_tolerance(tolerance: f64, size: f64) -> Option<String> {
-    (tolerance > size).then(|| {
-        let [tolerance, size] = [tolerance, size].map(rounded);
-        format!("a contact tolerance of {tolerance} m is more than the robot's size, {size} m: is it in meters?")
+/// That a length, such as a contact tolerance, exceeds the size of the robot, as one in millimeters does; both in \[m\].
+pub fn beyond_size(what: &str, length: f64, size: f64) -> Option<String> {
+    (length > size).then(|| {
+        let [length, size] = [length, size].map(rounded);
+        format!("{what} of {length} m is more than the robot's size, {size} m: is it in meters?")
     })
 }

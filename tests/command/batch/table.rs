@@ -217,6 +217,21 @@ fn recordings_in_other_units_or_axes_are_noted() {
     assert!(degrees.contains("degrees?"), "{degrees}");
 }
 
+#[test]
+fn lengths_beyond_the_robot_are_noted() {
+    let walk = "examples/gait/ramone_walk.csv";
+    let stderr = |options: &[&str]| {
+        let asked = ["batch", RAMONE, walk, "--touchdowns", "--friction", "0.6", "--brief"];
+        heelstrike(&[&asked[..], options].concat()).stderr
+    };
+    assert!(!stderr(&["--drop", "0.02", "--touching", "near:0.02"]).contains("is it in meters?"));
+    for options in [["--drop", "12"], ["--ground-height", "20"], ["--touching", "near:5"]] {
+        let note =
+            format!("{} of {} m is more than the robot's size", options[0], options[1].trim_start_matches("near:"));
+        assert!(stderr(&options).contains(&note), "{}", stderr(&options));
+    }
+}
+
 /// Rows that are missing or out of place take the touchdown next to them along, or give the state after it.
 #[test]
 fn rows_that_are_missing_or_out_of_order_are_noted() {
