@@ -74,7 +74,7 @@ pub struct RefusedRecord {
 
 /// Takes the answers in the order of the input, on whichever thread has the next one.
 pub trait Sink<B = Block>: Send {
-    /// Takes the next answers, and keeps none of them back: more may take long to arrive.
+    /// Takes the next answers. More may take long to arrive, so that a sink that others read keeps none back.
     ///
     /// # Errors
     /// Those of writing; this is not called again then.
@@ -293,6 +293,14 @@ mod tests {
         thread::sleep(Duration::from_millis(5));
     }
 
+    /// Answers each number by itself.
+    fn counting(answered: &AtomicUsize) -> impl Fn(u32) -> u32 + Copy {
+        |number| {
+            answered.fetch_add(1, Relaxed);
+            number
+        }
+    }
+
     #[test]
     fn threads_that_cannot_be_started_are_done_without() {
         for missing in [vec![], vec![2], vec![1, 2]] {
@@ -363,10 +371,7 @@ mod tests {
     fn nothing_is_asked_or_written_after_the_sink_has_failed() {
         for threads in 1..4 {
             let answered = AtomicUsize::new(0);
-            let answer = |number| {
-                answered.fetch_add(1, Relaxed);
-                number
-            };
+            let answer = counting(&answered);
             // The other threads answer what there is room for.
             let until = if threads == 1 { 71 } else { 71 + AHEAD * threads };
             let mut sink = Failing { written: Vec::new(), last: 70, until, answered: &answered };
@@ -380,10 +385,7 @@ mod tests {
     fn the_earlier_error_is_the_one_of_all() {
         for threads in 1..4 {
             let answered = AtomicUsize::new(0);
-            let answer = |number| {
-                answered.fetch_add(1, Relaxed);
-                number
-            };
+            let answer = counting(&answered);
             let failing = || Numbers { fails: true, ..numbers(10) };
             let mut written = Vec::new();
             let error = run(failing(), threads, || answer, &mut written).unwrap_err();

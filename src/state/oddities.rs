@@ -129,6 +129,22 @@ mod tests {
     use super::*;
 
     #[test]
+    fn only_what_may_turn_on_turns_fast() {
+        let urdf = include_str!("../../urdf/ramone.urdf");
+        let limited = urdf.replace("continuous", "revolute").replace("<axis", "<limit lower=\"-3\" upper=\"3\"/><axis");
+        for (urdf, expected) in [(urdf, ["left_hip"].as_slice()), (&limited, &["left_hip", "left_knee"])] {
+            let robot = Robot::from_urdf(urdf).unwrap();
+            let mut state = State::zero(&robot);
+            for (name, rate) in [("left_hip", -101.0), ("left_knee", 101.0), ("right_hip", 99.0)] {
+                state.set_velocity(&robot, name, rate).unwrap();
+            }
+            let odd = state.oddities(&robot);
+            let named = |(odd, name): (&String, &&str)| odd.starts_with(&format!("the rate of {name} is "));
+            assert!(odd.len() == expected.len() && odd.iter().zip(expected).all(named), "{odd:?}");
+        }
+    }
+
+    #[test]
     fn lists_of_another_length_are_read_to_their_end() {
         let robot = Robot::from_urdf(include_str!("../../urdf/minimalistic.urdf")).unwrap();
         let names = |position: Vec<f64>| {

@@ -8,7 +8,7 @@ use crate::impact::{Analysis, Inequalities, InequalityScratch, Verdict};
 use crate::law::Mode;
 use crate::pipeline::{Aspect, Impact, Options, Pipeline, Unsolved};
 use crate::robot::Reduction;
-use crate::state::{Defaults, State};
+use crate::state::{Defaults, Scene, State};
 use crate::{Error, Reason, Result, Robot};
 use std::borrow::Cow;
 use std::collections::VecDeque;
@@ -119,17 +119,19 @@ impl RobotStudy<'_> {
     /// as what an impact does not depend on.
     pub(super) fn idle_parameter(&self) -> Option<String> {
         let [parameter] = self.study.parameters() else { return None };
-        if self.study.question() == Aspect::Forces || !self.study.unused().is_empty() {
+        let varies_more = self.study.question() == Aspect::Forces || self.study.varies_the_robot();
+        if varies_more || !self.study.unused().is_empty() {
             return None;
         }
         let mut solver = Solver::new(self);
-        // Unevenly spaced, so that no period fits them.
+        // Unevenly spaced, so that no long period fits them.
         let mut seen = [0.0, 0.271, 0.618, 1.0].map(|part| {
             let at = [parameter.from + part * parameter.range()];
             let seen = solver.at(&at, |_, state, pipeline| {
                 let Unsolved { contacts, problem, .. } = pipeline.unsolved(&state)?;
                 let names: Vec<_> = contacts.into_iter().map(|contact| contact.name).collect();
-                Ok((state.position, state.velocity, state.uncertainty, state.scene.rotor_inertia, names, problem))
+                let Scene { rotor_inertia, impulses, .. } = state.scene;
+                Ok((state.position, state.velocity, state.uncertainty, (rotor_inertia, impulses), names, problem))
             });
             seen.ok().filter(|(.., names, _)| !names.is_empty())
         });
