@@ -195,6 +195,20 @@ fn an_answer_does_not_wait_for_the_next_line() {
     }
 }
 
+/// The first rows of a file are read twice, and those of standard input are not, whatever the folder holds.
+#[test]
+fn standard_input_is_read_once_where_a_file_has_its_name() {
+    let folder = place("folder");
+    std::fs::create_dir_all(&folder).expect("a folder");
+    std::fs::write(format!("{folder}/-"), "").expect("a file");
+    let table = read("examples/gait/ramone_walk.csv");
+    let robot = std::path::absolute("urdf/ramone.urdf").expect("a path");
+    let mut command = assert_cmd::Command::new(env!("CARGO_BIN_EXE_heelstrike"));
+    command.arg("batch").arg(robot).args(["-", "--input-format", "csv", "--friction", "0.6", "--brief"]);
+    let output = command.current_dir(&folder).write_stdin(table.clone()).output().expect("it runs");
+    assert_eq!(String::from_utf8_lossy(&output.stdout).lines().count(), table.lines().count() - 1);
+}
+
 #[test]
 fn a_row_of_a_recording_waits_for_the_next_one_alone() {
     for threads in ["1", "2"] {

@@ -217,20 +217,6 @@ fn recordings_in_other_units_or_axes_are_noted() {
     assert!(degrees.contains("degrees?"), "{degrees}");
 }
 
-/// The first rows of a file are read twice, and those of standard input are not, whatever the folder holds.
-#[test]
-fn standard_input_is_read_once_where_a_file_has_its_name() {
-    let folder = place("folder");
-    std::fs::create_dir_all(&folder).expect("a folder");
-    std::fs::write(format!("{folder}/-"), "").expect("a file");
-    let table = read("examples/gait/ramone_walk.csv");
-    let robot = std::path::absolute(RAMONE).expect("a path");
-    let mut command = assert_cmd::Command::new(env!("CARGO_BIN_EXE_heelstrike"));
-    command.arg("batch").arg(robot).args(["-", "--input-format", "csv", "--friction", "0.6", "--brief"]);
-    let output = command.current_dir(&folder).write_stdin(table.clone()).output().expect("it runs");
-    assert_eq!(String::from_utf8_lossy(&output.stdout).lines().count(), table.lines().count() - 1);
-}
-
 #[test]
 fn lengths_beyond_the_robot_are_noted() {
     let walk = "examples/gait/ramone_walk.csv";
