@@ -97,7 +97,11 @@ impl Work {
         let now = (budget.clock)();
         let used = nanoseconds(now.saturating_sub(last.unwrap_or(now)));
         let own = own.saturating_add(used);
-        let shared = all.as_ref().map(|all| all.fetch_add(used, Ordering::Relaxed).saturating_add(used));
+        let more = |spent: u64| Some(spent.saturating_add(used));
+        let shared = all.as_ref().map(|all| {
+            let before = all.fetch_update(Ordering::Relaxed, Ordering::Relaxed, more);
+            before.unwrap_or_else(|spent| spent).saturating_add(used)
+        });
         if is_shared {
             SHARED.set(all);
         }
@@ -279,6 +283,16 @@ mod tests {
         let shared = SharedBudget::new(Budget { time: Duration::from_secs(1000), clock: working });
         assert_eq!(shared.within(|| (0..3).any(|_| is_spent_now())), Ok(false));
         assert!(SharedBudget::current().is_none() && shared.spent.load(Ordering::Relaxed) > 0);
+    }
+
+    #[test]
+    fn a_shared_budget_stays_spent() {
+        // 2^33 s are more than a third of what 64 bits hold in nanoseconds.
+        let leaping = || Duration::from_secs(ticking().as_secs() << 33);
+        let shared = SharedBudget::new(Budget { time: Duration::MAX, clock: leaping });
+        let looks = shared.share(|| [(); 5].map(|()| is_spent_now()));
+        assert_eq!(looks, [false, false, true, true, true]);
+        assert_eq!(shared.spent.load(Ordering::Relaxed), u64::MAX);
     }
 
     #[test]

@@ -15,7 +15,7 @@ from __future__ import annotations
 import enum
 from typing import TYPE_CHECKING, Any
 
-from ._core import Answers, Refused, Robot, solve
+from ._core import Answers, Refused, Robot, __version__, solve
 from ._plot import Plot, plot
 from ._values import Result
 
@@ -31,6 +31,7 @@ __all__ = [
     "Result",
     "Robot",
     "Verdict",
+    "__version__",
     "from_drake",
     "from_mujoco",
     "from_pinocchio",
@@ -46,6 +47,10 @@ def __getattr__(name: str) -> Any:
     from . import _convert
 
     return getattr(_convert, name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
 
 
 class Verdict(enum.IntEnum):

@@ -1,3 +1,4 @@
+from collections.abc import Sequence
 from os import PathLike
 from typing import Any, Literal, TypeAlias, TypedDict, final, overload, type_check_only
 
@@ -7,17 +8,19 @@ from typing_extensions import Unpack
 
 from ._values import Result
 
-__all__ = ["Answers", "Refused", "Robot", "main", "solve"]
+__all__ = ["Answers", "Refused", "Robot", "__version__", "main", "solve"]
+
+__version__: str
 
 _Friction: TypeAlias = float | Literal["infinite", "inf"]
 
 @type_check_only
 class _Reading(TypedDict, total=False):
-    plane: Literal["auto", "xz", "yz", "xy"] | None
+    plane: Literal["auto", "xz", "yz", "xy", "zy", "zx", "yx"] | None
     hold: dict[str, float]
     base: Literal["fixed", "floating"] | None
     axis_tolerance: float | None
-    package_path: list[str]
+    package_path: Sequence[str | PathLike[str]]
     feet: list[dict[str, Any]]
     contact_tolerance: float | None
     resting_speed: float | None
@@ -55,7 +58,7 @@ class Robot:
     @property
     def coordinates(self) -> list[str]: ...
     @property
-    def plane(self) -> Literal["xz", "yz", "xy"]: ...
+    def plane(self) -> Literal["xz", "yz", "xy", "zy", "zx", "yx"]: ...
     @property
     def held(self) -> dict[str, float]: ...
     def inspect(self) -> dict[str, Any]: ...
@@ -81,7 +84,13 @@ class Robot:
     ) -> Answers: ...
     @overload
     def forces(
-        self, q: dict[str, Any] | str | PathLike[str], v: None = None, *, friction: _Friction | None = None
+        self,
+        q: dict[str, Any] | str | PathLike[str],
+        v: None = None,
+        *,
+        friction: _Friction | None = None,
+        explain: bool = False,
+        matrices: bool = False,
     ) -> Result: ...
     @overload
     def forces(
@@ -114,6 +123,7 @@ class Robot:
         drop: float | None = None,
         ground_height: float | None = None,
         simulated: bool = False,
+        foreign: str | list[str] | None = None,
     ) -> list[dict[str, Any]]: ...
     @staticmethod
     def _again(text: str, path: str | PathLike[str], options: dict[str, Any] | None) -> Robot: ...
@@ -170,8 +180,8 @@ class Answers:
 def solve(
     G: ArrayLike,
     c: ArrayLike,
-    friction: _Friction | list[_Friction],
-    restitution: float | list[float] | None = None,
+    friction: _Friction | ArrayLike,
+    restitution: ArrayLike | None = None,
     *,
     explain: bool = False,
 ) -> dict[str, Any]: ...

@@ -24,4 +24,8 @@ def to_arrow(answers: Answers, id: Any = None) -> Any:
 
 
 def to_pandas(answers: Answers, id: Any = None) -> Any:
-    return to_arrow(answers, id).to_pandas()
+    import pandas as pd  # type: ignore[import-untyped, unused-ignore]
+
+    # A refused state has no outcome: with these types its row does not change those of the columns.
+    types = {"bool": pd.BooleanDtype(), "int64": pd.Int64Dtype()}
+    return to_arrow(answers, id).to_pandas(types_mapper=lambda own: types.get(str(own)))

@@ -1,6 +1,6 @@
 //! The arrays of a batch, made for Python when they are first asked for.
 
-use crate::values::refused;
+use crate::values::{as_keywords, refused};
 use heelstrike::pipeline::Aspect;
 use heelstrike::state::NamedContact;
 use heelstrike::{
@@ -157,7 +157,8 @@ impl Answers {
     ) -> PyResult<Bound<'py, PyAny>> {
         let make = || {
             let Texts { at, known, .. } = self.with(|arrays| texts(arrays).clone());
-            let known: Vec<_> = known.iter().map(|text| text.into_pyobject(py)).collect::<Result<_, _>>()?;
+            let known: Vec<_> =
+                known.iter().map(|text| as_keywords(text).into_pyobject(py)).collect::<Result<_, _>>()?;
             let list = PyList::new(py, std::iter::repeat_n(None::<&str>, count))?;
             for (entry, text) in at {
                 list.set_item(entry, &known[text])?;

@@ -23,6 +23,8 @@ use pyo3::prelude::*;
 /// The functions and classes behind the package `heelstrike`.
 #[pymodule(name = "_core")]
 mod core {
+    use pyo3::prelude::*;
+
     #[pymodule_export]
     use super::answers::Answers;
     #[pymodule_export]
@@ -33,6 +35,11 @@ mod core {
     use super::study::solve;
     #[pymodule_export]
     use super::values::Refused;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
 }
 
 /// Run the command `heelstrike` with these arguments, of which the first is its name.

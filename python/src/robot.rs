@@ -36,7 +36,7 @@ pub struct Model {
 
 /// A planar robot, read from a URDF file.
 ///
-/// Options: `plane` ("xz", "yz", "xy"), `hold` (values of joints to fix, by name [rad, m]), `base` ("fixed",
+/// Options: `plane` ("xz", "yz", ...), `hold` (values of joints to fix, by name [rad, m]), `base` ("fixed",
 /// "floating"), `axis_tolerance` [rad], `package_path` (folders of meshes), `feet` (contacts to add, as a state lists
 /// them), `contact_tolerance` [m], `resting_speed` [m/s], `strict_limits`, `budget` (seconds of processor time that an
 /// answer may take, None for no end). Raises Refused with `file`, `place` and `hint`.
@@ -62,7 +62,7 @@ impl Model {
                 "hold" => reduction.hold = held(&description, value.cast()?)?,
                 "base" => reduction.base = choice("base", BASES, value.extract()?)?,
                 "axis_tolerance" => reduction.axis_tolerance = positive("axis_tolerance", &value)?,
-                "package_path" => package_path = value.extract::<Vec<PathBuf>>()?,
+                "package_path" => package_path = folders(&value)?,
                 "feet" => feet = Some(value),
                 "contact_tolerance" => own.contact_tolerance = positive("contact_tolerance", &value)?,
                 "resting_speed" => own.resting_speed = positive("resting_speed", &value)?,
@@ -118,6 +118,10 @@ fn positive(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
     value.extract::<Option<f64>>()?.map(check).transpose()
 }
 
+fn folders(value: &Bound<'_, PyAny>) -> PyResult<Vec<PathBuf>> {
+    value.extract().map_err(|_| PyTypeError::new_err("package_path is a list of folders"))
+}
+
 fn held(description: &Description, by_name: &Bound<'_, PyDict>) -> PyResult<Vec<(usize, f64)>> {
     let held = |(name, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
         let name: String = name.extract()?;
@@ -135,7 +139,12 @@ fn held(description: &Description, by_name: &Bound<'_, PyDict>) -> PyResult<Vec<
 fn contacts(robot: &heelstrike::Robot, list: &Bound<'_, PyAny>) -> PyResult<Vec<NamedContact>> {
     let state = PyDict::new(list.py());
     state.set_item("contacts", list)?;
-    let state = State::from_json(&to_json(state.as_any())?, robot, &Defaults::default()).map_err(refused)?;
+    // As the option has it, of which no one has written the text.
+    let own = |error: Error| {
+        let place = error.place().map(|place| place.replacen("contacts", "feet", 1));
+        refused(place.into_iter().fold(error.nowhere(), Error::at))
+    };
+    let state = State::from_json(&to_json(state.as_any())?, robot, &Defaults::default()).map_err(own)?;
     Ok(state.scene.contacts.unwrap_or_default())
 }
 
@@ -144,7 +153,9 @@ pub fn friction(value: &Bound<'_, PyAny>) -> PyResult<Friction> {
     match value.extract::<f64>() {
         Ok(number) => rough(number).map_err(refused),
         Err(_) => {
-            let text = value.extract::<String>()?;
+            let expected = "friction is a number from 0 on or \"infinite\"; by link it is a dictionary, which rows take \
+                            and a state holds itself";
+            let text = value.extract::<String>().map_err(|_| PyTypeError::new_err(expected))?;
             // As `float` reads it.
             if text == "inf" {
                 return Ok(Friction::Infinite);
@@ -199,7 +210,7 @@ impl Robot {
         self.model.robot.coordinates().collect()
     }
 
-    /// The plane's axes in the root link's, forward before up: xz, yz or xy.
+    /// The plane's axes in the root link's, forward before up: xz, yz, xy, zy, zx or yx.
     #[getter]
     fn plane(&self) -> &'static str {
         self.model.robot.reading.plane.name()
@@ -265,8 +276,12 @@ impl Robot {
         Rows::read(slf.get(), asker, [q, v], friction, restitution, contacts, scene)?.answer(slf.py(), asker, threads)
     }
 
-    /// The contact forces and accelerations in sustained contact: of one state as `impact`, of rows as `impacts`.
-    #[pyo3(signature = (q, v = None, *, friction = None, restitution = None, contacts = None, threads = None, **scene))]
+    /// The contact forces and accelerations in sustained contact: of one state as `impact`, with `friction`, `explain` and
+    /// `matrices`, of rows as `impacts`.
+    #[pyo3(signature = (
+        q, v = None, *, friction = None, restitution = None, contacts = None, threads = None, explain = false,
+        matrices = false, **scene
+    ))]
     fn forces<'py>(
         slf: &Bound<'py, Self>,
         q: &Bound<'py, PyAny>,
@@ -275,16 +290,21 @@ impl Robot {
         restitution: Option<&Bound<'py, PyAny>>,
         contacts: Option<&Bound<'py, PyAny>>,
         threads: Option<usize>,
+        explain: bool,
+        matrices: bool,
         scene: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let Some(v) = v else {
             if contacts.is_some() || restitution.is_some() || threads.is_some() || scene.is_some() {
-                let own =
-                    "one state has contacts, restitution and its scene itself; only friction can be given besides";
+                let own = "one state takes friction, explain and matrices besides: all else it has itself";
                 return Err(PyTypeError::new_err(own));
             }
-            return Self::one(slf, q, Aspect::Forces, friction, Detail::default(), false);
+            let detail = Detail { explain, matrices, brief: false };
+            return Self::one(slf, q, Aspect::Forces, friction, detail, false);
         };
+        if explain || matrices {
+            return Err(PyTypeError::new_err("explain and matrices are of one state, not of rows"));
+        }
         let asker = &slf.get().forces;
         let rows = Rows::read(slf.get(), asker, [q, v], friction, restitution, contacts, scene)?;
         Ok(Bound::new(slf.py(), rows.answer(slf.py(), asker, threads)?)?.into_any())
@@ -308,15 +328,15 @@ impl Robot {
 
     /// The impacts at the touchdowns of a recording, as `heelstrike batch --touchdowns` writes them.
     ///
-    /// `table` is a path (CSV, TSV, Parquet, Arrow), a data frame, an Arrow table or a dictionary of columns: `time`
+    /// `table` is a path (CSV, TSV, flat NDJSON, Parquet, Arrow), a data frame, an Arrow table or a dictionary of columns: `time`
     /// [s], `q_base_x`, `q_base_z`, `q_base_pitch`, `q_<joint>` [m, rad], and rates likewise with `v_` unless `velocity`
     /// is "central" or "backward". `at` is "crossing" or "row", `touching` strike, slow:SPEED,HEIGHT or near:HEIGHT. A
     /// foot must descend by `drop` to at most `ground_height` [m], which depend on the robot's size; `simulated` takes
-    /// z = 0 as the ground. `line` and `row` of a table in memory are those of its CSV: the first row is line 2. Raises
+    /// z = 0 as the ground. `foreign` names columns that are none of the state's, and are copied. `line` and `row` of a table in memory are those of its CSV: the first row is line 2. Raises
     /// Refused for the table; a refused touchdown has an `error`.
     #[pyo3(signature = (
         table, *, friction = None, velocity = None, at = None, touching = None, drop = None, ground_height = None,
-        simulated = false
+        simulated = false, foreign = None
     ))]
     fn touchdowns<'py>(
         slf: &Bound<'py, Self>,
@@ -328,6 +348,7 @@ impl Robot {
         drop: Option<&Bound<'py, PyAny>>,
         ground_height: Option<&Bound<'py, PyAny>>,
         simulated: bool,
+        foreign: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let height = |what, value: Option<_>| value.map_or(Ok(None), |value| positive(what, value));
         let recording = RecordingOptions {
@@ -339,7 +360,10 @@ impl Robot {
             ground_height: height("ground_height", ground_height)?,
             velocity: choice("velocity", DIFFERENCES, velocity)?,
         };
-        study::touchdowns(slf, table, friction, &recording)
+        let one =
+            |name: &Bound<'py, PyAny>| name.extract().map_or_else(|_| name.extract(), |name: String| Ok(vec![name]));
+        let foreign: Vec<String> = foreign.map_or(Ok(Vec::new()), one)?;
+        study::touchdowns(slf, table, friction, &recording, &foreign)
     }
 
     /// A picture of the robot, as SVG, and its description.
@@ -399,8 +423,8 @@ impl Robot {
         if let Some(options) = &options
             && let Some(folders) = options.get_item("package_path")?
         {
-            let folders: Vec<PathBuf> = folders.extract()?;
-            options.set_item("package_path", folders.iter().map(|own| absolute(own)).collect::<Vec<_>>())?;
+            let folders = self::folders(&folders)?.iter().map(|own| absolute(own)).collect::<Vec<_>>();
+            options.set_item("package_path", folders)?;
         }
         let source = (text.to_owned(), absolute(path), options.map(Bound::unbind));
         Ok(Self { impacts: asker(Aspect::Impact), forces: asker(Aspect::Forces), model: Arc::new(model), source })

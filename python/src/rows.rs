@@ -2,14 +2,15 @@
 
 use crate::answers::{Answers, Table};
 use crate::robot::{Model, Robot, friction};
-use crate::values::{refused, to_json};
-use crate::watch::{budget, interrupted, without_python};
+use crate::values::{refused, to_json, warn};
+use crate::watch::{Call, budget, interrupted, raised, without_python};
 use heelstrike::batch::{Sink, TaskSource, run};
 use heelstrike::budget::TotalBudget;
 use heelstrike::cli::threads;
 use heelstrike::pipeline::Options;
 use heelstrike::state::{Ground, NamedContact};
 use heelstrike::write::Arrays;
+use heelstrike::write::notes::beyond_budget;
 use heelstrike::{Defaults, Error, Friction, Pipeline, Reason, State};
 use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -17,9 +18,25 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 use self_cell::self_cell;
 use std::ops::Range;
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::thread;
+
+/// What rows may have in common.
+const ARGUMENTS: [&str; 14] = [
+    "friction",
+    "restitution",
+    "contacts",
+    "threads",
+    "ground",
+    "stance",
+    "place",
+    "held",
+    "rotor_inertia",
+    "loops",
+    "impulse",
+    "gravity",
+    "torque",
+    "virtual",
+];
 
 /// How many rows a thread takes at once.
 const TOGETHER: usize = 256;
@@ -105,7 +122,8 @@ impl Given<'_> {
 }
 
 /// The array as f64 in C order, with this many numbers in each of its rows; it is copied only if it is something else.
-fn array<'py>(what: &str, value: &Bound<'py, PyAny>, columns: Option<usize>) -> PyResult<(usize, Given<'py>)> {
+fn array<'py>(what: &str, value: &Bound<'py, PyAny>, coordinates: Option<&[String]>) -> PyResult<(usize, Given<'py>)> {
+    let columns = coordinates.map(<[String]>::len);
     let py = value.py();
     let is_masked = value.cast_exact::<PyArrayDyn<f64>>().is_err() && value.hasattr("filled")?;
     let filled = || value.call_method1("astype", ("float64",))?.call_method1("filled", (f64::NAN,));
@@ -114,6 +132,7 @@ fn array<'py>(what: &str, value: &Bound<'py, PyAny>, columns: Option<usize>) -> 
     let own = match own {
         Some(own) => own,
         None => {
+            check_order(what, value, coordinates.unwrap_or_default())?;
             let numpy = py.import("numpy")?;
             let keywords = PyDict::new(py);
             keywords.set_item("dtype", "float64")?;
@@ -141,6 +160,21 @@ fn array<'py>(what: &str, value: &Bound<'py, PyAny>, columns: Option<usize>) -> 
     Ok((own.shape()[0], if few { Given::Few(own.to_vec()?) } else { Given::Many(own.readonly()) }))
 }
 
+/// Refuses a data frame whose columns are named as coordinates and stand in another order.
+fn check_order(what: &str, value: &Bound<'_, PyAny>, coordinates: &[String]) -> PyResult<()> {
+    let names = value.getattr("columns").and_then(|names| names.try_iter());
+    for (at, name) in names.into_iter().flatten().enumerate() {
+        let Ok(name) = name.and_then(|name| name.extract::<String>()) else { return Ok(()) };
+        let place = coordinates.iter().position(|known| *known == name);
+        if let Some(place) = place.filter(|place| *place != at) {
+            let hint = format!("give {what}[robot.coordinates]");
+            let refused = format!("column {at} of {what} is {name}, which is coordinate {place}: {hint}");
+            return Err(PyValueError::new_err(refused));
+        }
+    }
+    Ok(())
+}
+
 impl Asker {
     pub fn new(robot: &heelstrike::Robot, table: Table) -> Self {
         let plain = Common { fields: None, state: State::zero(robot), table: Arc::new(table) };
@@ -161,7 +195,16 @@ impl Asker {
                 return Err(PyTypeError::new_err(format!("rows have no common \"{name}\"")));
             }
         }
-        let state = State::from_json(&to_json(fields)?, &model.robot, &Defaults::default()).map_err(refused)?;
+        let wrong = |error: Error| match error.reason() {
+            Reason::UnknownField(name) if fields.contains(name).unwrap_or(false) => {
+                let error = Error::new(error.reason().clone()).did_you_mean(name, ARGUMENTS);
+                let hint = error.remedy().map_or(String::new(), |hint| format!("; {hint}"));
+                PyTypeError::new_err(format!("there is no argument '{name}'{hint}"))
+            }
+            // No one has written the text.
+            _ => refused(error.nowhere()),
+        };
+        let state = State::from_json(&to_json(fields)?, &model.robot, &Defaults::default()).map_err(wrong)?;
         let of_contacts = |contacts: &[NamedContact]| {
             let named = names(&model.robot, contacts);
             let named: Vec<&str> = named.iter().map(String::as_str).collect();
@@ -248,12 +291,12 @@ impl<'py> Rows<'py> {
         scene: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Self> {
         let model = &robot.model;
-        let nq = model.robot.dofs();
+        let coordinates = Some(&*asker.plain.table.coordinates);
         let mut fields = scene.cloned();
         if let Some(contacts) = contacts {
             fields.get_or_insert_with(|| PyDict::new(q.py())).set_item("contacts", contacts)?;
         }
-        let ((rows, q), (others, v)) = (array("q", q, Some(nq))?, array("v", v, Some(nq))?);
+        let ((rows, q), (others, v)) = (array("q", q, coordinates)?, array("v", v, coordinates)?);
         if rows != others {
             return Err(PyValueError::new_err(format!("q has {rows} rows and v {others}")));
         }
@@ -287,8 +330,8 @@ impl<'py> Rows<'py> {
         // One row has no others to share with.
         let total = model.budget.filter(|_| rows > 1).map(|each| TotalBudget::new(budget(Some(each)), None));
         let arrays = without_python(py, || {
-            let (numbers, total, is_raised) = (&numbers, total.as_ref(), AtomicBool::new(false));
-            let mut all = All(table.arrays(rows), &is_raised);
+            let (numbers, total, call) = (&numbers, total.as_ref(), Call::current());
+            let mut all = All(table.arrays(rows));
             if threads <= 1 {
                 // What it computes is written once.
                 let mut worker = Worker::new(&model, asker, &scene);
@@ -300,17 +343,13 @@ impl<'py> Rows<'py> {
                 }
                 return all.0;
             }
-            // Signals are handled on this thread.
-            let caller = thread::current().id();
             let answerer = || {
+                call.join();
                 let mut worker = Worker::new(&model, asker, &scene);
-                let (is_raised, is_caller) = (&is_raised, thread::current().id() == caller);
                 move |rows: Range<usize>| {
                     let mut block = table.empty.for_states(rows.len());
-                    rows.for_each(|row| worker.row(numbers, row, total, &mut block));
-                    if is_caller && interrupted() {
-                        is_raised.store(true, Relaxed);
-                    }
+                    rows.take_while(|_| !raised()).for_each(|row| worker.row(numbers, row, total, &mut block));
+                    interrupted();
                     block
                 }
             };
@@ -318,6 +357,7 @@ impl<'py> Rows<'py> {
             let _ = run(Ranges(0..rows), threads, answerer, &mut all);
             all.0
         })?;
+        warn(py, beyond_budget(total.as_ref()))?;
         Ok(Answers::new(Arc::clone(table), arrays))
     }
 }
@@ -350,10 +390,14 @@ impl<'p> Worker<'p> {
     /// Answers a row.
     fn row(&mut self, numbers: &Numbers, row: usize, total: Option<&TotalBudget>, out: &mut Arrays) {
         let Some(Kept { pipeline, state, .. }) = &mut self.kept else { return };
-        let answer = set(state, numbers, row).and_then(|()| {
-            pipeline.with_dependent_mut(|model, pipeline| match total {
+        let answer = set(state, numbers, row).and_then(|is_placed_twice| {
+            let answer = pipeline.with_dependent_mut(|model, pipeline| match total {
                 Some(total) => total.within(|| pipeline.answer(state)),
                 None => budget(model.budget).within(|| pipeline.answer(state)),
+            });
+            answer.map(|mut impact| {
+                impact.notes.extend(is_placed_twice.then(|| PLACED_TWICE.to_owned()));
+                impact
             })
         });
         out.push(answer.as_deref().map_err(Error::clone));
@@ -369,18 +413,24 @@ impl Drop for Worker<'_> {
     }
 }
 
-/// Sets the numbers of a row.
-fn set(state: &mut State, numbers: &Numbers, row: usize) -> heelstrike::Result<()> {
+/// The note of a row that places the base as its stance does.
+const PLACED_TWICE: &str = "x and z of q and v are not used: the stance places the base";
+
+/// Sets the numbers of a row; whether it places a base that a stance places.
+fn set(state: &mut State, numbers: &Numbers, row: usize) -> heelstrike::Result<bool> {
     let nq = numbers.coordinates.len();
     let range = row * nq..(row + 1) * nq;
+    let placed = if state.scene.stance.is_some() { 2 } else { 0 };
+    let mut is_placed_twice = false;
     for (what, entries, own) in
         [("q", &numbers.q[range.clone()], &mut state.position), ("v", &numbers.v[range], &mut state.velocity)]
     {
-        if let Some(at) = entries.iter().position(|entry| !entry.is_finite()) {
+        if let Some(at) = (placed..nq).find(|&at| !entries[at].is_finite()) {
             let what = format!("{what} of {}", numbers.coordinates[at]);
             return Err(Reason::NotFinite { what, value: entries[at] }.into());
         }
-        own.copy_from_slice(entries);
+        own[placed..].copy_from_slice(&entries[placed..]);
+        is_placed_twice |= entries[..placed].iter().any(|entry| entry.abs() > 0.0);
     }
     if let Some(friction) = numbers.friction {
         state.scene.friction.default = Some(rough(friction[row])?);
@@ -388,7 +438,7 @@ fn set(state: &mut State, numbers: &Numbers, row: usize) -> heelstrike::Result<(
     if let Some(restitution) = numbers.restitution {
         state.scene.restitution.default = Some(restituted(restitution[row])?);
     }
-    Ok(())
+    Ok(is_placed_twice)
 }
 
 /// Friction with the coefficient `mu`.
@@ -427,11 +477,11 @@ impl TaskSource for Ranges {
 }
 
 /// All answers so far, until a signal is raised.
-struct All<'a>(Box<Arrays>, &'a AtomicBool);
+struct All(Box<Arrays>);
 
-impl Sink<Arrays> for All<'_> {
+impl Sink<Arrays> for All {
     fn block(&mut self, block: Arrays) -> heelstrike::Result<()> {
         self.0.append(block);
-        if self.1.load(Relaxed) { Err(Reason::BeyondBudget.into()) } else { Ok(()) }
+        if raised() { Err(Reason::BeyondBudget.into()) } else { Ok(()) }
     }
 }

@@ -5,7 +5,7 @@ use crate::values::{from_json, refused, to_json, warn};
 use crate::watch::{budget, interrupted, raised, shared, without_python};
 use heelstrike::batch::{Batch, Question, Recording, States, Summary, TaskSource};
 use heelstrike::budget::TotalBudget;
-use heelstrike::cli::{RecordingOptions, Seconds, seconds, table as form_of, threads};
+use heelstrike::cli::{RecordingOptions, Seconds, records, seconds, threads};
 use heelstrike::impact::{AnalysisOptions, Scratch};
 use heelstrike::read::Problem;
 use heelstrike::read::table::{Form, Parts};
@@ -102,10 +102,11 @@ pub fn touchdowns<'py>(
     table: &Bound<'py, PyAny>,
     mu: Option<&Bound<'py, PyAny>>,
     recording: &RecordingOptions,
+    foreign: &[String],
 ) -> PyResult<Bound<'py, PyAny>> {
     let py = robot.py();
     let path = table.extract::<PathBuf>().ok();
-    let format = path.as_deref().and_then(form_of);
+    let format = path.as_deref().and_then(records);
     let states = match (path, format) {
         (Some(path), Some(format)) if !format.is_text() => Parts::open(File::open(path)?, format).map(States::Columns),
         _ => {
@@ -116,7 +117,7 @@ pub fn touchdowns<'py>(
     let states = states.map_err(refused)?;
     let defaults = Defaults { friction: mu.map(friction).transpose()?, ..Defaults::default() };
     let model = &robot.get().model;
-    let (out, notes) = without_python(py, || found(model, states, defaults, recording))?.map_err(refused)?;
+    let (out, notes) = without_python(py, || found(model, states, defaults, (recording, foreign)))?.map_err(refused)?;
     warn(py, notes)?;
     from_json(py, &out, None)
 }
@@ -126,11 +127,13 @@ fn found(
     model: &crate::robot::Model,
     mut states: States,
     defaults: Defaults,
-    recording: &RecordingOptions,
+    (recording, foreign): (&RecordingOptions, &[String]),
 ) -> heelstrike::Result<(Vec<u8>, Vec<String>)> {
     let (robot, feet) = (&model.robot, &model.options.feet[..]);
-    let header = states.header(robot, recording.rates(), &[], true).map_err(|refused| refused.error)?;
-    let header = header.ok_or_else(|| Error::new(Reason::Missing("a header".into())))?.with_base()?;
+    let header = states.header(robot, recording.rates(), foreign, true).map_err(|refused| refused.error)?;
+    let header = header
+        .ok_or_else(|| Error::new(Reason::Missing("a header, or a flat object on each line".into())))?
+        .with_base()?;
     let question = Question {
         robot,
         options: model.options.clone(),
@@ -161,7 +164,9 @@ fn found(
     let nothing = (summary.states == 0).then(|| recording.nothing_found(thresholds, &seen));
     let of_states = notes::own_friction(summary.own_friction, "state").into_iter().chain(summary.of_touchdowns());
     let of_motion = seen.notes(robot, thresholds);
-    let notes = of_table.chain(of_states).chain(of_motion).chain(nothing).collect();
+    let refused = summary.refused;
+    let refused = (refused > 0).then(|| format!("{refused} of {} touchdowns are refused: see `error`", summary.states));
+    let notes = of_table.chain(of_states).chain(of_motion).chain(nothing).chain(refused).collect();
     let lines: Vec<&[u8]> = lines.trim_ascii_end().split(|&byte| byte == b'\n').collect();
     Ok(([b"[", &*lines.join(&b','), b"]"].concat(), notes))
 }

@@ -37,12 +37,11 @@ pub fn choice<T: Copy>(what: &str, choices: Choices<T>, name: Option<&str>) -> P
 }
 
 /// The text with settings such as `velocity: central` in backticks written as keywords: `velocity="central"`.
-fn as_keywords(text: &str) -> String {
+pub fn as_keywords(text: &str) -> String {
+    let is_word = |value: &str| value.bytes().all(|letter| letter.is_ascii_alphanumeric() || letter == b'_');
     let pieces = text.split('`').enumerate().map(|(at, piece)| match piece.split_once(": ") {
-        Some((name, value)) if at % 2 == 1 && value.bytes().all(|letter| letter.is_ascii_lowercase()) => {
-            format!("{name}=\"{value}\"")
-        }
         Some((name, value)) if at % 2 == 1 && value.parse::<f64>().is_ok() => format!("{name}={value}"),
+        Some((name, value)) if at % 2 == 1 && is_word(value) => format!("{name}=\"{value}\""),
         _ => piece.to_owned(),
     });
     pieces.collect::<Vec<_>>().join("`")

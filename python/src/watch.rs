@@ -1,13 +1,16 @@
 //! Ctrl-C and the budget of work.
 //!
 //! Work that may take long runs within a budget, whose clock is read again and again. On the thread that runs Python's
-//! signal handlers this clock also asks whether one has raised: the budget is then spent, and the call raises.
+//! signal handlers this clock also asks whether one has raised: the budgets of all threads of the call are then spent,
+//! and it raises.
 
 use heelstrike::Budget;
 use heelstrike::budget::SharedBudget;
 use heelstrike::cli::{Seconds, work_time};
 use pyo3::prelude::*;
 use std::cell::{Cell, RefCell};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 
 /// How often signals are looked for.
@@ -18,8 +21,26 @@ const AGE: Duration = Duration::from_secs(1 << 33);
 
 thread_local! {
     static RAISED: RefCell<Option<PyErr>> = const { RefCell::new(None) };
+    static CALL: RefCell<Option<Call>> = const { RefCell::new(None) };
+    static IS_CALLER: Cell<bool> = const { Cell::new(false) };
     static LAST: Cell<Option<Instant>> = const { Cell::new(None) };
     static AGES: Cell<u32> = const { Cell::new(0) };
+}
+
+/// A call from Python, of which all its threads know whether a signal handler raised.
+#[derive(Clone, Default)]
+pub struct Call(Arc<AtomicBool>);
+
+impl Call {
+    /// That for which this thread works.
+    pub fn current() -> Self {
+        CALL.with_borrow(Clone::clone).unwrap_or_default()
+    }
+
+    /// Lets this thread work for it.
+    pub fn join(&self) {
+        CALL.set(Some(self.clone()));
+    }
 }
 
 /// The budget of work that may take so long; `None` for work without an end.
@@ -41,32 +62,35 @@ fn clock() -> Duration {
 
 /// Whether a signal handler raised, which is asked anew after a while.
 pub fn interrupted() -> bool {
-    if LAST.get().is_none_or(|last| last.elapsed() > OFTEN) {
+    // Python handles signals on the thread that called.
+    if IS_CALLER.get() && LAST.get().is_none_or(|last| last.elapsed() > OFTEN) {
         LAST.set(Some(Instant::now()));
         look();
     }
     raised()
 }
 
-/// Whether a signal handler raised during the work of this thread.
+/// Whether a signal handler raised during the call for which this thread works.
 pub fn raised() -> bool {
-    RAISED.with_borrow(Option::is_some)
+    CALL.with_borrow(|call| call.as_ref().is_some_and(|call| call.0.load(Relaxed)))
 }
 
-/// Runs Python's signal handlers; whether one of them raised.
-fn look() -> bool {
-    let raised = Python::attach(|py| py.check_signals()).err();
-    RAISED.with_borrow_mut(|all| {
-        *all = raised.or(all.take());
-        all.is_some()
-    })
+/// Runs Python's signal handlers, one of which may raise.
+fn look() {
+    if let Err(raised) = Python::attach(|py| py.check_signals()) {
+        RAISED.set(Some(raised));
+        Call::current().0.store(true, Relaxed);
+    }
 }
 
 /// Does the work without the interpreter; raises what a signal handler raised on the way.
 pub fn without_python<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
-    RAISED.set(None);
+    // A handler may itself call.
+    let (outer, was_caller) = (CALL.replace(Some(Call::default())), IS_CALLER.replace(true));
     AGES.set(1);
     let made = py.detach(work);
+    CALL.set(outer);
+    IS_CALLER.set(was_caller);
     match RAISED.take() {
         Some(raised) => Err(raised),
         None => Ok(made),

@@ -9,9 +9,12 @@ import time
 import pytest
 from conftest import COMMAND, ROOT
 
+import heelstrike
+
 SLOW = """
 import heelstrike, numpy, sys, time
-robot = heelstrike.Robot({urdf!r})
+urdf = {urdf!r}
+robot = heelstrike.Robot(urdf)
 q, v = numpy.random.default_rng(7).uniform(-1, 1, (2, 2_000_000, 7))
 print("ready", flush=True)
 try:
@@ -23,6 +26,9 @@ except KeyboardInterrupt:
 CALLS = {
     "rows": 'robot.impacts(q, v, friction=0.5, place="lowest", threads=1)',
     "threads": 'robot.impacts(q, v, friction=0.5, place="lowest", threads=2)',
+    "slow rows": """heelstrike.Robot(urdf, budget=None).impacts(0 * q[:600], 0 * v[:600] + [0, -1, 0.3, 0, 0, 0, 0],
+        friction=0.8, threads=2, contacts=[
+            {"link": "torso", "offset": [0.1 * at, 0, -0.3 - 1e-9 * at * at]} for at in range(6)])""",
     "sweep": """robot.sweep({"parameters": {"a": {"from": -1, "to": 1, "steps": 1000000}}, "state": {
         "position": {"joints": {"left_hip": "a"}}, "velocity": {"base": {"z": -1}}, "friction": 0.5, "place": "lowest"}},
         budget=None)""",
@@ -67,7 +73,7 @@ def test_command_is_the_tool():
     def run(*arguments):
         return subprocess.run([*COMMAND, *arguments], capture_output=True, text=True, cwd=ROOT)
 
-    assert run("--version").stdout.startswith("heelstrike 0.")
+    assert run("--version").stdout.startswith(f"heelstrike {heelstrike.__version__}")
     assert run("impact", "urdf/ramone.urdf", "examples/ramone.json").returncode == 0
     refused = run("impact", "urdf/ramone.urdf", "no.json")
     assert (refused.returncode, refused.stdout) == (1, "") and "no.json" in refused.stderr
@@ -77,6 +83,10 @@ def test_command_is_the_tool():
         shell=True, capture_output=True, text=True, cwd=ROOT,
     )
     assert (installed.stdout, installed.stderr) == ('{"name":"r', "")
+
+
+def test_package_lists_what_it_has():
+    assert {"from_pinocchio", "from_mujoco", "from_drake", "Layout"} <= set(dir(heelstrike))
 
 
 def test_command_and_import_take_no_numpy():

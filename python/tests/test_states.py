@@ -50,8 +50,15 @@ def test_refusal_names_place_and_remedy(ramone):
         heelstrike.Robot("no.urdf")
     with pytest.raises(TypeError, match="plan"):
         heelstrike.Robot(URDF, plan="xz")
-    with pytest.raises(ValueError, match="plane is one of auto, xz, yz, xy, not"):
-        heelstrike.Robot(URDF, plane="zx")
+    with pytest.raises(TypeError, match="package_path is a list of folders"):
+        heelstrike.Robot(URDF, package_path=".")
+    with pytest.raises(heelstrike.Refused, match="did you mean link") as error:
+        heelstrike.Robot(URDF, feet=[{"lnk": "torso"}])
+    assert str(error.value).startswith("feet[0].lnk: unknown field")
+    with pytest.raises(TypeError, match="by link it is a dictionary, which rows take"):
+        ramone.impact(STATE, friction={"default": 0.8})
+    with pytest.raises(ValueError, match="plane is one of auto, xz, yz, xy, zy, zx, yx, not"):
+        heelstrike.Robot(URDF, plane="zz")
 
 
 @pytest.mark.parametrize("option", ["resting_speed", "axis_tolerance", "contact_tolerance", "budget"])
@@ -73,8 +80,12 @@ def test_budget_of_a_sweep_is_checked(ramone):
 def test_one_state_of_forces_takes_no_other_arguments(ramone):
     standing = ROOT / "examples/ramone_stands.json"
     for other in ({"contacts": []}, {"restitution": 0.5}, {"threads": 1}, {"place": "lowest"}):
-        with pytest.raises(TypeError, match="one state has contacts, restitution and its scene itself"):
+        with pytest.raises(TypeError, match="one state takes friction, explain and matrices"):
             ramone.forces(standing, **other)
+    explained = ramone.forces(standing, explain=True, matrices=True)
+    assert explained["mass_matrix"] and explained["rejected"]
+    with pytest.raises(TypeError, match="of one state, not of rows"):
+        ramone.forces(np.zeros((1, 7)), np.zeros((1, 7)), explain=True)
 
 
 def test_file_that_is_not_utf_8_is_refused_with_a_remedy(tmp_path):
@@ -190,6 +201,17 @@ def test_touchdowns_are_those_of_the_command(ramone, tmp_path):
         assert ramone.touchdowns(frame[:3], friction=0.8) == []
     with pytest.raises(TypeError, match="a table is a path.*not a list"):
         ramone.touchdowns([[0.0]])
+    lines = frame.assign(remark=1.0)
+    lines.to_json(tmp_path / "walk.ndjson", orient="records", lines=True, double_precision=15)
+    with pytest.raises(heelstrike.Refused, match='give `foreign="restituion"`'):
+        ramone.touchdowns(frame.assign(restituion=1.0), friction=0.8)
+    for foreign in ("restituion", ["restituion"]):
+        assert len(ramone.touchdowns(frame.assign(restituion=1.0), friction=0.8, foreign=foreign)) == len(found)
+    assert len(ramone.touchdowns(tmp_path / "walk.ndjson", friction=0.8)) == len(found)
+    broken = frame.assign(friction=0.8)
+    broken.loc[broken.index[1:], "friction"] = -1
+    with pytest.warns(UserWarning, match="touchdowns are refused: see `error`"):
+        assert all("error" in touchdown for touchdown in ramone.touchdowns(broken))
     with pytest.raises(heelstrike.Refused, match="time"):
         ramone.touchdowns({"q_left_hip": [0.0], "v_left_hip": [0.0]}, friction=0.8)
 

@@ -15,7 +15,6 @@ use super::robot::RobotOptions;
 use super::sink::{OutputSink, note_part};
 use super::{Answered, Completion, Failure, input, progress};
 use crate::batch::{self, Batch, Question, Recording, RefusedRecord, States, Summary};
-use crate::budget::TotalBudget;
 use crate::contact::Feet;
 use crate::draw::page::Gait;
 use crate::gait::{Dropped, Seen, Thresholds, unwrapped};
@@ -379,12 +378,7 @@ impl Args {
         note_all(
             question.columns.filter(|_| question.detail.brief).and_then(|_| notes::without_holds(counts.uncertain)),
         );
-        if let Some(least) = question.total.as_ref().and_then(TotalBudget::least) {
-            let least = least.as_secs_f64();
-            note(&format!(
-                "answers beyond `budget` took so long together that one had {least:.2e} s: see `budget_total`"
-            ));
-        }
+        note_all(notes::beyond_budget(question.total.as_ref()).map(|note| note + ": see `budget_total`"));
         if answered > 0 {
             note(&format!("{answered} states were answered by an earlier run, and the summary is of the others"));
         }

@@ -8,16 +8,15 @@ use crate::{Error, Reason};
 use clap::ValueEnum;
 use std::path::Path;
 
-/// The table that a file's ending means; endings are the names of formats.
-pub fn table(path: &Path) -> Option<Form> {
-    let named = Form::from_str(path.extension()?.to_str()?, true).ok();
-    named.filter(|form| *form != Form::Ndjson)
+/// How the records of a file are written, by its ending; endings are the names of formats.
+pub fn records(path: &Path) -> Option<Form> {
+    Form::from_str(path.extension()?.to_str()?, true).ok()
 }
 
 /// What is `chosen` by the option of this name, or by the ending of a file, which may be written; else lines of JSON.
 pub(super) fn form(file: (Option<&Path>, bool), chosen: Option<Form>, option: &str) -> Result<Form, Failure> {
     let (path, _) = file;
-    let form = chosen.or_else(|| path.and_then(table)).unwrap_or(Form::Ndjson);
+    let form = chosen.or_else(|| path.and_then(records)).unwrap_or(Form::Ndjson);
     if chosen.is_none() && form == Form::Ndjson {
         check_ending(file, "states and answers are .ndjson, .csv, .tsv, .parquet or .arrow", option)?;
     }

@@ -27,7 +27,7 @@ mod accuracy;
 mod reference;
 
 pub use clock::work_time;
-pub use format::table;
+pub use format::records;
 pub use meshes::Meshes;
 pub use options::{Choices, Seconds, from_zero, named, seconds, threads};
 pub use recording::{DIFFERENCES, ROWS, RecordingOptions};

@@ -79,9 +79,8 @@ const FORMATS: Choices<SweepFormat> = &[
 fn format(args: &Args) -> Result<SweepFormat, Failure> {
     let ending = args.output.as_deref().and_then(Path::extension).and_then(|ending| ending.to_str());
     let by_ending = match ending.map(str::to_ascii_lowercase).as_deref() {
-        Some("json" | "ndjson" | "jsonl") => Some(Some(Form::Ndjson)),
         None | Some("" | "txt") => Some(None),
-        Some(_) => args.output.as_deref().and_then(format::table).map(Some),
+        Some(_) => args.output.as_deref().and_then(format::records).map(Some),
     };
     let format = args.format.or(by_ending).ok_or_else(|| {
         let reason = Reason::Unsupported("a study is written as .json, .csv, .tsv, .parquet, .arrow or .txt".into());

@@ -453,14 +453,16 @@ pub(super) fn families(families: &[Family], at: usize) -> String {
     of_outcome.map(modes).collect::<Vec<_>>().join("; ")
 }
 
-/// Notes as one cell, with what is known of the state's uncertainty.
+/// Notes as one cell, with what is known of the state's uncertainty, and whether the budget left it open.
 pub(super) fn notes(impact: &Impact) -> String {
     let holds = impact.holds.as_ref().map(|holds| match holds {
         Robustness::Everywhere => "holds: true",
         Robustness::Not(_) => "holds: false",
         Robustness::Unknown => "holds: unknown",
     });
-    impact.notes.iter().map(|note| short(note)).chain(holds).collect::<Vec<_>>().join("; ")
+    let open = impact.analysis.as_ref().and_then(|analysis| analysis.open).filter(|open| open.beyond_budget);
+    let open = open.map(|_| "the budget of work ended (`budget`)");
+    impact.notes.iter().map(|note| short(note)).chain(holds).chain(open).collect::<Vec<_>>().join("; ")
 }
 
 /// A note without the speeds of a resting contact: in a walk every row has such a contact.

@@ -1,5 +1,6 @@
 //! What a reader should know of an input, in sentences: the tool writes them to standard error, Python warns with them.
 
+use crate::budget::TotalBudget;
 use crate::gait::Dropped;
 use crate::read::Study;
 use crate::read::table::Header;
@@ -12,6 +13,12 @@ pub fn own_friction(count: u64, what: &str) -> Option<String> {
         _ => format!("{count} do"),
     };
     Some(format!("`friction` is not used where a {what} has its own, as {some} here"))
+}
+
+/// How little time the answers beyond the budget have left for others, if it was less than each may take.
+pub fn beyond_budget(total: Option<&TotalBudget>) -> Option<String> {
+    let least = total?.least()?.as_secs_f64();
+    Some(format!("answers beyond `budget` took so long together that one had {least:.2e} s"))
 }
 
 /// Which coordinates have no column.
