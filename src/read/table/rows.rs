@@ -409,12 +409,12 @@ impl Row<'_> {
                 self.refuse(at, reason).did_you_mean(&text, ["infinite"])
             })?,
         };
-        let what = "friction".to_owned();
+        let what = || "friction".to_owned();
         match value {
             // Columns of numbers have no other way to say it.
             0.0..=f64::INFINITY => Ok(Some(value.into())),
-            _ if value.is_nan() => Err(self.refuse(at, Reason::NotFinite { what, value })),
-            _ => Err(self.refuse(at, Reason::OutOfRange { what, allowed: "0 or more", value })),
+            _ if value.is_nan() => Err(self.refuse(at, Reason::NotFinite { what: what(), value })),
+            _ => Err(self.refuse(at, Reason::OutOfRange { what: what(), allowed: "0 or more", value })),
         }
     }
 
