@@ -49,6 +49,9 @@ pub const PLANES: Choices<ChosenPlane> = &[
     ("xz", "x forward, z up", Some(Plane::XZ)),
     ("yz", "y forward, z up", Some(Plane::YZ)),
     ("xy", "x forward, y up", Some(Plane::XY)),
+    ("zy", "z forward, y up", Some(Plane::ZY)),
+    ("zx", "z forward, x up", Some(Plane::ZX)),
+    ("yx", "y forward, x up", Some(Plane::YX)),
 ];
 
 /// What a robot's root link may be.

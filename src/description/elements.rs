@@ -189,7 +189,7 @@ pub(super) fn misspelt(robot: Node<'_, '_>) -> Vec<String> {
         }
         if tag == "limit" && limits(element).is_none_or(|[lower, upper]| lower > upper) && found.len() < MOST_MISSPELT {
             let [lower, upper] = ["lower", "upper"].map(|end| element.attribute(end).unwrap_or("0"));
-            found.push(format!("<limit> on line {} (from {lower} to {upper}?)", line(element)));
+            found.push(format!("<limit> on line {} (no limit from {lower} to {upper})", line(element)));
         }
     }
     found

@@ -10,7 +10,7 @@ use super::{Body, ParentJoint, Robot};
 use crate::description::{
     Collision, Description, Geometry, Inertial, JointKind, Matrix, Mesh, Mimic, Pose, UrdfJoint, UrdfLink, apply, turn,
 };
-use crate::error::rounded;
+use crate::error::{rounded, shortest_within};
 use std::f64::consts::TAU;
 
 /// An axis up to this far off the normal \[rad\] may have been meant to be parallel to it.
@@ -27,8 +27,10 @@ const WIDEST: f64 = 2.0;
 const SLIGHT: f64 = 1e-3;
 /// A moment of less than this part of the link's largest is what rotations rounded off.
 const ROUNDED: f64 = 1e-9;
-/// A link with a smaller radius of gyration \[m\] is a point.
-const POINT: f64 = 1e-4;
+/// No material is denser \[kg/m^3\].
+const HEAVIEST: f64 = 23_000.0;
+/// The geometry of a mesh is not smaller than this \[m\].
+const SMALLEST: f64 = 1e-3;
 /// Limits that exclude zero by no more than this are taken to hold it \[rad or m\].
 const AT_ZERO: f64 = 0.02;
 /// So many hinges are tried that could bring an axis into line.
@@ -155,8 +157,8 @@ pub(super) fn about_planar(description: &Description, pose: &ReferencePose, plan
     ))
 }
 
-/// The caution about lengths that no legged robot has, as millimeters taken for meters.
-pub(super) fn about_lengths(description: &Description) -> Option<String> {
+/// The cautions about lengths that no legged robot has, as millimeters taken for meters or meters for millimeters.
+pub(super) fn about_lengths(description: &Description) -> Vec<String> {
     const SHAPE: &str = "a shape of";
     let span = |points: &[[f64; 3]], at: usize| {
         let along = points.iter().map(|point| point[at]);
@@ -181,14 +183,25 @@ pub(super) fn about_lengths(description: &Description) -> Option<String> {
         inertial.chain(shapes)
     });
     let joints = description.joints.iter().map(|joint| ("the origin of", &joint.name, reach(&joint.origin)));
-    let (what, name, length) = joints.chain(of_links).max_by(|a, b| a.2.total_cmp(&b.2))?;
-    (length > LONGEST).then(|| {
+    let longest = joints.chain(of_links).max_by(|a, b| a.2.total_cmp(&b.2)).filter(|(.., length)| *length > LONGEST);
+    let large = longest.map(|(what, name, length)| {
+        let length = rounded(length);
         let length = if what == SHAPE { format!("spans {length} m") } else { format!("is {length} m away") };
         format!(
             "{what} {name} {length}: lengths are in meters; scale=\"0.001 0.001 0.001\" is for meshes in \
              millimeters"
         )
-    })
+    });
+    let meshes = description.links.iter().flat_map(|link| {
+        let meshes = link.collisions.iter().filter(|own| matches!(own.geometry, Geometry::Mesh { .. }));
+        meshes.map(|own| (&link.name, extent(&own.geometry))).filter(|&(_, extent)| extent > 0.0)
+    });
+    let smallest = meshes.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|&(_, extent)| extent < SMALLEST);
+    let small = smallest.map(|(name, extent)| {
+        let extent = rounded(extent);
+        format!("a mesh of {name} spans {extent} m: lengths are in meters; a mesh in meters needs no scale")
+    });
+    large.into_iter().chain(small).collect()
 }
 
 /// The caution about a mass \[kg\] that no robot of this size \[m\] has, as grams taken for kilograms.
@@ -286,7 +299,7 @@ pub(super) fn about_inertias<'l>(
         ("with an inertia that needs a part far beyond the robot's size", "inertia is in kg m^2, mass in kg"),
         ("with an inertia that no body has, one moment being more than the other two together", "correct it"),
         ("with a single moment of inertia, which is not about the plane's normal", "only that about the normal counts"),
-        ("with an inertia of less than 0.1 mm around, and so a point mass", "inertia is in kg m^2, mass in kg"),
+        ("with more mass than the densest metal has in a ball of this inertia", "inertia is in kg m^2, mass in kg"),
     ];
     let mut found = kinds.map(|_| Vec::new());
     for (link, moment) in links {
@@ -301,7 +314,7 @@ pub(super) fn about_inertias<'l>(
             Some(_) if largest > size * size * (WIDEST * WIDEST * mass).max(SLIGHT * whole) => 2,
             Some(inertia) if !is_planar && !is_physical(inertia) => 3,
             Some(_) if is_planar && moment < ROUNDED * largest => 4,
-            Some(_) if largest > 0.0 && largest < POINT * POINT * mass && *mass > SLIGHT * whole => 5,
+            Some(_) if largest > 0.0 && largest < of_ball(*mass) && *mass > SLIGHT * whole => 5,
             _ => continue,
         };
         found[kind].push(link.name.as_str());
@@ -310,7 +323,14 @@ pub(super) fn about_inertias<'l>(
     found.filter_map(|(links, (what, remedy))| Some(format!("{what}: {}; {remedy}", names(links)?))).collect()
 }
 
-/// The caution about bodies that move without mass, although they reach from joint to joint or touch the ground.
+/// The moment \[kg m^2\] of the smallest ball of this mass \[kg\]: no body's largest moment is less.
+fn of_ball(mass: f64) -> f64 {
+    let radius = libm::cbrt(mass / (2.0 / 3.0 * TAU * HEAVIEST));
+    0.4 * mass * radius * radius
+}
+
+/// The caution about bodies that move without mass, although they reach from joint to joint or touch the ground, or carry
+/// nothing that weighs.
 pub(super) fn about_massless(robot: &Robot) -> Option<String> {
     let is_of = |index: usize| move |body: usize| robot.rigid_body(body) == index;
     let has_length = |index: usize| {
@@ -319,14 +339,24 @@ pub(super) fn about_massless(robot: &Robot) -> Option<String> {
         joints.any(|(parent, origin, motion)| motion.is_some() && is_of(index)(parent) && origin.length() > 0.0)
             || robot.links.iter().any(|link| is_of(index)(link.body) && !link.shapes.is_empty())
     };
+    let weighs_nothing = |body: &Body| body.mass == 0.0 && body.moment == 0.0;
+    // Each together with all that it carries.
+    let mut weighs: Vec<bool> = robot.bodies.iter().map(|body| !weighs_nothing(body)).collect();
+    for (index, body) in robot.bodies.iter().enumerate().rev() {
+        if let (true, Some(mover)) = (weighs[index], body.joint) {
+            weighs[robot.hinge(mover).0] = true;
+        }
+    }
     let is_massless = |(index, body): &(usize, &Body)| {
         let moves = matches!(body.joint, Some(ParentJoint::Joint(_) | ParentJoint::Mimic(_)));
-        let weighs_nothing = |body: &Body| body.mass == 0.0 && body.moment == 0.0;
         let rigid = || robot.bodies.iter().enumerate().filter(|(part, _)| is_of(*index)(*part));
-        moves && weighs_nothing(body) && rigid().all(|(_, part)| weighs_nothing(part)) && has_length(*index)
+        let is_massless = moves && weighs_nothing(body) && rigid().all(|(_, part)| weighs_nothing(part));
+        is_massless && (!weighs[*index] || has_length(*index))
     };
     let massless = names(robot.bodies.iter().enumerate().filter(is_massless).map(|(_, body)| &body.name))?;
-    Some(format!("without mass, although a joint of its own moves it: {massless}; give it an <inertial>"))
+    Some(format!(
+        "without mass, although a joint of its own moves it: {massless}; give it an <inertial>, or name the joint in `held`"
+    ))
 }
 
 /// The cautions about collision meshes that could not be read, and shapes that URDF does not have.
@@ -432,9 +462,38 @@ fn remedy(seen: &Seen, joint: usize, stays: &[bool]) -> Remedy {
         let joint = &description.joints[*at];
         in_line(&pose.rotations[joint.parent]) && !in_line(&pose.rotations[joint.child])
     };
-    let (part, of) =
-        std::iter::once(joint).chain(seen.before(joint)).find(tilts).map_or(("axis", joint), |own| ("rpy", own));
-    (part, of, format!("straighten the {part} of {}", description.joints[of].name))
+    // Where what is beyond it is in line again, the axis alone is off.
+    let is_undone = |tilted: &usize| {
+        let beyond = description.outward(description.joints[*tilted].child);
+        beyond.into_iter().any(|other| stays[other] && pose.frozen[other].is_none() && is_in_line(seen, other))
+    };
+    let tilted = std::iter::once(joint).chain(seen.before(joint)).find(tilts);
+    let own = &description.joints[joint];
+    match tilted {
+        Some(tilted) if is_undone(&tilted) && own.kind != JointKind::Prismatic => {
+            let [_, normal, _] = plane.axes();
+            let sign = f64::copysign(1.0, dot(axis, normal));
+            let rotation = pose.rotations[own.child];
+            let along =
+                [0, 1, 2].map(|at| shortest_within(sign * dot(rotation.map(|row| row[at]), normal), 5e-7) + 0.0);
+            (
+                "axis",
+                joint,
+                format!("give {} the axis \"{}\"", own.name, along.map(|entry| entry.to_string()).join(" ")),
+            )
+        }
+        Some(tilted) => ("rpy", tilted, format!("straighten the rpy of {}", description.joints[tilted].name)),
+        None => ("axis", joint, format!("straighten the axis of {}", own.name)),
+    }
+}
+
+/// Whether a joint that is kept needs no remedy.
+fn is_in_line(seen: &Seen, joint: usize) -> bool {
+    seen.description.joints[joint].kind.has_axis() && seen.off(joint, seen.pose.axes[joint]) <= seen.pose.tolerance
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// Whether a turn of a hinge by this angle leaves whatever `stays` beyond it in line, or brings it there; what is off by
@@ -453,7 +512,6 @@ fn serves_all(seen: &Seen, (hinge, angle): (usize, f64), stays: &[bool]) -> bool
 /// one.
 fn angle_into_line(axis: [f64; 3], hinge: [f64; 3], plane: Plane, tolerance: f64) -> Option<f64> {
     let [_, normal, _] = plane.axes();
-    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     let cross =
         |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3]);
     let aim = if dot(axis, normal) < 0.0 { normal.map(|entry| -entry) } else { normal };

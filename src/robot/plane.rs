@@ -24,19 +24,25 @@ pub enum Plane {
     YZ,
     /// x forward, y up, pitch about -z.
     XY,
+    /// z forward, y up, pitch about +x.
+    ZY,
+    /// z forward, x up, pitch about -y.
+    ZX,
+    /// y forward, x up, pitch about +z.
+    YX,
 }
 
 impl Plane {
-    pub const ALL: [Self; 3] = [Self::XZ, Self::YZ, Self::XY];
+    pub const ALL: [Self; 6] = [Self::XZ, Self::YZ, Self::XY, Self::ZY, Self::ZX, Self::YX];
 
-    /// Its name, forward before up: `xz`, `yz` or `xy`.
+    /// Its name, forward before up: `xz`, `yz` and so on.
     pub fn name(self) -> &'static str {
-        ["xz", "yz", "xy"][self as usize]
+        ["xz", "yz", "xy", "zy", "zx", "yx"][self as usize]
     }
 
-    /// Its normal among the root link's axes: `+y`, `-x` or `-z`.
+    /// Its normal among the root link's axes: `+y`, `-x` and so on.
     pub fn normal(self) -> &'static str {
-        ["+y", "-x", "-z"][self as usize]
+        ["+y", "-x", "-z", "+x", "-y", "+z"][self as usize]
     }
 
     /// Forward, normal and up as rows: takes vectors of the root link into the plane's axes.
@@ -45,6 +51,9 @@ impl Plane {
             Self::XZ => [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
             Self::YZ => [[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]],
             Self::XY => [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]],
+            Self::ZY => [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+            Self::ZX => [[0.0, 0.0, 1.0], [0.0, -1.0, 0.0], [1.0, 0.0, 0.0]],
+            Self::YX => [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]],
         }
     }
 

@@ -74,6 +74,21 @@ fn a_mesh_of_a_box_strikes_as_the_box_does() {
 }
 
 #[test]
+fn a_mesh_in_meters_that_is_scaled_as_in_millimeters_is_noted() {
+    let folder = folder();
+    write(&folder.join("sole.obj"), sole());
+    let urdf = folder.join("r.urdf");
+    let scaled = |scale: &str| {
+        write(&urdf, robot(&format!("<geometry><mesh filename=\"sole.obj\" scale=\"{scale}\"/></geometry>")));
+        let inspection = inspect(&mut inspecting(), &urdf);
+        list(&inspection["cautions"]).iter().find(|own| own.to_string().contains("a mesh of")).cloned()
+    };
+    let words = "a mesh of foot spans 2e-4 m: lengths are in meters; a mesh in meters needs no scale";
+    assert_eq!(scaled("0.001 0.001 0.001"), Some(words.into()));
+    assert_eq!(scaled("1 1 1"), None);
+}
+
+#[test]
 fn packages_are_found_by_option_variable_and_folder() {
     let folder = folder();
     let urdf = folder.join("robots/deep/r.urdf");

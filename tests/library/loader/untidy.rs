@@ -103,7 +103,11 @@ fn doubtful_inertias_and_angles_are_noted() {
     for (from, to, words) in [
         (inertia, "", "with a mass but no <inertia>, and so a point mass: a; give its moments"),
         (mass, "mass value=\"0.001\"", "with an inertia that needs a part far beyond the robot's size: a; "),
-        (inertia, &inertia.replace("0.05", "1e-9"), "with an inertia of less than 0.1 mm around, and"),
+        (
+            inertia,
+            &inertia.replace("0.05", "1e-9"),
+            "with more mass than the densest metal has in a ball of this inertia: a; ",
+        ),
         ("izz=\"0.05\"", "izz=\"0.2\"", "with an inertia that no body has, one moment being more than"),
         (drawn, "<origin rpy=\"0 90 0\"/><geometry>", "the rpy of a, \"0 90 0\", is more than a turn: angles are"),
     ] {
@@ -130,7 +134,9 @@ fn doubtful_inertias_and_angles_are_noted() {
     assert_eq!(limited([-31.4, 31.4]), [""; 0]);
     let words = "with an inertia but no mass: b; give the mass in kg, or leave out the <inertia>";
     assert_eq!(only_caution(&massless(1.0)), words);
-    assert_eq!(massless(0.0).reading.cautions, [""; 0]);
+    let words =
+        "without mass, although a joint of its own moves it: b; give it an <inertial>, or name the joint in `held`";
+    assert_eq!(only_caution(&massless(0.0)), words);
     // A whole turn, the moment of a planar model, a point mass that is meant, nothing at all.
     for (from, to) in [
         (drawn, "<origin xyz=\"0 0 -0.5\" rpy=\"0 6.2832 0\"/><geometry>"),
@@ -186,15 +192,15 @@ fn a_sole_turned_by_3_14_is_flat() {
 fn a_mass_in_grams_is_noted() {
     let of_mass = |mass: f64| {
         let shape = urdf::collision([0.0; 2], "sphere radius=\"0.1\"");
-        load(&urdf::robot(&[link("a", mass, [0.0; 2], 1e-3 * mass, &shape)]))
+        load(&urdf::robot(&[link("a", mass, [0.0; 2], 4e-3 * mass, &shape)]))
     };
     assert!(of_mass(32.0).reading.cautions.is_empty());
     let words = "the robot weighs 2000 kg, more than a ball of steel around all of it (radius 0.1 m): masses are in kg";
-    assert_eq!(only_caution(&of_mass(2000.0)), words);
+    assert_eq!(of_mass(2000.0).reading.cautions.last().unwrap(), words);
     // What slides may be as long as its joint reaches, which the size at zero does not show.
     let [body, foot] = ["body", "foot"].map(|name| {
         let shape = urdf::collision([0.0; 2], "sphere radius=\"0.03\"");
-        link(name, 5.0, [0.0; 2], 1e-3, if name == "foot" { &shape } else { "" })
+        link(name, 5.0, [0.0; 2], 4e-3, if name == "foot" { &shape } else { "" })
     });
     let slide = "<joint name=\"leg\" type=\"prismatic\"><parent link=\"body\"/><child link=\"foot\"/><axis xyz=\"0 0 1\"/>\
                  <limit lower=\"-1\" upper=\"0\"/></joint>";
@@ -223,7 +229,8 @@ fn moments_about_another_axis_and_no_mass_are_noted() {
     let words = "with a single moment of inertia, which is not about the plane's normal: thigh; only that about the normal counts";
     assert_eq!(cautions(&aside, -0.5), [words]);
     assert_eq!(cautions(&massive("<inertia ixx=\"0\" iyy=\"0.01\" izz=\"0\"/>"), -0.5), [""; 0]);
-    let words = "without mass, although a joint of its own moves it: thigh; give it an <inertial>";
+    let words =
+        "without mass, although a joint of its own moves it: thigh; give it an <inertial>, or name the joint in `held`";
     assert_eq!(cautions("", -0.5), [words]);
     // A joint of two axes has a link without length between them.
     assert_eq!(cautions("", 0.0), [""; 0]);
