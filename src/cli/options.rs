@@ -6,7 +6,7 @@ use super::input::InputFile;
 use crate::budget::{SharedBudget, TotalBudget};
 use crate::law::Friction;
 use crate::pipeline;
-use crate::read::loops_from_json;
+use crate::read::{PLACED_BY_JOINTS, loops_from_json};
 use crate::reductions::Reductions;
 use crate::robot::Base;
 use crate::state::{Defaults, NamedContact, NamedLoop};
@@ -90,7 +90,7 @@ impl ContactOptions {
     pub fn place_lowest(&self, robot: &Robot) -> Result<bool, Failure> {
         if self.place && robot.base == Base::Fixed {
             let bolted = Reason::Inconsistent("the robot is bolted to the world, it cannot be placed".into());
-            let error = Error::new(bolted).at("--place").hint("leave it out, or give `base: floating`");
+            let error = Error::new(bolted).at("--place").hint(PLACED_BY_JOINTS);
             return Err(Failure::Usage(error));
         }
         Ok(self.place)

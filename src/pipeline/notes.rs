@@ -128,14 +128,15 @@ impl Pipeline<'_> {
         // A little more than the height, in two digits, next to four of the height.
         let enough = 1.1 * height;
         let height = rounded(height);
+        let by_base = if self.assembly.plan.floating { "`place: lowest`" } else { "its joints" };
         notes.push(match (contacts.is_empty(), is_near) {
             (true, true) => format!(
                 "nothing touches the ground: the lowest foot, {name}, is {height} m above it and {moving}; to let \
-                 it touch, put it there by `place: lowest`, or by the option `contact_tolerance: {enough:.1e}`"
+                 it touch, put it there by {by_base}, or by the option `contact_tolerance: {enough:.1e}`"
             ),
             (true, false) => format!(
-                "nothing touches the ground: the lowest foot, {name}, is {height} m above it and {moving}; \
-                 `place: lowest` puts it there"
+                "nothing touches the ground: the lowest foot, {name}, is {height} m above it and {moving}; put it \
+                 there by {by_base}"
             ),
             (false, _) => {
                 let touches = contacts.iter().any(|contact| contact.link == link);

@@ -143,10 +143,16 @@ fn stance(field: Node, robot: &Robot) -> Result<usize> {
 fn lowest(field: Node, robot: &Robot) -> Result<bool> {
     match field.text()? {
         "given" => Ok(false),
-        "lowest" => refuse_bolted(field, robot, "it cannot be placed").map(|()| true),
+        "lowest" => {
+            let refused = refuse_bolted(field, robot, "it cannot be placed");
+            refused.map_err(|error| error.hint(PLACED_BY_JOINTS)).map(|()| true)
+        }
         other => Err(field.expected("\"lowest\" or \"given\"").did_you_mean(other, ["lowest", "given"])),
     }
 }
+
+/// The remedy for a bolted robot that is to be placed.
+pub(crate) const PLACED_BY_JOINTS: &str = "put its foot on the ground by its joints, or give `base: floating`";
 
 fn refuse_bolted(field: Node, robot: &Robot, what: &str) -> Result<()> {
     if robot.base == Base::Floating {

@@ -178,7 +178,11 @@ fn place_lowest_puts_states_on_the_ground() {
         assert_eq!((verdict(&["--place", "lowest"]), verdict(&[])), (json!("unique"), json!("no_contact")));
     }
     let bolted = ["impact", WALKER, "examples/minimalistic.json", "--place", "lowest", "--base", "fixed"];
-    assert!(heelstrike(&bolted).refusal(2).contains("cannot be placed"));
+    let refusal = heelstrike(&bolted).refusal(2);
+    assert!(refusal.contains("cannot be placed") && refusal.contains("on the ground by its joints"), "{refusal}");
+    let above = r#"{"friction": 1, "ground": {"profile": [[-9, -5], [9, -5]]}}"#;
+    let hanging = heelstrike_reads(&["impact", WALKER, "-", "--base", "fixed"], above).well().stdout;
+    assert!(hanging.contains("put it there by its joints") && !hanging.contains("--place"), "{hanging}");
     let both = ["batch", RAMONE, "-", "--touchdowns", "--place", "lowest"];
     assert!(heelstrike(&both).refusal(2).contains("cannot be used with"));
 }
