@@ -209,7 +209,16 @@ impl Description {
     pub fn from_urdf(text: &str) -> Result<Self> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let mut description = draft::read(text)?;
-        description.root = tree::connect(&mut description.links, &description.joints)?;
+        let root = tree::connect(&mut description.links, &description.joints);
+        // As a <Joint> that is none.
+        let misspelt = |error: Error| match (error.remedy(), description.misspelt.first()) {
+            (Some(remedy), Some(name)) => {
+                let hint = format!("{remedy}; not read, and perhaps misspelt: {name}");
+                error.hint(hint)
+            }
+            _ => error,
+        };
+        description.root = root.map_err(misspelt)?;
         Ok(description)
     }
 

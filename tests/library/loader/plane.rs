@@ -404,6 +404,10 @@ fn misspelt_names_are_named_with_their_lines() {
         );
     }
     assert_eq!(limits("effort=\"1\" velocity=\"x\""), None);
+    let unread = text.replace("<joint ", "<Joint ").replace("</joint>", "</Joint>");
+    let refused = Robot::from_urdf(&unread).expect_err("two roots");
+    let remedy = "make one of them the child of a joint; not read, and perhaps misspelt: <Joint> in <robot> on line 4 (<joint>?)";
+    assert_eq!(refused.remedy(), Some(remedy));
     // As other formats call them.
     let named = limits("min=\"-1\" max=\"1\"").unwrap();
     assert!(named.contains("min of <limit> on line 4 (lower?), max of <limit> on line 4 (upper?)"), "{named}");
