@@ -396,6 +396,36 @@ mod tests {
             let mut sink = Failing { written: Vec::new(), last: 3, until, answered: &answered };
             let error = run(failing(), threads, || answer, &mut sink).unwrap_err();
             assert!(matches!(error.reason(), Reason::Io(_)), "{error}");
+            // Or it fails afterwards.
+            let (asked, failed) = (AtomicUsize::new(0), AtomicUsize::new(0));
+            let answer = |()| wait_until(&asked, threads.min(2));
+            let error = run(Late(&asked, &failed), threads, || answer, &mut Closed(&failed)).unwrap_err();
+            assert!(matches!(error.reason(), Reason::Io(_)), "{error}");
+        }
+    }
+
+    /// Counts how often it is asked; the second time it fails once the sink has.
+    struct Late<'a>(&'a AtomicUsize, &'a AtomicUsize);
+
+    impl TaskSource for Late<'_> {
+        type Task = ();
+
+        fn next(&mut self) -> Result<Option<()>> {
+            if self.0.fetch_add(1, Relaxed) == 0 {
+                return Ok(Some(()));
+            }
+            wait_until(self.1, 1);
+            Err(Reason::BeyondBudget.into())
+        }
+    }
+
+    /// Fails at once.
+    struct Closed<'a>(&'a AtomicUsize);
+
+    impl Sink<()> for Closed<'_> {
+        fn block(&mut self, _: ()) -> Result<()> {
+            self.0.fetch_add(1, Relaxed);
+            Err(Error::new(Reason::Io("closed".into())))
         }
     }
 
