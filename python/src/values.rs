@@ -40,6 +40,7 @@ pub fn choice<T: Copy>(what: &str, choices: Choices<T>, name: Option<&str>) -> P
 pub fn as_keywords(text: &str) -> String {
     let is_word = |value: &str| value.bytes().all(|letter| letter.is_ascii_alphanumeric() || letter == b'_');
     let pieces = text.split('`').enumerate().map(|(at, piece)| match piece.split_once(": ") {
+        Some(("feet", _)) if at % 2 == 1 => "feet=[{\"link\": ..., \"offset\": [x, y, z]}]".to_owned(),
         Some((name, value)) if at % 2 == 1 && value.parse::<f64>().is_ok() => format!("{name}={value}"),
         Some((name, value)) if at % 2 == 1 && is_word(value) => format!("{name}=\"{value}\""),
         _ => piece.to_owned(),

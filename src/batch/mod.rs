@@ -271,6 +271,7 @@ impl Answerer<'_> {
             Keyframe::of_impact(robot, &self.question.options.feet, state, impact)
         });
         block.summary.early += u64::from(around.landing.is_some_and(|landing| landing.is_early));
+        block.summary.slowed += u64::from(around.landing.is_some_and(|landing| landing.is_slowed));
         block.summary.deep += u64::from(around.landing.is_some_and(|landing| landing.is_deep));
         let place = || StateRef { id: state.id.clone().map(short_id), line: around.line };
         // They are noted first.

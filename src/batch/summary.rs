@@ -60,6 +60,9 @@ pub struct Summary {
     /// Touchdowns that were taken above the ground, of feet whose heights have no noise.
     #[serde(skip_serializing_if = "is_zero")]
     pub early: u64,
+    /// Touchdowns whose feet have fallen more than twice as fast shortly before.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub slowed: u64,
     /// Touchdowns of feet that are far under the ground in the recording.
     #[serde(skip_serializing_if = "is_zero")]
     pub deep: u64,
@@ -242,13 +245,16 @@ impl Summary {
         self.own_friction += following.own_friction;
         self.odd_states.add(following.odd_states);
         self.early += following.early;
+        self.slowed += following.slowed;
         self.deep += following.deep;
         self.no_strike += following.no_strike;
     }
 
     /// What a reader should know of the touchdowns.
     pub fn of_touchdowns(&self) -> impl Iterator<Item = String> {
-        [notes::early(self.early), notes::deep(self.deep), notes::no_strike(self.no_strike)].into_iter().flatten()
+        let Self { early, slowed, deep, no_strike, .. } = *self;
+        let notes = [notes::early(early), notes::slowed(slowed), notes::deep(deep), notes::no_strike(no_strike)];
+        notes.into_iter().flatten()
     }
 
     fn near(&mut self, state: impl Fn() -> StateRef, outcomes: &[Outcome]) {

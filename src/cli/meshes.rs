@@ -76,7 +76,7 @@ impl Meshes {
         match package_and_path(name) {
             Some(("", _)) => "no such file, and its name has no package".to_owned(),
             Some((package, _)) if self.packages(package).next().is_none() => {
-                format!("package {package} is not here: name the folder that holds it by --package-path")
+                format!("package {package} is not here: name the folder that holds it by `package_path`")
             }
             Some((package, _)) => format!("no such file in package {package}"),
             None if name.contains("://") && !name.starts_with("file://") => "no file of this machine".to_owned(),

@@ -11,6 +11,7 @@ use super::window::{FORETOLD, Frame, SMOOTH, Window};
 use super::{At, Heights, Landing, Sample, Sampled, Thresholds, Touching};
 use crate::contact::Feet;
 use crate::pipeline::CONTACT_TOLERANCE;
+use crate::planar::Vector;
 use crate::robot::Robot;
 use crate::state::NamedContact;
 use crate::{Error, Reason, Result};
@@ -22,6 +23,8 @@ const EXACT: f64 = 1e-3;
 /// Noise hides an impact for no more rows, and is no more times its standard deviation.
 const HIDDEN: usize = 8;
 const NOISE: f64 = 5.0;
+/// On hard ground feet do not slow down by half in such a time \[s\].
+const SHORTLY: f64 = 0.01;
 /// Feet do not sink by more times the usual [`Thresholds::ground`].
 const DEEP: f64 = 5.0;
 
@@ -185,9 +188,14 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
                 let found = if last > self.level && height < -self.level {
                     Some((row, Some(0.0)))
                 } else if last > self.level && falling && height >= last {
-                    // It has bounced since the row before or the one before that.
+                    // It has bounced since the row before or the one before that: at most twice as fast, and so no
+                    // higher than twice as far as it would have gone into the ground.
                     let mut rows = [before, Some(row)].into_iter().flatten();
-                    rows.find(|&row| self.onward_height(point, row) <= 0.0).map(|row| (row, Some(0.0)))
+                    let bounces = |row: &usize| {
+                        let onward = self.onward_height(point, *row);
+                        onward <= 0.0 && self.window.height(point, row + 1) <= -2.0 * onward + self.level
+                    };
+                    rows.find(bounces).map(|row| (row, Some(0.0)))
                 } else if last.abs() <= self.level && falling && self.window.frames[row].before_impact {
                     Some((row, None))
                 } else if last.abs() <= self.level && falling {
@@ -202,11 +210,37 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
                 let strike = |(row, height)| Strike { point, row, height, smooth: row, onward: Way::Through(SMOOTH) };
                 strikes.extend(found.map(strike));
             }
+            if falling && last < -self.level && height >= last {
+                self.see_end(point, row);
+            }
             let falling = height < last;
             let from = if falling && last > self.level && height >= -self.level { from } else { height };
             self.descents[point] = Descent { from, falling };
         }
         self.strike(strikes);
+    }
+
+    /// Notes where the lowest foot has ended a descent that is no touchdown, or goes on in the ground.
+    fn see_end(&self, point: usize, row: usize) {
+        let height = |place: &Vector<f64>| place.z;
+        let lowest = self.window.frames[row].places.iter().map(height).fold(f64::INFINITY, f64::min);
+        let end = self.window.height(point, row);
+        if let Some(Ok(mut seen)) = self.seen.filter(|_| end <= lowest + self.thresholds.ground).map(Mutex::lock) {
+            seen.add_end(end);
+        }
+    }
+
+    /// Whether a point has fallen more than twice as fast shortly before a sample, and is slowed down already.
+    fn is_slowed(&mut self, point: usize, sample: &Sample<S>) -> bool {
+        let before = |time: f64| self.window.frames.iter().rposition(|frame| frame.sample.time <= time);
+        let Some(to) = before(sample.time - SHORTLY) else { return false };
+        let Some(from) = before(self.window.frames[to].sample.time - SHORTLY) else { return false };
+        let [passed, fallen] = [
+            self.window.frames[to].sample.time - self.window.frames[from].sample.time,
+            self.window.height(point, from) - self.window.height(point, to),
+        ];
+        let falls = -self.points.rate(point, &sample.state);
+        fallen > passed * f64::max(2.0 * falls, falls + 4.0 * self.thresholds.slow)
     }
 
     /// How high a point would be at the row after `row` \[m\].
@@ -240,11 +274,15 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
                 continue;
             }
             if descent.falling {
-                if descent.from - end >= drop && end <= ground {
-                    ended.push((point, rows, end));
-                }
+                let ends = descent.from - end >= drop;
                 *descent = Descent { from: height, falling: false };
+                match end <= ground {
+                    true if ends => ended.push((point, rows, end)),
+                    false if ends => self.see_end(point, now),
+                    _ => {}
+                }
             }
+            let descent = &mut self.descents[point];
             descent.from = descent.from.max(height);
         }
         let stopped = |(point, rows, end)| self.window.stopped(point, rows, end, self.at, self.thresholds);
@@ -323,6 +361,7 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
             let noise = self.window.measured(first.point);
             let is_clean = noise.is_some_and(|noise| noise <= EXACT * self.thresholds.above);
             let is_early = heights == Heights::Recorded && first.is_soft() && is_clean;
+            let is_slowed = heights == Heights::Recorded && self.is_slowed(first.point, &sample);
             let row = self.window.frames[first.row].row;
             let is_deep = shift_z > self.deep;
             // Another row's heights are not those of the ground, and what is deep is noted by itself.
@@ -330,7 +369,7 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
             if let Some(Ok(mut seen)) = self.seen.filter(|_| is_level).map(Mutex::lock) {
                 seen.add_depth(shift_z);
             }
-            sample.landing = Some(Landing { row, striking, shift_z, at, touching, is_early, is_deep });
+            sample.landing = Some(Landing { row, striking, shift_z, at, touching, is_early, is_slowed, is_deep });
             let finite = sample.state.position.iter().chain(&sample.state.velocity).all(|entry| entry.is_finite());
             self.ready.push_back(if finite {
                 Ok(sample)

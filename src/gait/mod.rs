@@ -164,6 +164,9 @@ pub struct Landing {
     /// Whether the foot slows down to the ground and its height has no noise, as in a simulation: the state is then one
     /// before the impact.
     pub is_early: bool,
+    /// Whether the foot has fallen more than twice as fast shortly before, as on soft ground: the state may be one after
+    /// the impact.
+    pub is_slowed: bool,
     /// Whether it is far under z = 0, as in a recording of other axes or units.
     pub is_deep: bool,
 }

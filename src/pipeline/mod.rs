@@ -171,7 +171,7 @@ impl Impact {
 
 /// The refusal of a state with so many contacts.
 fn unlisted(contacts: usize) -> Error {
-    too_many_contacts(contacts).hint("name the contacts that matter by hand, or lower the contact tolerance")
+    too_many_contacts(contacts).hint("name only the contacts that matter (`contacts`), or lower the contact tolerance")
 }
 
 /// Something that this scene does not need; what the file does not is in [`Robot`].

@@ -97,7 +97,8 @@ pub(super) fn composites(bodies: usize, mut parts: Vec<(usize, LinkInertia)>) ->
 /// Mass, CoG and moment about the CoG of all `parts` as one; a single one with mass keeps its digits.
 fn composite(parts: &[(usize, LinkInertia)]) -> (f64, Vector<f64>, f64) {
     let parts = parts.iter().map(|(_, part)| part);
-    let mass = parts.clone().map(|part| part.mass).sum();
+    // The sum of nothing is -0.
+    let mass = 0.0 + parts.clone().map(|part| part.mass).sum::<f64>();
     let mut massive = parts.clone().filter(|part| part.mass > 0.0);
     let com = match (massive.next(), massive.next()) {
         (None, _) => Vector::zero(),
@@ -109,11 +110,11 @@ fn composite(parts: &[(usize, LinkInertia)]) -> (f64, Vector<f64>, f64) {
             Vector::new(mean(|com| com.x), mean(|com| com.z))
         }
     };
-    let moment = parts.map(|part| {
+    let moments = parts.map(|part| {
         let arm = part.com - com;
         if part.mass > 0.0 { part.moment + part.mass * arm.dot(arm) } else { part.moment }
     });
-    (mass, com, moment.sum())
+    (mass, com, 0.0 + moments.sum::<f64>())
 }
 
 #[cfg(test)]

@@ -53,6 +53,13 @@ pub fn early(count: u64) -> Option<String> {
     (count > 0).then(|| format!("{what}: {count}; if they are of a simulation, give `simulated`"))
 }
 
+/// How many touchdowns have feet that are slowed down already.
+pub fn slowed(count: u64) -> Option<String> {
+    let what = "touchdowns whose foot has fallen more than twice as fast shortly before";
+    let then = "if it sinks into soft ground, theirs is the state after the impact: give `simulated`, or `at: row`";
+    (count > 0).then(|| format!("{what}: {count}; {then}"))
+}
+
 /// How many touchdowns were taken far under the ground.
 pub fn deep(count: u64) -> Option<String> {
     let what = "touchdowns of feet far under z = 0, which were lifted to it";

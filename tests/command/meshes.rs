@@ -93,7 +93,7 @@ fn packages_are_found_by_option_variable_and_folder() {
     let folder = folder();
     let urdf = folder.join("robots/deep/r.urdf");
     write(&urdf, mesh("package://a_description/meshes/sole.obj"));
-    let missing = "package a_description is not here: name the folder that holds it by --package-path";
+    let missing = "package a_description is not here: name the folder that holds it by `package_path`";
     assert_eq!(foot(&mut inspecting(), &urdf), Err(missing.to_owned()));
 
     let gone = heelstrike(&["inspect", &urdf.to_string_lossy(), "--package-path", "no/such/folder"]);

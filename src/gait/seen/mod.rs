@@ -24,6 +24,8 @@ pub struct Seen {
     motion: Motion,
     /// How far below z = 0 each touchdown was found where heights are recorded, apart from deep ones \[m\].
     depths: Vec<f64>,
+    /// How high the lowest foot has ended descents that are none: too high, or in the ground of a simulation \[m\].
+    ends: Vec<f64>,
 }
 
 impl Seen {
@@ -54,6 +56,11 @@ impl Seen {
         self.depths.push(depth);
     }
 
+    /// Adds the height \[m\] at which the lowest foot has ended a descent that is no touchdown, or goes on in the ground.
+    pub(super) fn add_end(&mut self, height: f64) {
+        self.ends.push(height);
+    }
+
     /// What to say if there is no touchdown.
     pub fn nothing_found(&self, thresholds: Thresholds, heights: Heights) -> String {
         if self.order.stands_still() {
@@ -70,14 +77,27 @@ impl Seen {
             ),
         };
         let odd = self.oddity.as_ref().map_or(String::new(), |odd| format!("; {odd}"));
-        let step = self.order.long_step().map(rounded);
-        let long = step.map_or(String::new(), |step| format!("; rows are {step} s apart: is the time in seconds?"));
-        format!("no touchdown found: {reached}a foot must descend {drop:.4} m or more{must}{odd}{long}")
+        format!("no touchdown found: {reached}a foot must descend {drop:.4} m or more{must}{odd}")
     }
 
     /// What is odd about the recording.
     pub fn notes(&self, robot: &Robot, thresholds: Thresholds) -> impl Iterator<Item = String> {
-        self.order.notes().chain(self.motion.notes(robot)).chain(self.offset(thresholds))
+        self.order.notes().chain(self.motion.notes(robot)).chain(self.offset(thresholds)).chain(self.end(thresholds))
+    }
+
+    /// That most descents end too high above z = 0, or far below it in a simulation.
+    fn end(&self, Thresholds { ground, .. }: Thresholds) -> Option<String> {
+        let mut ends = self.ends.clone();
+        ends.sort_unstable_by(f64::total_cmp);
+        let middle =
+            *ends.get(ends.len() / 2).filter(|_| ends.len() >= ENOUGH && 2 * ends.len() > self.depths.len())?;
+        (middle > ground || middle < -0.5 * ground).then(|| {
+            let (count, level) = (ends.len(), rounded(middle));
+            format!(
+                "the lowest foot has ended {count} descents at z = {level} m, in the middle of all: the ground must be \
+                 level and at z = 0 (see `ground_height`)"
+            )
+        })
     }
 
     /// That touchdowns are not at z = 0, most on one side of it.

@@ -1,6 +1,6 @@
 //! Whether the rows of a recording follow each other in time.
 
-use crate::error::shortest_within;
+use crate::error::{rounded, shortest_within};
 use crate::gait::clip::ClockStep;
 
 /// Time that goes back by no more steps is that of rows out of order.
@@ -99,11 +99,6 @@ impl Order {
         self.rows > 1 && self.first_step.is_none()
     }
 
-    /// The first step of time \[s\], if no row of a gait lasts so long.
-    pub fn long_step(&self) -> Option<f64> {
-        self.first_step.filter(|step| *step > LONG)
-    }
-
     /// What is odd about them.
     pub fn notes(&self) -> impl Iterator<Item = String> {
         let few_gaps = self.gaps.count as f64 <= FEW_GAPS * self.rows as f64;
@@ -114,6 +109,8 @@ impl Order {
             (gaps, "rows seem to be missing", "a touchdown there may be missed or less accurate"),
             (halts, "more than two rows have the same time", "is it rounded? each row needs its own"),
         ];
-        odd.into_iter().filter_map(|(when, what, then)| Some(format!("{what} {}: {then}", when?)))
+        let odd = odd.into_iter().filter_map(|(when, what, then)| Some(format!("{what} {}: {then}", when?)));
+        let step = self.first_step.filter(|step| *step > LONG).map(rounded);
+        odd.chain(step.map(|step| format!("rows are {step} s apart: is the time in seconds?")))
     }
 }

@@ -93,7 +93,7 @@ fn in_general(because: RejectionReason) -> &'static str {
         RejectionReason::Violated { inequality, .. } => inequality.violation(),
         RejectionReason::NothingHolds { .. } => "a contact would stick without friction",
         RejectionReason::NoSolution => "the conditions contradict each other",
-        RejectionReason::RedundantTwin => "a redundant twin already has that velocity",
+        RejectionReason::RedundantTwin => "a redundant twin already has that motion",
         RejectionReason::OnBorder => "its velocity is that of other modes, on their border",
     }
 }

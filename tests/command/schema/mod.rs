@@ -211,6 +211,7 @@ fn every_example_is_valid() {
         ("examples", 7, schema::state()),
         ("examples/problems", 3, schema::problem()),
         ("examples/paper", 16, schema::study()),
+        ("examples/lecture", 1, schema::study()),
     ] {
         let entries = std::fs::read_dir(folder).expect("a folder");
         let mut paths: Vec<_> = entries.map(|entry| entry.expect("an entry").path()).collect();
