@@ -5,10 +5,11 @@ use crate::support::impact::robot;
 use crate::support::urdf::{self, Axis, collision, joint, link};
 use heelstrike::Robot;
 use heelstrike::gait::{
-    At, Difference, Heights, Landing, SMALL, Sample, Sampled, Thresholds, Touching, find, rates, unwrapped,
+    At, Difference, Heights, Landing, SMALL, Sample, Sampled, Seen, Thresholds, Touching, find, rates, unwrapped,
 };
 use heelstrike::read::table::Rates;
 use std::f64::consts::TAU;
+use std::sync::Mutex;
 
 /// A block and two feet, at x = 0 and x = 1, that slide along z on joints of their own; in a unit of length of which
 /// `scale` make a meter.
@@ -56,11 +57,15 @@ fn lifted(rows: &[[f64; 3]], at: At, touching: Touching) -> Vec<Sample<usize>> {
 }
 
 fn lifted_at(scale: f64, rows: &[[f64; 3]], at: At, touching: Touching) -> Vec<Sample<usize>> {
-    let robot = lift(scale);
+    touchdowns(Heights::Recorded, &lift(scale), &[], lifting(scale, rows), at, touching)
+}
+
+/// The samples of both feet.
+fn lifting(scale: f64, rows: &[[f64; 3]]) -> Vec<Sampled<usize>> {
     let mut table = "time,q_base_z,q_ja,q_jb\n".to_owned();
     // The sphere's lowest point is its radius below its link.
     table.extend(rows.iter().map(|[time, a, b]| format!("{time},{},{a},{b}\n", 0.1 * scale)));
-    touchdowns(Heights::Recorded, &robot, &[], differences(&table, &robot, Difference::Backward), at, touching)
+    differences(&table, &lift(scale), Difference::Backward)
 }
 
 #[track_caller]
@@ -358,4 +363,52 @@ fn numbers_beyond_all_measure_are_refused_and_end() {
         let error = computed[0].as_ref().map(|_| ()).unwrap_err();
         assert_eq!(error.1.to_string(), "time: the velocity to the next row is beyond all numbers");
     }
+}
+
+#[test]
+fn a_foot_in_soft_ground_is_slowed() {
+    // In rows of 1 ms, at 1 m/s down to 0 after 50 ms.
+    let is_slowed = |sinks: &dyn Fn(f64) -> f64| {
+        let height = |time: f64| if time < 0.05 { 0.05 - time } else { -sinks(time - 0.05) };
+        let rows: Vec<[f64; 3]> =
+            (0..90).map(|row| f64::from(row) * 1e-3).map(|time| [time, height(time), 0.0]).collect();
+        let found = lifted(&rows, At::Crossing, Touching::Strike);
+        assert_eq!(found.len(), 1);
+        landing(&found[0]).is_slowed
+    };
+    assert!(is_slowed(&|time| 6e-3 * (1.0 - (-time / 6e-3).exp())), "it sinks by 6 mm");
+    assert!(!is_slowed(&|_| 0.0), "it stops at once");
+    assert!(!is_slowed(&|time| (time - 5.0 * time * time).min(0.05).max(0.0)), "10 m/s^2 are those of a leg");
+}
+
+#[test]
+fn a_ground_that_is_not_at_zero_is_noted() {
+    // Both feet come down to a level, four times.
+    let notes = |heights: Heights, level: f64| {
+        let height = |row: usize| level + [0.06, 0.04, 0.02, 0.0, 0.0, 0.0, 0.03][row % 7];
+        let rows: Vec<[f64; 3]> = (0..28).map(|row| [row as f64 * 0.01, height(row), height(row)]).collect();
+        let (robot, seen) = (lift(1.0), Mutex::new(Seen::default()));
+        let found = find(lifting(1.0, &rows).into_iter(), &robot, &[], At::Crossing, Touching::Strike).unwrap();
+        found.meaning(heights).noting(&seen).for_each(std::mem::drop);
+        let seen = seen.into_inner().unwrap();
+        let note = seen.notes(&robot, Thresholds::of(&robot, &[])).find(|note| note.contains("lowest foot has ended"));
+        note.map(|note| note.split_once(" at z = ").unwrap().1.split_once(" m,").unwrap().0.to_owned())
+    };
+    let note = |level: f64| Some(level.to_string());
+    assert_eq!(notes(Heights::Recorded, 0.05), note(0.05));
+    assert_eq!(notes(Heights::Recorded, 0.01), None);
+    assert_eq!(notes(Heights::True, -0.015), note(-0.015));
+    assert_eq!(notes(Heights::True, -0.005), None, "soft ground");
+}
+
+#[test]
+fn a_foot_does_not_rebound_faster_than_twice_as_it_fell() {
+    // It falls by 4 mm from row to row, to this height, and is there in the next row.
+    let found = |last: f64, next: f64| {
+        let heights = (0..9).rev().map(|row| last + 4e-3 * f64::from(row)).chain([next, next]);
+        let rows: Vec<[f64; 3]> =
+            (0..).zip(heights).map(|(row, height)| [f64::from(row) * 0.02, height, 0.1]).collect();
+        touchdowns(Heights::True, &lift(1.0), &[], lifting(1.0, &rows), At::Crossing, Touching::Strike).len()
+    };
+    assert_eq!((found(2e-4, 5e-3), found(3.8e-3, 4e-3)), (1, 0));
 }
