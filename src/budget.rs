@@ -100,7 +100,7 @@ impl Work {
         let more = |spent: u64| Some(spent.saturating_add(used));
         let shared = all.as_ref().map(|all| {
             let before = all.fetch_update(Ordering::Relaxed, Ordering::Relaxed, more);
-            before.unwrap_or_else(|spent| spent).saturating_add(used)
+            before.unwrap_or(u64::MAX).saturating_add(used)
         });
         if is_shared {
             SHARED.set(all);

@@ -123,7 +123,7 @@ class Robot:
         drop: float | None = None,
         ground_height: float | None = None,
         simulated: bool = False,
-        foreign: str | list[str] | None = None,
+        foreign: str | Sequence[str] | None = None,
     ) -> list[dict[str, Any]]: ...
     @staticmethod
     def _again(text: str, path: str | PathLike[str], options: dict[str, Any] | None) -> Robot: ...

@@ -362,7 +362,8 @@ impl Robot {
         };
         let one =
             |name: &Bound<'py, PyAny>| name.extract().map_or_else(|_| name.extract(), |name: String| Ok(vec![name]));
-        let foreign: Vec<String> = foreign.map_or(Ok(Vec::new()), one)?;
+        let foreign: PyResult<Vec<String>> = foreign.map_or(Ok(Vec::new()), one);
+        let foreign = foreign.map_err(|_| PyTypeError::new_err("foreign is a name of a column, or a list of them"))?;
         study::touchdowns(slf, table, friction, &recording, &foreign)
     }
 

@@ -20,24 +20,6 @@ use self_cell::self_cell;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// What rows may have in common.
-const ARGUMENTS: [&str; 14] = [
-    "friction",
-    "restitution",
-    "contacts",
-    "threads",
-    "ground",
-    "stance",
-    "place",
-    "held",
-    "rotor_inertia",
-    "loops",
-    "impulse",
-    "gravity",
-    "torque",
-    "virtual",
-];
-
 /// How many rows a thread takes at once.
 const TOGETHER: usize = 256;
 
@@ -163,14 +145,14 @@ fn array<'py>(what: &str, value: &Bound<'py, PyAny>, coordinates: Option<&[Strin
 /// Refuses a data frame whose columns are named as coordinates and stand in another order.
 fn check_order(what: &str, value: &Bound<'_, PyAny>, coordinates: &[String]) -> PyResult<()> {
     let names = value.getattr("columns").and_then(|names| names.try_iter());
-    for (at, name) in names.into_iter().flatten().enumerate() {
-        let Ok(name) = name.and_then(|name| name.extract::<String>()) else { return Ok(()) };
-        let place = coordinates.iter().position(|known| *known == name);
-        if let Some(place) = place.filter(|place| *place != at) {
-            let hint = format!("give {what}[robot.coordinates]");
-            let refused = format!("column {at} of {what} is {name}, which is coordinate {place}: {hint}");
-            return Err(PyValueError::new_err(refused));
-        }
+    let Ok(names) = names.into_iter().flatten().map(|name| name?.extract::<String>()).collect::<PyResult<Vec<_>>>()
+    else {
+        return Ok(());
+    };
+    if names != coordinates && coordinates.iter().all(|name| names.contains(name)) {
+        let order = names.join(", ");
+        let refused = format!("{what} has the columns {order}, not in the order of robot.coordinates");
+        return Err(PyValueError::new_err(format!("{refused}: give {what}[robot.coordinates]")));
     }
     Ok(())
 }
@@ -196,9 +178,10 @@ impl Asker {
             }
         }
         let wrong = |error: Error| match error.reason() {
-            Reason::UnknownField(name) if fields.contains(name).unwrap_or(false) => {
-                let error = Error::new(error.reason().clone()).did_you_mean(name, ARGUMENTS);
-                let hint = error.remedy().map_or(String::new(), |hint| format!("; {hint}"));
+            Reason::UnknownField(name) if error.place() == Some(name) => {
+                let error = error.clone().did_you_mean(name, ["friction", "restitution", "contacts", "threads"]);
+                let hint = error.remedy().filter(|hint| hint.starts_with("did you mean"));
+                let hint = hint.map_or(String::new(), |hint| format!("; {hint}"));
                 PyTypeError::new_err(format!("there is no argument '{name}'{hint}"))
             }
             // No one has written the text.
@@ -337,7 +320,8 @@ impl<'py> Rows<'py> {
                 let mut worker = Worker::new(&model, asker, &scene);
                 for row in 0..rows {
                     worker.row(numbers, row, total, &mut all.0);
-                    if row % TOGETHER == TOGETHER - 1 && interrupted() {
+                    // A row that takes long looks for signals itself.
+                    if raised() || row % TOGETHER == TOGETHER - 1 && interrupted() {
                         break;
                     }
                 }

@@ -164,9 +164,10 @@ fn found(
     let nothing = (summary.states == 0).then(|| recording.nothing_found(thresholds, &seen));
     let of_states = notes::own_friction(summary.own_friction, "state").into_iter().chain(summary.of_touchdowns());
     let of_motion = seen.notes(robot, thresholds);
+    let total = notes::beyond_budget(question.total.as_ref());
     let refused = summary.refused;
     let refused = (refused > 0).then(|| format!("{refused} of {} touchdowns are refused: see `error`", summary.states));
-    let notes = of_table.chain(of_states).chain(of_motion).chain(nothing).chain(refused).collect();
+    let notes = of_table.chain(of_states).chain(of_motion).chain(nothing).chain(refused).chain(total).collect();
     let lines: Vec<&[u8]> = lines.trim_ascii_end().split(|&byte| byte == b'\n').collect();
     Ok(([b"[", &*lines.join(&b','), b"]"].concat(), notes))
 }

@@ -9,8 +9,8 @@ use heelstrike::budget::SharedBudget;
 use heelstrike::cli::{Seconds, work_time};
 use pyo3::prelude::*;
 use std::cell::{Cell, RefCell};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// How often signals are looked for.
@@ -20,16 +20,15 @@ const OFTEN: Duration = Duration::from_millis(50);
 const AGE: Duration = Duration::from_secs(1 << 33);
 
 thread_local! {
-    static RAISED: RefCell<Option<PyErr>> = const { RefCell::new(None) };
     static CALL: RefCell<Option<Call>> = const { RefCell::new(None) };
     static IS_CALLER: Cell<bool> = const { Cell::new(false) };
     static LAST: Cell<Option<Instant>> = const { Cell::new(None) };
     static AGES: Cell<u32> = const { Cell::new(0) };
 }
 
-/// A call from Python, of which all its threads know whether a signal handler raised.
+/// A call from Python, of which all its threads know whether a signal handler raised, and what.
 #[derive(Clone, Default)]
-pub struct Call(Arc<AtomicBool>);
+pub struct Call(Arc<(AtomicBool, Mutex<Option<PyErr>>)>);
 
 impl Call {
     /// That for which this thread works.
@@ -63,7 +62,7 @@ fn clock() -> Duration {
 /// Whether a signal handler raised, which is asked anew after a while.
 pub fn interrupted() -> bool {
     // Python handles signals on the thread that called.
-    if IS_CALLER.get() && LAST.get().is_none_or(|last| last.elapsed() > OFTEN) {
+    if IS_CALLER.get() && !raised() && LAST.get().is_none_or(|last| last.elapsed() > OFTEN) {
         LAST.set(Some(Instant::now()));
         look();
     }
@@ -72,27 +71,27 @@ pub fn interrupted() -> bool {
 
 /// Whether a signal handler raised during the call for which this thread works.
 pub fn raised() -> bool {
-    CALL.with_borrow(|call| call.as_ref().is_some_and(|call| call.0.load(Relaxed)))
+    CALL.with_borrow(|call| call.as_ref().is_some_and(|call| call.0.0.load(Relaxed)))
 }
 
 /// Runs Python's signal handlers, one of which may raise.
 fn look() {
     if let Err(raised) = Python::attach(|py| py.check_signals()) {
-        RAISED.set(Some(raised));
-        Call::current().0.store(true, Relaxed);
+        let Call(call) = Call::current();
+        *call.1.lock().unwrap_or_else(PoisonError::into_inner) = Some(raised);
+        call.0.store(true, Relaxed);
     }
 }
 
 /// Does the work without the interpreter; raises what a signal handler raised on the way.
 pub fn without_python<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
     // A handler may itself call.
-    let (outer, was_caller) = (CALL.replace(Some(Call::default())), IS_CALLER.replace(true));
+    let call = Call::default();
+    let (outer, was_caller) = (CALL.replace(Some(call.clone())), IS_CALLER.replace(true));
     AGES.set(1);
     let made = py.detach(work);
     CALL.set(outer);
     IS_CALLER.set(was_caller);
-    match RAISED.take() {
-        Some(raised) => Err(raised),
-        None => Ok(made),
-    }
+    let raised = call.0.1.lock().unwrap_or_else(PoisonError::into_inner).take();
+    raised.map_or(Ok(made), Err)
 }

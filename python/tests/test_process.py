@@ -12,10 +12,23 @@ from conftest import COMMAND, ROOT
 import heelstrike
 
 SLOW = """
-import heelstrike, numpy, sys, time
+import heelstrike, numpy, signal, sys, time
 urdf = {urdf!r}
 robot = heelstrike.Robot(urdf)
 q, v = numpy.random.default_rng(7).uniform(-1, 1, (2, 2_000_000, 7))
+
+def slow(rows, threads):
+    contacts = [dict(link="torso", offset=[0.1 * at, 0, -0.3 - 1e-9 * at * at]) for at in range(6)]
+    unlimited = heelstrike.Robot(urdf, budget=None)
+    unlimited.impacts(0 * q[:rows], 0 * v[:rows] + [0, -1, 0.3, 0, 0, 0, 0], friction=0.8, threads=threads,
+        contacts=contacts)
+
+def handler(*_):
+    try:
+        robot.impacts(q[:5], v[:5], friction=0.5, threads=1)
+    except KeyboardInterrupt:
+        pass
+
 print("ready", flush=True)
 try:
     {call}
@@ -26,9 +39,9 @@ except KeyboardInterrupt:
 CALLS = {
     "rows": 'robot.impacts(q, v, friction=0.5, place="lowest", threads=1)',
     "threads": 'robot.impacts(q, v, friction=0.5, place="lowest", threads=2)',
-    "slow rows": """heelstrike.Robot(urdf, budget=None).impacts(0 * q[:600], 0 * v[:600] + [0, -1, 0.3, 0, 0, 0, 0],
-        friction=0.8, threads=2, contacts=[
-            {"link": "torso", "offset": [0.1 * at, 0, -0.3 - 1e-9 * at * at]} for at in range(6)])""",
+    "slow rows": "slow(600, 2)",
+    "few slow rows": "slow(250, 1)",
+    "a handler that calls": "signal.signal(signal.SIGALRM, handler), signal.setitimer(0, 0.1, 0.1), slow(3000, 1)",
     "sweep": """robot.sweep({"parameters": {"a": {"from": -1, "to": 1, "steps": 1000000}}, "state": {
         "position": {"joints": {"left_hip": "a"}}, "velocity": {"base": {"z": -1}}, "friction": 0.5, "place": "lowest"}},
         budget=None)""",

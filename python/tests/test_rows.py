@@ -107,7 +107,7 @@ def test_refused_row_is_a_value(ramone, walk):
     deep = ramone.impacts(np.zeros((1, 7)), np.zeros((1, 7)), friction=1)
     assert "deep in the ground" in deep.error[0]
     silent = ramone.impacts(q[:1], v[:1], place="lowest")
-    assert "give `friction=0.8`" in silent.error[0] or "`friction=0.8`" in silent.error[0]
+    assert "`friction=0.8`" in silent.error[0]
     assert f"first refusal: {silent.error[0]}" in repr(silent)
 
 
@@ -180,7 +180,7 @@ def test_data_frame_is_in_the_order_of_the_coordinates(ramone, walk):
     q, v = (pandas.DataFrame(part, columns=ramone.coordinates) for part in walk(3))
     expected = ramone.impacts(*walk(3), friction=0.5, place="lowest").velocity_after.tolist()
     assert ramone.impacts(q, v, friction=0.5, place="lowest").velocity_after.tolist() == expected
-    with pytest.raises(ValueError, match="column 0 of q is left_hip, which is coordinate 3: give q.robot.coordinates"):
+    with pytest.raises(ValueError, match="q has the columns left_hip, .*not in the order.*: give q.robot.coordinates"):
         ramone.impacts(q[sorted(q)], v, friction=0.5)
     unnamed = q.rename(columns={"x": "q0"})
     assert ramone.impacts(unnamed, v, friction=0.5, place="lowest").velocity_after.tolist() == expected
@@ -200,6 +200,8 @@ def test_unknown_argument_is_refused_with_the_one_that_is_meant(ramone, walk):
         ramone.impacts(*walk(1), friction=0.5, grond={"slope": 0.1})
     with pytest.raises(heelstrike.Refused, match="^ground: "):
         ramone.impacts(*walk(1), friction=1, ground=3)
+    with pytest.raises(heelstrike.Refused, match="^ground.gravity: unknown field"):
+        ramone.impacts(*walk(1), friction=1, ground={"gravity": 1}, gravity=9.8)
 
 
 def test_other_arrays_are_converted(ramone, walk):

@@ -211,7 +211,8 @@ impl Description {
         let mut description = draft::read(text)?;
         let root = tree::connect(&mut description.links, &description.joints);
         // As a <Joint> that is none.
-        let misspelt = |error: Error| match (error.remedy(), description.misspelt.first()) {
+        let of_robot = |name: &&String| name.starts_with('<') && name.contains(" in <robot>");
+        let misspelt = |error: Error| match (error.remedy(), description.misspelt.iter().find(of_robot)) {
             (Some(remedy), Some(name)) => {
                 let hint = format!("{remedy}; not read, and perhaps misspelt: {name}");
                 error.hint(hint)

@@ -11,7 +11,6 @@ use super::window::{FORETOLD, Frame, SMOOTH, Window};
 use super::{At, Heights, Landing, Sample, Sampled, Thresholds, Touching};
 use crate::contact::Feet;
 use crate::pipeline::CONTACT_TOLERANCE;
-use crate::planar::Vector;
 use crate::robot::Robot;
 use crate::state::NamedContact;
 use crate::{Error, Reason, Result};
@@ -23,8 +22,10 @@ const EXACT: f64 = 1e-3;
 /// Noise hides an impact for no more rows, and is no more times its standard deviation.
 const HIDDEN: usize = 8;
 const NOISE: f64 = 5.0;
-/// On hard ground feet do not slow down by half in such a time \[s\].
+/// What falls in such a time shows how fast a foot was \[s\].
 const SHORTLY: f64 = 0.01;
+/// A leg does not slow its foot down by more than this times [`Thresholds::slow`] in a second: 25 m/s^2.
+const BRAKES: f64 = 500.0;
 /// Feet do not sink by more times the usual [`Thresholds::ground`].
 const DEEP: f64 = 5.0;
 
@@ -98,6 +99,15 @@ struct Descent {
     /// Its greatest height since it last was not falling \[m\].
     from: f64,
     falling: bool,
+    /// Whether it has struck and goes on into the ground.
+    sinks: bool,
+}
+
+impl Descent {
+    /// None yet, from this height on.
+    fn from(height: f64) -> Self {
+        Self { from: height, falling: false, sinks: false }
+    }
 }
 
 impl<S: Clone, I: Iterator<Item = Sampled<S>>> Iterator for Touchdowns<'_, S, I> {
@@ -154,7 +164,7 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
         match step {
             ClockStep::NewClip => {
                 self.end_clip();
-                self.descents = places.iter().map(|place| Descent { from: place.z, falling: false }).collect();
+                self.descents = places.iter().map(|place| Descent::from(place.z)).collect();
             }
             ClockStep::Impact => {
                 self.window.frames.back_mut().into_iter().for_each(|last| last.before_impact = true);
@@ -181,7 +191,7 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
         let Some(row) = self.window.frames.len().checked_sub(2) else { return };
         let mut strikes = Vec::new();
         for point in 0..self.descents.len() {
-            let Descent { from, falling } = self.descents[point];
+            let Descent { from, falling, mut sinks } = self.descents[point];
             let [last, height] = [row, row + 1].map(|row| self.window.height(point, row));
             if from - last.min(height) >= self.thresholds.drop {
                 let before = row.checked_sub(1);
@@ -208,25 +218,26 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
                     None
                 };
                 let strike = |(row, height)| Strike { point, row, height, smooth: row, onward: Way::Through(SMOOTH) };
+                sinks |= found.is_some();
                 strikes.extend(found.map(strike));
             }
-            if falling && last < -self.level && height >= last {
-                self.see_end(point, row);
+            if sinks && height >= last {
+                self.see_end(row, last);
             }
             let falling = height < last;
+            sinks &= falling;
             let from = if falling && last > self.level && height >= -self.level { from } else { height };
-            self.descents[point] = Descent { from, falling };
+            self.descents[point] = Descent { from, falling, sinks };
         }
         self.strike(strikes);
     }
 
-    /// Notes where the lowest foot has ended a descent that is no touchdown, or goes on in the ground.
-    fn see_end(&self, point: usize, row: usize) {
-        let height = |place: &Vector<f64>| place.z;
-        let lowest = self.window.frames[row].places.iter().map(height).fold(f64::INFINITY, f64::min);
-        let end = self.window.height(point, row);
+    /// Notes how high the lowest foot has ended a descent that is no touchdown, or goes on in the ground.
+    fn see_end(&self, row: usize, end: f64) {
+        let Frame { places, row, .. } = &self.window.frames[row];
+        let lowest = places.iter().fold(f64::INFINITY, |least, place| least.min(place.z));
         if let Some(Ok(mut seen)) = self.seen.filter(|_| end <= lowest + self.thresholds.ground).map(Mutex::lock) {
-            seen.add_end(end);
+            seen.add_end(*row, end);
         }
     }
 
@@ -235,12 +246,11 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
         let before = |time: f64| self.window.frames.iter().rposition(|frame| frame.sample.time <= time);
         let Some(to) = before(sample.time - SHORTLY) else { return false };
         let Some(from) = before(self.window.frames[to].sample.time - SHORTLY) else { return false };
-        let [passed, fallen] = [
-            self.window.frames[to].sample.time - self.window.frames[from].sample.time,
-            self.window.height(point, from) - self.window.height(point, to),
-        ];
+        let [start, end] = [from, to].map(|row| self.window.frames[row].sample.time);
+        let fell = (self.window.height(point, from) - self.window.height(point, to)) / (end - start);
         let falls = -self.points.rate(point, &sample.state);
-        fallen > passed * f64::max(2.0 * falls, falls + 4.0 * self.thresholds.slow)
+        let passed = sample.time - 0.5 * (start + end);
+        passed <= 3.0 * SHORTLY && fell > f64::max(2.0 * falls, falls + BRAKES * self.thresholds.slow * passed)
     }
 
     /// How high a point would be at the row after `row` \[m\].
@@ -275,11 +285,11 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
             }
             if descent.falling {
                 let ends = descent.from - end >= drop;
-                *descent = Descent { from: height, falling: false };
-                match end <= ground {
-                    true if ends => ended.push((point, rows, end)),
-                    false if ends => self.see_end(point, now),
-                    _ => {}
+                *descent = Descent::from(height);
+                if ends && end <= ground {
+                    ended.push((point, rows, end));
+                } else if ends {
+                    self.see_end(now, end);
                 }
             }
             let descent = &mut self.descents[point];
@@ -320,7 +330,7 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
         // Of two rows with the same time the first.
         let before = end.checked_sub(1);
         let before_impact = before.filter(|&before| self.window.frames[before].before_impact);
-        let strike = |(point, &Descent { from, falling }): (usize, &Descent)| {
+        let strike = |(point, &Descent { from, falling, .. }): (usize, &Descent)| {
             let last = self.window.height(point, end);
             if !falling || from - last < drop || last > if is_true { self.level } else { above } {
                 None
@@ -366,8 +376,8 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
             let is_deep = shift_z > self.deep;
             // Another row's heights are not those of the ground, and what is deep is noted by itself.
             let is_level = heights == Heights::Recorded && at == At::Crossing && !is_deep;
-            if let Some(Ok(mut seen)) = self.seen.filter(|_| is_level).map(Mutex::lock) {
-                seen.add_depth(shift_z);
+            if let Some(Ok(mut seen)) = self.seen.map(Mutex::lock) {
+                seen.add_touchdown(is_level.then_some(shift_z));
             }
             sample.landing = Some(Landing { row, striking, shift_z, at, touching, is_early, is_slowed, is_deep });
             let finite = sample.state.position.iter().chain(&sample.state.velocity).all(|entry| entry.is_finite());

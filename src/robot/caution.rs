@@ -193,7 +193,11 @@ pub(super) fn about_lengths(description: &Description) -> Vec<String> {
         )
     });
     let meshes = description.links.iter().flat_map(|link| {
-        let meshes = link.collisions.iter().filter(|own| matches!(own.geometry, Geometry::Mesh { .. }));
+        let is_scaled = |own: &&Collision| match own.geometry {
+            Geometry::Mesh { scale, .. } => scale.iter().all(|scale| scale.abs() < 0.1),
+            _ => false,
+        };
+        let meshes = link.collisions.iter().filter(is_scaled);
         meshes.map(|own| (&link.name, extent(&own.geometry))).filter(|&(_, extent)| extent > 0.0)
     });
     let smallest = meshes.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|&(_, extent)| extent < SMALLEST);
@@ -314,7 +318,7 @@ pub(super) fn about_inertias<'l>(
             Some(_) if largest > size * size * (WIDEST * WIDEST * mass).max(SLIGHT * whole) => 2,
             Some(inertia) if !is_planar && !is_physical(inertia) => 3,
             Some(_) if is_planar && moment < ROUNDED * largest => 4,
-            Some(_) if largest > 0.0 && largest < of_ball(*mass) && *mass > SLIGHT * whole => 5,
+            Some(_) if !is_planar && largest > 0.0 && largest < of_ball(*mass) && *mass > SLIGHT * whole => 5,
             _ => continue,
         };
         found[kind].push(link.name.as_str());
@@ -347,11 +351,16 @@ pub(super) fn about_massless(robot: &Robot) -> Option<String> {
             weighs[robot.hinge(mover).0] = true;
         }
     }
+    // What follows a joint may weigh something.
+    let is_alone = |joint: usize| !robot.mimic_joints.iter().any(|mimic| mimic.mimicked == joint);
     let is_massless = |(index, body): &(usize, &Body)| {
-        let moves = matches!(body.joint, Some(ParentJoint::Joint(_) | ParentJoint::Mimic(_)));
-        let rigid = || robot.bodies.iter().enumerate().filter(|(part, _)| is_of(*index)(*part));
-        let is_massless = moves && weighs_nothing(body) && rigid().all(|(_, part)| weighs_nothing(part));
-        is_massless && (!weighs[*index] || has_length(*index))
+        let moves = match body.joint {
+            Some(ParentJoint::Joint(joint)) => has_length(*index) || !weighs[*index] && is_alone(joint),
+            Some(ParentJoint::Mimic(_)) => has_length(*index),
+            Some(ParentJoint::Fixed { .. }) | None => false,
+        };
+        let mut rigid = robot.bodies.iter().enumerate().filter(|(part, _)| is_of(*index)(*part));
+        weighs_nothing(body) && rigid.all(|(_, part)| weighs_nothing(part)) && moves
     };
     let massless = names(robot.bodies.iter().enumerate().filter(is_massless).map(|(_, body)| &body.name))?;
     Some(format!(

@@ -56,7 +56,7 @@ pub fn early(count: u64) -> Option<String> {
 /// How many touchdowns have feet that are slowed down already.
 pub fn slowed(count: u64) -> Option<String> {
     let what = "touchdowns whose foot has fallen more than twice as fast shortly before";
-    let then = "if it sinks into soft ground, theirs is the state after the impact: give `simulated`, or `at: row`";
+    let then = "if it sinks into soft ground, theirs is the state after the impact: give `simulated`";
     (count > 0).then(|| format!("{what}: {count}; {then}"))
 }
 

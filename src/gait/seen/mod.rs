@@ -24,8 +24,11 @@ pub struct Seen {
     motion: Motion,
     /// How far below z = 0 each touchdown was found where heights are recorded, apart from deep ones \[m\].
     depths: Vec<f64>,
-    /// How high the lowest foot has ended descents that are none: too high, or in the ground of a simulation \[m\].
+    touchdowns: usize,
+    /// How high the lowest foot has ended descents that are none: too high, or in the ground of a simulation \[m\]; and
+    /// the last row at which it has.
     ends: Vec<f64>,
+    last_end: Option<usize>,
 }
 
 impl Seen {
@@ -51,14 +54,18 @@ impl Seen {
         self.motion.add(state, *time, step, is_recorded, robot);
     }
 
-    /// Adds a touchdown so far below z = 0 \[m\].
-    pub(super) fn add_depth(&mut self, depth: f64) {
-        self.depths.push(depth);
+    /// Adds a touchdown, so far below z = 0 where that shows the ground \[m\].
+    pub(super) fn add_touchdown(&mut self, depth: Option<f64>) {
+        self.touchdowns += 1;
+        self.depths.extend(depth);
     }
 
-    /// Adds the height \[m\] at which the lowest foot has ended a descent that is no touchdown, or goes on in the ground.
-    pub(super) fn add_end(&mut self, height: f64) {
-        self.ends.push(height);
+    /// Adds the height \[m\] at which the lowest foot has ended a descent that is no touchdown, or goes on in the ground;
+    /// several points of one row are one foot.
+    pub(super) fn add_end(&mut self, row: usize, height: f64) {
+        if self.last_end.replace(row) != Some(row) {
+            self.ends.push(height);
+        }
     }
 
     /// What to say if there is no touchdown.
@@ -89,15 +96,22 @@ impl Seen {
     fn end(&self, Thresholds { ground, .. }: Thresholds) -> Option<String> {
         let mut ends = self.ends.clone();
         ends.sort_unstable_by(f64::total_cmp);
-        let middle =
-            *ends.get(ends.len() / 2).filter(|_| ends.len() >= ENOUGH && 2 * ends.len() > self.depths.len())?;
-        (middle > ground || middle < -0.5 * ground).then(|| {
-            let (count, level) = (ends.len(), rounded(middle));
-            format!(
+        let are_most = ends.len() >= ENOUGH && 2 * ends.len() > self.touchdowns;
+        let middle = *ends.get(ends.len() / 2).filter(|_| are_most)?;
+        let (count, level) = (ends.len(), rounded(middle));
+        if middle > ground {
+            Some(format!(
                 "the lowest foot has ended {count} descents at z = {level} m, in the middle of all: the ground must be \
                  level and at z = 0 (see `ground_height`)"
-            )
-        })
+            ))
+        } else if middle < -0.5 * ground {
+            Some(format!(
+                "feet go down to z = {level} m after their touchdowns, in the middle of all: if the ground is not that \
+                 soft, shift q_base_z so that it is z = 0"
+            ))
+        } else {
+            None
+        }
     }
 
     /// That touchdowns are not at z = 0, most on one side of it.

@@ -25,8 +25,8 @@ pub(super) struct Order {
     halts: Found,
     /// The times of the clip's first row and of the row before \[s\].
     clip: [f64; 2],
-    /// The first step forward of all, and the last one of the clip \[s\].
-    first_step: Option<f64>,
+    /// The shortest step forward of all, and the last one of the clip \[s\].
+    shortest: Option<f64>,
     last_step: Option<f64>,
     /// The longest step of the clip before the last one, apart from gaps \[s\].
     longest: Option<f64>,
@@ -69,7 +69,7 @@ impl Order {
         let [first, before] = self.clip;
         match step {
             ClockStep::Later(passed) => {
-                self.first_step.get_or_insert(passed);
+                self.shortest = Some(self.shortest.map_or(passed, |shortest| shortest.min(passed)));
                 match (self.last_step, self.longest) {
                     (Some(last), Some(longest)) if last > GAP * passed.max(longest) => {
                         self.gaps.add([before - last, before]);
@@ -96,7 +96,7 @@ impl Order {
 
     /// Whether time rises from no row to the next.
     pub fn stands_still(&self) -> bool {
-        self.rows > 1 && self.first_step.is_none()
+        self.rows > 1 && self.shortest.is_none()
     }
 
     /// What is odd about them.
@@ -110,7 +110,7 @@ impl Order {
             (halts, "more than two rows have the same time", "is it rounded? each row needs its own"),
         ];
         let odd = odd.into_iter().filter_map(|(when, what, then)| Some(format!("{what} {}: {then}", when?)));
-        let step = self.first_step.filter(|step| *step > LONG).map(rounded);
+        let step = self.shortest.filter(|step| *step > LONG).map(rounded);
         odd.chain(step.map(|step| format!("rows are {step} s apart: is the time in seconds?")))
     }
 }

@@ -404,7 +404,8 @@ fn misspelt_names_are_named_with_their_lines() {
         );
     }
     assert_eq!(limits("effort=\"1\" velocity=\"x\""), None);
-    let unread = text.replace("<joint ", "<Joint ").replace("</joint>", "</Joint>");
+    let unread = text.replace("<inertia ", "<inertia size=\"1\" ");
+    let unread = unread.replace("<joint ", "<Joint ").replace("</joint>", "</Joint>");
     let refused = Robot::from_urdf(&unread).expect_err("two roots");
     let remedy = "make one of them the child of a joint; not read, and perhaps misspelt: <Joint> in <robot> on line 4 (<joint>?)";
     assert_eq!(refused.remedy(), Some(remedy));

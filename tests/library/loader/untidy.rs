@@ -137,10 +137,16 @@ fn doubtful_inertias_and_angles_are_noted() {
     let words =
         "without mass, although a joint of its own moves it: b; give it an <inertial>, or name the joint in `held`";
     assert_eq!(only_caution(&massless(0.0)), words);
+    // What follows a joint may weigh something.
+    let links = [("a", 1.0), ("b", 0.0), ("c", 1.0)].map(|(name, mass)| link(name, mass, [0.0; 2], mass, ""));
+    let joints = [("j", "b", ""), ("k", "c", "<mimic joint=\"j\"/>")];
+    let joints = joints.map(|(name, child, more)| joint(name, HINGE, ["a", child], [0.0, -1.0], more));
+    assert_eq!(load(&urdf::robot(&[links.concat(), joints.concat()])).reading.cautions, [""; 0]);
     // A whole turn, the moment of a planar model, a point mass that is meant, nothing at all.
     for (from, to) in [
         (drawn, "<origin xyz=\"0 0 -0.5\" rpy=\"0 6.2832 0\"/><geometry>"),
         (inertia, "<inertia ixx=\"0\" iyy=\"0.05\" izz=\"0\"/>"),
+        (inertia, "<inertia ixx=\"0\" iyy=\"1e-4\" izz=\"0\"/>"),
         (inertia, "<inertia ixx=\"0\" iyy=\"0\" izz=\"0\"/>"),
         (inertia, inertia),
     ] {

@@ -367,37 +367,45 @@ fn numbers_beyond_all_measure_are_refused_and_end() {
 
 #[test]
 fn a_foot_in_soft_ground_is_slowed() {
-    // In rows of 1 ms, at 1 m/s down to 0 after 50 ms.
-    let is_slowed = |sinks: &dyn Fn(f64) -> f64| {
+    // At 1 m/s down to 0 after 50 ms.
+    let is_slowed = |step: f64, sinks: &dyn Fn(f64) -> f64| {
         let height = |time: f64| if time < 0.05 { 0.05 - time } else { -sinks(time - 0.05) };
-        let rows: Vec<[f64; 3]> =
-            (0..90).map(|row| f64::from(row) * 1e-3).map(|time| [time, height(time), 0.0]).collect();
+        let times = (0..).map(|row| f64::from(row) * step).take_while(|&time| time < 0.3);
+        let rows: Vec<[f64; 3]> = times.map(|time| [time, height(time), 0.0]).collect();
         let found = lifted(&rows, At::Crossing, Touching::Strike);
         assert_eq!(found.len(), 1);
         landing(&found[0]).is_slowed
     };
-    assert!(is_slowed(&|time| 6e-3 * (1.0 - (-time / 6e-3).exp())), "it sinks by 6 mm");
-    assert!(!is_slowed(&|_| 0.0), "it stops at once");
-    assert!(!is_slowed(&|time| (time - 5.0 * time * time).min(0.05).max(0.0)), "10 m/s^2 are those of a leg");
+    assert!(is_slowed(1e-3, &|time| 6e-3 * (1.0 - (-time / 6e-3).exp())), "it sinks by 6 mm");
+    for step in [1e-3, 1e-2, 2e-2] {
+        assert!(!is_slowed(step, &|_| 0.0), "it stops at once");
+        for brakes in [10.0, 20.0] {
+            // Until it rests.
+            let sinks = |time: f64| time.min(1.0 / brakes) * (1.0 - 0.5 * brakes * time.min(1.0 / brakes));
+            assert!(!is_slowed(step, &sinks), "{brakes} m/s^2 are those of a leg, every {step} s");
+        }
+    }
 }
 
 #[test]
 fn a_ground_that_is_not_at_zero_is_noted() {
-    // Both feet come down to a level, four times.
+    // Both feet come down to a level, six times; the first row is 5 s before.
     let notes = |heights: Heights, level: f64| {
-        let height = |row: usize| level + [0.06, 0.04, 0.02, 0.0, 0.0, 0.0, 0.03][row % 7];
-        let rows: Vec<[f64; 3]> = (0..28).map(|row| [row as f64 * 0.01, height(row), height(row)]).collect();
+        let height = |row: usize| level + 5e-3 * (20 - (row % 60).min(20) + (row % 60).max(40) - 40) as f64;
+        let rows = (0..360).map(|row| [row as f64 * 0.01, height(row), height(row)]);
+        let rows: Vec<[f64; 3]> = std::iter::once([-5.0, 0.2, 0.2]).chain(rows).collect();
         let (robot, seen) = (lift(1.0), Mutex::new(Seen::default()));
         let found = find(lifting(1.0, &rows).into_iter(), &robot, &[], At::Crossing, Touching::Strike).unwrap();
         found.meaning(heights).noting(&seen).for_each(std::mem::drop);
-        let seen = seen.into_inner().unwrap();
-        let note = seen.notes(&robot, Thresholds::of(&robot, &[])).find(|note| note.contains("lowest foot has ended"));
-        note.map(|note| note.split_once(" at z = ").unwrap().1.split_once(" m,").unwrap().0.to_owned())
+        let notes: Vec<String> = seen.into_inner().unwrap().notes(&robot, Thresholds::of(&robot, &[])).collect();
+        assert!(!notes.iter().any(|note| note.contains("in seconds")), "{notes:?}");
+        notes.into_iter().find(|note| note.contains("in the middle of all: "))
     };
-    let note = |level: f64| Some(level.to_string());
-    assert_eq!(notes(Heights::Recorded, 0.05), note(0.05));
-    assert_eq!(notes(Heights::Recorded, 0.01), None);
-    assert_eq!(notes(Heights::True, -0.015), note(-0.015));
+    let note = notes(Heights::Recorded, 0.05).unwrap();
+    assert!(note.starts_with("the lowest foot has ended ") && note.contains("at z = 0.05 m,"), "{note}");
+    assert_eq!(notes(Heights::Recorded, 5e-3), None);
+    let note = notes(Heights::True, -0.015).unwrap();
+    assert!(note.starts_with("feet go down to z = -0.015 m after their touchdowns"), "{note}");
     assert_eq!(notes(Heights::True, -0.005), None, "soft ground");
 }
 
