@@ -34,6 +34,9 @@ const LEAST_WORK: f64 = f64::MIN_POSITIVE / f64::EPSILON;
 /// with room for what an elimination makes of it.
 const SLOW: f64 = DIGITS / 256.0;
 
+/// An inverse in f64 is used if what is left of the identity is no more than this.
+const VERIFIED: f64 = 0.1;
+
 /// The scales of an outcome's numbers, per contact.
 struct Scales<'a> {
     scale: &'a Scale,
@@ -268,6 +271,9 @@ impl Candidate<'_> {
     /// ```text
     ///     A = (G B) in the rows that L holds      |change of lambda| <= |A^-1| (|residual| + |errors of c_free + G L|)
     /// ```
+    ///
+    /// In units of the mobilities X = A^-1 in f64 is shown to be near enough: with R = I - A X and a greatest row sum of
+    /// |R| of r < 1, |A^-1| y <= |X| (y + r / (1 - r) max y).
     fn serves_by_sensitivity(&self) -> bool {
         let Self { leaf, modes, problem, scale, .. } = self;
         let impulse: Vec<f64> =
@@ -294,12 +300,24 @@ impl Candidate<'_> {
         let held: Vec<usize> = held.collect();
         let generators = Generators::of(modes, problem.laws());
         let rows: Vec<Vec<f64>> = (0..impulse.len()).map(|row| generators.velocity_row(problem, row)).collect();
-        let matrix = DMatrix::from_fn(held.len(), held.len(), |i, j| rows[held[i]][j]);
-        let Some(inverse) = matrix.try_inverse() else { return false };
-        let off: Vec<f64> = held.iter().map(|&row| residual(row) + given(row)).collect();
+        let (count, unit) = (held.len(), |at: usize| scale.mobility[held[at]]);
+        let matrix = DMatrix::from_fn(count, count, |i, j| rows[held[i]][j] / (unit(i) * unit(j)));
+        // Not by `try_inverse`, whose cofactors of four rows lose all digits where the determinant nearly vanishes.
+        let Some(inverse) = matrix.clone().lu().try_inverse() else { return false };
+        let lost = (count + 2) as f64 * f64::EPSILON * matrix.abs() * inverse.abs();
+        let left = (DMatrix::identity(count, count) - &matrix * &inverse).abs() + lost;
+        let greatest = left.row_iter().map(|row| row.sum()).fold(0.0, f64::max);
+        if greatest.is_nan() || greatest > VERIFIED {
+            return false;
+        }
+        let off: Vec<f64> = (0..count).map(|at| (residual(held[at]) + given(held[at])) / unit(at)).collect();
+        let more = VERIFIED / (1.0 - VERIFIED) * off.iter().copied().fold(0.0, f64::max);
         let weighed = |a: f64, b: &f64| a.abs() * b;
-        let change = |row: nalgebra::DVector<f64>| row.iter().zip(&off).map(|(&a, b)| weighed(a, b)).sum();
-        let lambda: Vec<f64> = inverse.row_iter().map(|row| change(row.transpose())).collect();
+        let change = |row: usize| {
+            let off = off.iter().map(|off| off + more);
+            inverse.row(row).iter().zip(off).map(|(a, off)| a.abs() * off).sum::<f64>() / unit(row)
+        };
+        let lambda: Vec<f64> = (0..count).map(change).collect();
         let velocity =
             |row: usize| given(row) + rows[row].iter().zip(&lambda).map(|(&a, b)| weighed(a, b)).sum::<f64>();
         let number = |row: usize| match held.iter().position(|&own| own == row) {
