@@ -27,6 +27,8 @@ const WIDEST: f64 = 2.0;
 const SLIGHT: f64 = 1e-3;
 /// A moment of less than this part of the link's largest is what rotations rounded off.
 const ROUNDED: f64 = 1e-9;
+/// A link of a planar model with a smaller radius of gyration \[m\] is a point.
+const POINT: f64 = 1e-4;
 /// No material is denser \[kg/m^3\].
 const HEAVIEST: f64 = 23_000.0;
 /// The geometry of a mesh is not smaller than this \[m\].
@@ -305,6 +307,8 @@ pub(super) fn about_inertias<'l>(
         ("with a single moment of inertia, which is not about the plane's normal", "only that about the normal counts"),
         ("with more mass than the densest metal has in a ball of this inertia", "inertia is in kg m^2, mass in kg"),
     ];
+    // A single moment may be that of a long body about its length.
+    let least = |mass: f64, is_planar: bool| if is_planar { POINT * POINT * mass } else { of_ball(mass) };
     let mut found = kinds.map(|_| Vec::new());
     for (link, moment) in links {
         let Some(Inertial { mass, inertia, .. }) = &link.inertial else { continue };
@@ -318,7 +322,7 @@ pub(super) fn about_inertias<'l>(
             Some(_) if largest > size * size * (WIDEST * WIDEST * mass).max(SLIGHT * whole) => 2,
             Some(inertia) if !is_planar && !is_physical(inertia) => 3,
             Some(_) if is_planar && moment < ROUNDED * largest => 4,
-            Some(_) if !is_planar && largest > 0.0 && largest < of_ball(*mass) && *mass > SLIGHT * whole => 5,
+            Some(_) if largest > 0.0 && largest < least(*mass, is_planar) && *mass > SLIGHT * whole => 5,
             _ => continue,
         };
         found[kind].push(link.name.as_str());

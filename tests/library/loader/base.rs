@@ -53,6 +53,8 @@ fn root_floats_by_its_mass_and_joints() {
         ),
     ] {
         let robot = load(&text);
+        let signs = robot.bodies.iter().flat_map(|body| [body.mass, body.moment]);
+        assert!(signs.into_iter().all(f64::is_sign_positive), "{text}");
         let base = if robot.base == Base::Floating { 3 } else { 0 };
         assert_eq!(robot.dofs(), base + expected.2.len(), "{text}");
         assert_eq!((found(&robot), robot.mass()), (expected, kg), "{text}");

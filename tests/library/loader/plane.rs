@@ -80,6 +80,9 @@ fn each_plane_takes_its_own_components_bit_for_bit() {
         (Plane::XZ, [0.1, 0.3], 0.12, [0.7 + 1.0, 0.9 + 3.0], [0.7 + 1.0, 0.9 + 3.0]),
         (Plane::YZ, [0.2, 0.3], 0.11, [0.8 + 2.0, 0.9 + 3.0], [0.8 + 2.0, 0.9 + 3.0]),
         (Plane::XY, [0.1, 0.2], 0.13, [0.7 + 1.0, 0.8 + 2.0], [0.7 + 1.0, 0.8 + 2.0]),
+        (Plane::ZY, [0.3, 0.2], 0.11, [0.9 + 3.0, 0.8 + 2.0], [0.9 + 3.0, 0.8 + 2.0]),
+        (Plane::ZX, [0.3, 0.1], 0.12, [0.9 + 3.0, 0.7 + 1.0], [0.9 + 3.0, 0.7 + 1.0]),
+        (Plane::YX, [0.2, 0.1], 0.13, [0.8 + 2.0, 0.7 + 1.0], [0.8 + 2.0, 0.7 + 1.0]),
     ] {
         let robot = reduce(&alone, &in_plane(plane));
         assert_eq!((robot.bodies[0].com.components(), robot.bodies[0].moment), (com, moment), "{plane:?}");

@@ -108,6 +108,11 @@ fn doubtful_inertias_and_angles_are_noted() {
             &inertia.replace("0.05", "1e-9"),
             "with more mass than the densest metal has in a ball of this inertia: a; ",
         ),
+        (
+            inertia,
+            "<inertia ixx=\"0\" iyy=\"1e-9\" izz=\"0\"/>",
+            "with more mass than the densest metal has in a ball of this inertia: a; ",
+        ),
         ("izz=\"0.05\"", "izz=\"0.2\"", "with an inertia that no body has, one moment being more than"),
         (drawn, "<origin rpy=\"0 90 0\"/><geometry>", "the rpy of a, \"0 90 0\", is more than a turn: angles are"),
     ] {
