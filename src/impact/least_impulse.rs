@@ -38,10 +38,10 @@ pub fn least_impulse<T: Ordered>(
         }
         match pulling {
             Some(place) => drop(binding.swap_remove(place)),
-            None => break,
+            None => return Ok(y),
         }
     }
-    Ok(y)
+    Err(Unsettled)
 }
 
 const ROUNDS: usize = 8;

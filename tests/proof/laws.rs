@@ -221,6 +221,23 @@ fn a_search_shows_nothing_by_numbers_that_overflow() {
     assert_eq!(verdicts(&problem), [(Verdict::Unique, true); 2]);
 }
 
+/// In the scale of each contact, f64 does not hold the normal part of the sides of so wide a cone.
+#[test]
+fn a_search_shows_nothing_by_numbers_that_underflow() {
+    for (unit, mu, contacts) in [(1e40, 1e308, 4), (1e50, 1e300, 5), (1e110, 1e270, 4)] {
+        let rows = 2 * contacts;
+        let entry = |at: usize| match (at / rows, at % rows) {
+            (row, column) if row != column => 0.0,
+            (row, _) => [unit, 1.0][row % 2],
+        };
+        let delassus = (0..rows * rows).map(entry).collect();
+        let friction = vec![Friction::Finite(mu); contacts];
+        let velocity = vec![[1.0, -1.0]; contacts];
+        let problem = ContactProblem::new(delassus, velocity, friction, vec![0.0; contacts]).expect("valid");
+        assert_eq!(verdicts(&problem), [(Verdict::Unique, true); 2], "{unit}");
+    }
+}
+
 #[test]
 fn a_search_trusts_no_velocity_without_a_bound() {
     // J v cancels: c_n is 0.5, and -0.5 in f64.

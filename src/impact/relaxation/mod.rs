@@ -97,7 +97,9 @@ impl Relaxation {
         }
         let largest = self.response.chunks_exact(width).map(|row| row[width - 1].abs()).fold(1.0, f64::max);
         let rounding = (rows + 24) as f64 * f64::EPSILON;
-        self.errors = [errors.delassus + rounding, scale.noise + rounding * largest];
+        let free = scale.free(problem, errors);
+        let noise = (0..rows).map(|row| free(row).error / (mobility[row] * scale.speed)).fold(0.0, f64::max);
+        self.errors = [errors.delassus + rounding, noise + rounding * largest];
         let matrix = DMatrix::from_fn(rows, rows, scaled);
         let up = DVector::from_fn(rows, |row, _| if row % 2 == 1 { 1.0 / mobility[row] } else { 0.0 });
         self.is_known = errors.delassus.is_finite() && scale.is_far_from_underflow();
@@ -162,9 +164,12 @@ impl Relaxation {
         let is_two_way = self.rays.iter().any(|ray| ray.both);
         let kappa = (0..self.rays.len()).map(lifts).fold(f64::INFINITY, f64::min) - w.lp_norm(1) * of_matrix;
         let by_lift = if kappa > 0.0 && !is_two_way { size(&w) / kappa } else { f64::INFINITY };
-        let least = along.iter().filter(|entries| entries[1] != 0.0).map(|entries| entries[1]).fold(1.0, f64::min);
+        // The part of a ray that pushes may be smaller than f64 holds.
+        let pushing = self.rays.iter().zip(along).filter(|(ray, _)| ray.entries[1] != 0.0);
+        let least = pushing.map(|(_, entries)| entries[1]).fold(1.0, f64::min);
         self.is_regular = is_definite(matrix.clone(), of_matrix);
-        let by_eigenvalue = if self.is_regular { (2.0 * rows as f64 / REGULAR).sqrt() / least } else { f64::INFINITY };
+        let is_bounded = self.is_regular && least.is_normal();
+        let by_eigenvalue = if is_bounded { (2.0 * rows as f64 / REGULAR).sqrt() / least } else { f64::INFINITY };
         let per_root = by_lift.min(by_eigenvalue);
         let rest = (&free - matrix * &z).amax() + of_free + z.lp_norm(1) * of_matrix;
         per_root * (size(&z) + per_root * rest)
