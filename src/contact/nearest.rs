@@ -89,20 +89,25 @@ impl Footing<'_> {
     /// # Errors
     /// [`Reason::Inconsistent`] if no foot is above the ground.
     pub fn rise(&self) -> Result<f64> {
-        let gap = |placement: &Placement| match self.named() {
-            Some(named) => {
-                let gap = |contact| self.surface.touch(placement, Point::named(self.robot, contact), 0.0).gap;
-                named.iter().map(gap).fold(f64::INFINITY, f64::min)
-            }
-            None => {
-                let gaps = self.feet.iter().map(|foot| self.surface.clearance(foot, placement));
-                gaps.fold(f64::INFINITY, f64::min)
-            }
+        let of_named = |placement: &Placement| {
+            let gap = |contact| self.surface.touch(placement, Point::named(self.robot, contact), 0.0).gap;
+            self.named().map(|named| named.iter().map(gap).fold(f64::INFINITY, f64::min))
         };
         let rise = match self.surface {
-            Surface::HalfPlane(plane) => Some(-gap(self.placement) / plane.normal.z),
+            Surface::HalfPlane(plane) => {
+                let of_feet = || self.feet.iter().map(|foot| plane.clearance(foot, self.placement));
+                let gap = of_named(self.placement).unwrap_or_else(|| of_feet().fold(f64::INFINITY, f64::min));
+                Some(-gap / plane.normal.z)
+            }
             Surface::Profile(terrain) => {
-                first_above(|rise| gap(&self.placement.raised(rise)), self.feet.size(), || self.around(terrain))
+                let size = self.feet.size();
+                let is_above = |rise: f64| {
+                    let placement = self.placement.raised(rise);
+                    let rounding = profile::rounding(&placement, size);
+                    let is_clear = |foot| profile::is_clear(terrain, foot, &placement, rounding);
+                    of_named(&placement).map_or_else(|| self.feet.iter().all(is_clear), |gap| gap > 0.0)
+                };
+                first_above(is_above, size, || self.around(terrain))
             }
         };
         rise.filter(|rise| rise.is_finite()).ok_or_else(|| {
@@ -116,27 +121,27 @@ impl Footing<'_> {
     }
 }
 
-/// The least rise at which the `gap`, which grows with it, is positive; the search begins with steps of `size` \[m\], and
-/// if the gap is never negative there, at the highest of some `others`.
+/// The least rise from which on all `is_above`; the search begins with steps of `size` \[m\], and if nothing is below
+/// there, at the highest of some `others`.
 fn first_above<I: Iterator<Item = f64>>(
-    gap: impl Fn(f64) -> f64,
+    is_above: impl Fn(f64) -> bool,
     size: f64,
     others: impl FnOnce() -> I,
 ) -> Option<f64> {
     let steps = || std::iter::successors(Some(size), |step| Some(2.0 * step)).take_while(|step| step.is_finite());
-    let is_below = |rise: &f64| gap(*rise) <= 0.0;
+    let is_below = |rise: &f64| !is_above(*rise);
     let highest = || {
         let mut others: Vec<f64> = others().collect();
         others.sort_unstable_by(|a, b| b.total_cmp(a));
         others.into_iter().find(is_below)
     };
     let mut below = steps().map(|step| -step).find(is_below).or_else(highest)?;
-    let mut above = steps().map(|step| below.max(0.0) + step).find(|&rise| gap(rise) > 0.0)?;
+    let mut above = steps().map(|step| below.max(0.0) + step).find(|&rise| is_above(rise))?;
     loop {
         let middle = below + (above - below) / 2.0;
         match middle {
             _ if middle <= below || middle >= above => return Some(above),
-            _ if gap(middle) > 0.0 => above = middle,
+            _ if is_above(middle) => above = middle,
             _ => below = middle,
         }
     }

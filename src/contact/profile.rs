@@ -158,6 +158,13 @@ pub(super) fn clearance(terrain: &Terrain, outline: &Outline) -> f64 {
     -depth(terrain, outline, &all(terrain))
 }
 
+/// Whether no point of a foot is on the ground or in it.
+pub(super) fn is_clear(terrain: &Terrain, foot: &Foot, placement: &Placement, rounding: f64) -> bool {
+    let outline = Outline::new(foot, placement);
+    let near = within_reach(terrain, foot, &outline, rounding);
+    depth(terrain, &outline, &near) < 0.0
+}
+
 /// The x of the end that a foot reaches beyond, not higher than `tolerance` above it.
 pub(super) fn left_behind(terrain: &Terrain, outline: &Outline, tolerance: f64) -> Option<f64> {
     let [rear, front] = terrain.ends();
