@@ -131,7 +131,7 @@ pub struct ForcesRecord<'a> {
     /// Fields of the table that the state comes from and that mean nothing here, as they stand there.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<std::collections::BTreeMap<String, serde_json::Value>>"))]
-    pub carried: Option<&'a Named<CarriedValue<'a>>>,
+    pub carried: Option<&'a Named<CarriedValue>>,
     /// Why there are no outcomes although the matrices are known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<&'a ErrorObject>,

@@ -21,6 +21,7 @@ use arrow_schema::DataType;
 use csv::ByteRecord;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
+use serde_json::value::{RawValue, to_raw_value};
 use std::borrow::Cow;
 use std::io::Cursor;
 #[cfg(feature = "columnar")]
@@ -101,43 +102,37 @@ impl Carried {
     }
 
     /// A cell as a value.
-    fn value(&self, which: usize) -> CarriedValue<'_> {
-        let parsed = |cell: &[u8]| CarriedValue::Json(serde_json::from_slice(cell).unwrap_or_default());
-        match self {
-            Self::Text(cells) => CarriedValue::Text(String::from_utf8_lossy(cells.get(which).unwrap_or_default())),
-            Self::Json(cells) => parsed(cells.get(which).unwrap_or_default()),
+    fn value(&self, which: usize) -> CarriedValue {
+        let own = |cell: &[u8]| String::from_utf8_lossy(cell).into_owned();
+        let text = |cell: &[u8]| to_raw_value(&own(cell)).unwrap_or_default();
+        let json = |cell: &[u8]| RawValue::from_string(own(cell)).unwrap_or_default();
+        CarriedValue(match self {
+            Self::Text(cells) => text(cells.get(which).unwrap_or_default()),
+            Self::Json(cells) => json(cells.get(which).unwrap_or_default()),
             #[cfg(feature = "columnar")]
             Self::Columns(columns, row) => match self.text(which) {
-                _ if columns.column(which).is_null(*row) => CarriedValue::Json(Value::Null),
-                text if is_json(columns.column(which).data_type()) => parsed(&text),
-                text => CarriedValue::Text(String::from_utf8_lossy(&text).into_owned().into()),
+                _ if columns.column(which).is_null(*row) => Box::default(),
+                cell if is_json(columns.column(which).data_type()) => json(&cell),
+                cell => text(&cell),
             },
-        }
+        })
     }
 
     /// The cells by column: text as text, with a replacement for bytes that are no UTF-8, other values as they are.
-    pub fn by_name<'c>(&'c self, header: &'c Header) -> impl Iterator<Item = (&'c str, CarriedValue<'c>)> {
+    pub fn by_name<'c>(&'c self, header: &'c Header) -> impl Iterator<Item = (&'c str, CarriedValue)> {
         header.carried().zip((0..self.len()).map(|which| self.value(which)))
     }
 }
 
-/// A value that is copied to the result.
+/// A value that is copied to the result: JSON as it stood in the input, or a cell of text as a string.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(untagged)]
-pub enum CarriedValue<'c> {
-    /// Of a table of text.
-    Text(Cow<'c, str>),
-    /// Of another one.
-    Json(Value),
-}
+#[serde(transparent)]
+pub struct CarriedValue(Box<RawValue>);
 
-impl CarriedValue<'_> {
+impl CarriedValue {
     /// The number that it is or that stands in its text.
     pub fn number(&self) -> Option<f64> {
-        match self {
-            Self::Text(text) => text.trim().parse().ok(),
-            Self::Json(value) => value.as_f64(),
-        }
+        self.0.get().trim_matches('"').trim().parse().ok()
     }
 }
 

@@ -77,7 +77,7 @@ pub struct Brief<'a> {
     /// Fields of the table that are named as foreign.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<std::collections::BTreeMap<String, Value>>"))]
-    pub carried: Option<Named<CarriedValue<'a>>>,
+    pub carried: Option<Named<CarriedValue>>,
     /// Why there are no outcomes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<ErrorObject>,

@@ -136,7 +136,7 @@ pub struct Report<'a> {
     /// and columns with types as values.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<std::collections::BTreeMap<String, Value>>"))]
-    pub carried: Option<Named<CarriedValue<'a>>>,
+    pub carried: Option<Named<CarriedValue>>,
     /// Why there are no outcomes although the matrices are known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<ErrorObject>,

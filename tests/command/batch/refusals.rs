@@ -126,6 +126,18 @@ fn a_byte_order_mark_belongs_to_no_name_and_no_line() {
 }
 
 #[test]
+fn carried_json_is_copied_as_it_stands() {
+    let carried = format!(
+        r#"{{"big":123456789012345678901234567890,"huge":1e400,"deep":{}{},"escaped":"\u0041"}}"#,
+        "[".repeat(200),
+        "]".repeat(200)
+    );
+    let row = format!(r#"{{"q_base_z":0.5,"v_base_z":-1,{}"#, &carried[1..]);
+    let run = batch(&["-", "--friction", "1"], format!("{row}\n")).well();
+    assert!(run.stdout.contains(&format!(r#""carried":{carried}"#)), "{}", run.stdout);
+}
+
+#[test]
 fn a_stray_quote_costs_no_row_but_its_own() {
     let row = |id: usize| format!("{id},0.5,-1,{}note\n", if id % 400 == 50 { "\"" } else { "" });
     let table = "id,q_base_z,v_base_z,note\n".to_owned() + &(0..1000).map(row).collect::<String>();
