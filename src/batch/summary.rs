@@ -181,7 +181,6 @@ impl Summary {
     /// Counts a state that has outcomes.
     pub fn count(&mut self, state: impl Fn() -> StateRef, impact: &Impact, analysis: &Analysis) {
         self.states += 1;
-        self.question = impact.aspect();
         self.verdicts.0[analysis.verdict as usize] += 1;
         self.beyond_budget += u64::from(analysis.open.is_some_and(|open| open.beyond_budget));
         self.uncertain += u64::from(impact.holds.is_some());
@@ -217,9 +216,6 @@ impl Summary {
     /// Adds the summary of the states that follow.
     pub fn merge(&mut self, following: Self) {
         self.states += following.states;
-        if following.states > following.refused {
-            self.question = following.question;
-        }
         self.refused += following.refused;
         self.beyond_budget += following.beyond_budget;
         self.verdicts.0.iter_mut().zip(following.verdicts.0).for_each(|(count, more)| *count += more);
@@ -253,8 +249,7 @@ impl Summary {
     /// What a reader should know of the touchdowns.
     pub fn of_touchdowns(&self) -> impl Iterator<Item = String> {
         let Self { early, slowed, deep, no_strike, .. } = *self;
-        let notes = [notes::early(early), notes::slowed(slowed), notes::deep(deep), notes::no_strike(no_strike)];
-        notes.into_iter().flatten()
+        notes::odd_touchdowns([early, slowed, deep, no_strike])
     }
 
     fn near(&mut self, state: impl Fn() -> StateRef, outcomes: &[Outcome]) {

@@ -155,7 +155,7 @@ pub(super) fn run(args: &Args) -> Completion {
     }
     let mut output = args.begin(&question, (input_format, format), &head, origin)?;
     let ((answered, refused), begun) = (output.kept(), output.is_empty()?);
-    let mut sink = OutputSink::new(output, &name, &progress);
+    let mut sink = OutputSink::new(output, format.is_text(), &name, &progress);
     sink.gait = Gait::new(args.mirror.forward(), args.recording.touchdowns);
     if begun {
         sink.write(&head)?;
@@ -175,6 +175,7 @@ pub(super) fn run(args: &Args) -> Completion {
     let OutputSink { output, summary: mut counts, gait, .. } = sink;
     let useful = answered > 0 || counts.refused < counts.states || counts.states == 0 || args.refused == Answered::All;
     output.finish(useful)?;
+    counts.question = args.aspect();
     counts.missing_columns = header.as_ref().map_or(Vec::new(), |header| header.missing().to_vec());
     progress.finish_and_clear();
 
@@ -303,7 +304,7 @@ impl Args {
         origin: Origin,
     ) -> io::Result<BatchOutput> {
         let asked = self.asked(question, format);
-        match self.output.as_deref().filter(|_| self.resume) {
+        match self.output.as_deref().filter(|path| self.resume && *path != Path::new("-")) {
             // Summaries and pictures are of all states.
             Some(path) => BatchOutput::resume(path, head, self.summary.is_some() || question.keyframes, origin, asked),
             None => {

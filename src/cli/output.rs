@@ -233,6 +233,14 @@ impl NewFile {
         self.places.as_ref().is_some_and(|[_, last]| last.is_file())
     }
 
+    /// Removes a file that has not its own name yet and is not kept.
+    pub fn discard(&self) {
+        if let (Some([part, _]), false) = (&self.places, self.keep) {
+            // There is no one to tell that a useless file stays.
+            let _ = std::fs::remove_file(part);
+        }
+    }
+
     /// Gives the file its name.
     pub fn finish(mut self) -> io::Result<()> {
         let Some([part, last]) = self.places.take() else { return Ok(()) };
@@ -249,10 +257,7 @@ impl NewFile {
 
 impl Drop for NewFile {
     fn drop(&mut self) {
-        if let (Some([part, _]), false) = (&self.places, self.keep) {
-            // There is no one to tell that a useless file stays.
-            let _ = std::fs::remove_file(part);
-        }
+        self.discard();
     }
 }
 

@@ -79,6 +79,13 @@ impl BatchOutput {
         }
     }
 
+    /// Removes what was written if no other run can continue it.
+    pub fn discard(&self) {
+        if let Written::New(Target::File(file)) = &self.written {
+            file.discard();
+        }
+    }
+
     /// Ends the output; a file that is there already is replaced only if something was `answered`.
     pub fn finish(mut self, answered: bool) -> io::Result<()> {
         match self.written {

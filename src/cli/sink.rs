@@ -30,16 +30,17 @@ pub(super) struct OutputSink<'a> {
     /// How many refusals were reported, and how many there were of each place and reason without its numbers.
     reported: u64,
     alike: HashMap<(Option<String>, String), u64>,
-    /// Lines written so far.
-    lines: usize,
+    /// Lines written so far, of an output that has lines.
+    lines: Option<usize>,
     /// For columns with types.
     #[cfg(feature = "columnar")]
     pub columns: Option<ColumnWriter>,
 }
 
 impl<'a> OutputSink<'a> {
-    /// Answers to `input` go to `output`, which must not buffer, so that the number of written lines is known.
-    pub fn new(output: BatchOutput, input: &'a str, progress: &'a ProgressBar) -> Self {
+    /// Answers to `input` go to `output`, as text or not, which must not buffer, so that the number of written lines is
+    /// known.
+    pub fn new(output: BatchOutput, is_text: bool, input: &'a str, progress: &'a ProgressBar) -> Self {
         Self {
             output,
             input,
@@ -48,7 +49,7 @@ impl<'a> OutputSink<'a> {
             gait: Gait::default(),
             reported: 0,
             alike: HashMap::new(),
-            lines: 0,
+            lines: is_text.then_some(0),
             #[cfg(feature = "columnar")]
             columns: None,
         }
@@ -60,7 +61,7 @@ impl<'a> OutputSink<'a> {
             match self.output.write(bytes) {
                 Ok(0) => return Err(self.ended(ErrorKind::WriteZero.into())),
                 Ok(written) => {
-                    self.lines += memchr_iter(b'\n', &bytes[..written]).count();
+                    self.lines = self.lines.map(|lines| lines + memchr_iter(b'\n', &bytes[..written]).count());
                     bytes = &bytes[written..];
                 }
                 Err(error) if error.kind() == ErrorKind::Interrupted => {}
@@ -71,10 +72,7 @@ impl<'a> OutputSink<'a> {
     }
 
     fn ended(&self, error: io::Error) -> io::Error {
-        if error.kind() == ErrorKind::InvalidData {
-            return error;
-        }
-        let lines = self.lines;
+        let Some(lines) = self.lines.filter(|_| error.kind() != ErrorKind::InvalidData) else { return error };
         io::Error::new(
             error.kind(),
             format!("{error}; it ends after {lines} whole line{}", if lines == 1 { "" } else { "s" }),
@@ -105,6 +103,7 @@ impl<'a> OutputSink<'a> {
         self.progress.finish_and_clear();
         let status = status(Failure::Output(error));
         note_part(&self.output);
+        self.output.discard();
         std::process::exit(status.into())
     }
 }

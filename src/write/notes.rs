@@ -47,29 +47,26 @@ pub fn left_out(header: &Header, dropped: &Dropped) -> impl Iterator<Item = Stri
     not_read.into_iter().chain(projected)
 }
 
-/// How many touchdowns were taken above the ground, of feet whose heights have no noise.
-pub fn early(count: u64) -> Option<String> {
-    let what = "touchdowns taken above the ground, from heights without noise";
-    (count > 0).then(|| format!("{what}: {count}; if they are of a simulation, give `simulated`"))
-}
-
-/// How many touchdowns have feet that are slowed down already.
-pub fn slowed(count: u64) -> Option<String> {
-    let what = "touchdowns whose foot has fallen more than twice as fast shortly before";
-    let then = "if it sinks into soft ground, theirs is the state after the impact: give `simulated`";
-    (count > 0).then(|| format!("{what}: {count}; {then}"))
-}
-
-/// How many touchdowns were taken far under the ground.
-pub fn deep(count: u64) -> Option<String> {
-    let what = "touchdowns of feet far under z = 0, which were lifted to it";
-    (count > 0).then(|| format!("{what}: {count}; are the base's height and axes right, or does the ground descend?"))
-}
-
-/// How many touchdowns have no impact.
-pub fn no_strike(count: u64) -> Option<String> {
-    let what = "touchdowns without an impact, as their foot does not come down";
-    (count > 0).then(|| format!("{what}: {count}; is theirs the state after it? (see `at`, `simulated`)"))
+/// How many touchdowns were taken above the ground, of feet whose heights have no noise; have feet that are slowed down
+/// already; were taken far under the ground; have no impact.
+pub fn odd_touchdowns(counts: [u64; 4]) -> impl Iterator<Item = String> {
+    let what = [
+        ("taken above the ground, from heights without noise", "if they are of a simulation, give `simulated`"),
+        (
+            "whose foot has fallen more than twice as fast shortly before",
+            "if it sinks into soft ground, theirs is the state after the impact: give `simulated`",
+        ),
+        (
+            "of feet far under z = 0, which were lifted to it",
+            "are the base's height and axes right, or does the ground descend?",
+        ),
+        (
+            "without an impact, as their foot does not come down",
+            "is theirs the state after it? (see `at`, `simulated`)",
+        ),
+    ];
+    let found = counts.into_iter().zip(what).filter(|(count, _)| *count > 0);
+    found.map(|(count, (what, then))| format!("touchdowns {what}: {count}; {then}"))
 }
 
 /// That a short table does not say of `count` states whether their outcomes hold within their uncertainty.

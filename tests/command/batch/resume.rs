@@ -265,4 +265,18 @@ fn a_full_disk_leaves_the_old_result_and_a_part() {
     }
     assert_eq!(batch(&[&states, "--friction", "0.5", "-o", &output, "--resume"], "").status, 1);
     assert!(read(&output) == whole);
+    assert!(batch(&[&states, "--friction", "0.5", "-o", "-", "--resume"], "").stdout == whole);
+    // Columns cannot be continued.
+    #[cfg(feature = "columnar")]
+    {
+        let output = place("disk.parquet");
+        let script = "trap '' XFSZ; ulimit -f 8; exec \"$0\" \"$@\"";
+        let arguments = ["batch", &disc(), &states, "--friction", "0.5", "-o", &output];
+        let mut shell = Command::new("bash");
+        let run =
+            shell.args(["-c", script, env!("CARGO_BIN_EXE_heelstrike")]).args(arguments).output().expect("it runs");
+        let stderr = String::from_utf8_lossy(&run.stderr);
+        assert!(run.status.code() == Some(1) && !stderr.contains("whole lines"), "{stderr}");
+        assert!(!fs::exists(format!("{output}.part")).expect("known"), "{stderr}");
+    }
 }

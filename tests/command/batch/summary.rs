@@ -114,6 +114,8 @@ fn forces_are_answered_and_summed_up() {
     let summary = parsed(&read(&path));
     assert_eq!((&summary["question"], &summary["verdicts"]["unique"]), (&json!("forces"), &json!(2)));
     assert!(run.stderr.contains("smallest margins with a force"), "{}", run.stderr);
+    let refused = batch(&["-", "--friction", "0.5", "--forces", "--summary", &path], "oops\n");
+    assert_eq!((refused.status, &parsed(&read(&path))["question"]), (1, &json!("forces")));
     let table = batch(&["-", "--friction", "0.5", "--forces", "--output-format", "csv"], states).stdout;
     let head =
         "id,line,verdict,outcome,margin,proven,mode_disc,f_disc_t,f_disc_n,a_base_x,a_base_z,a_base_pitch,border";
