@@ -171,13 +171,19 @@ impl Pipeline<'_> {
         Ok(prepared)
     }
 
-    /// Refuses a state whose lists are not as long as its robot has coordinates.
+    /// Refuses a state whose lists are not as long as its robot has coordinates, or whose indices it does not have.
     fn check_lengths(&self, state: &State) -> Result<()> {
         let coordinates = self.robot.dofs();
         check_length("position", state.position.len(), coordinates)?;
         check_length("velocity", state.velocity.len(), coordinates)?;
         let joints = self.robot.joints.len() + self.robot.mimic_joints.len();
-        check_length("rotor_inertia", joints.max(state.scene.rotor_inertia.len()), joints)
+        check_length("rotor_inertia", joints.max(state.scene.rotor_inertia.len()), joints)?;
+        if let Some(Uncertainty { position, velocity, rotor_inertia, .. }) = &state.uncertainty {
+            check_length("uncertainty.position", position.len(), coordinates)?;
+            check_length("uncertainty.velocity", velocity.len(), coordinates)?;
+            check_length("uncertainty.rotor_inertia", joints.max(rotor_inertia.len()), joints)?;
+        }
+        state.scene.check_indices(self.robot)
     }
 
     /// Refuses a joint outside its limits, if that is asked for.

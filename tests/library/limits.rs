@@ -2,9 +2,10 @@
 
 use crate::support::impact::{ramone, reduced, robot, try_impact};
 use crate::support::urdf::{self, Axis, HINGE, joint, link};
-use heelstrike::Robot;
 use heelstrike::pipeline::Options;
 use heelstrike::robot::{Base, Reduction};
+use heelstrike::state::{ByLink, LinkPoint, NamedContact, NamedLoop, Uncertainty};
+use heelstrike::{Pipeline, Robot, State};
 use serde_json::json;
 
 /// A body with the joint `hip`, whose limit is `limit`, and `calf`, which mimics it threefold.
@@ -118,4 +119,31 @@ fn strict_limits_refuse_with_place_and_remedy() {
         assert!(error.remedy().is_some_and(|remedy| remedy.contains("`strict_limits`")));
         assert!(try_impact(&robot, options, state(2.25)).is_ok());
     }
+}
+
+#[test]
+fn an_index_that_the_robot_does_not_have_is_refused() {
+    let robot = limited(HINGE, "");
+    let refused = |change: &dyn Fn(&mut State)| {
+        let mut state = State::zero(&robot);
+        change(&mut state);
+        let error = Pipeline::new(&robot, Options::default()).impact(&state).expect_err("no such index");
+        (error.place().expect("a place").to_owned(), error.reason().to_string())
+    };
+    let point = LinkPoint { link: 3, offset: [0.0; 3] };
+    let none = "no index 3: the robot has 3 links, counted from 0".to_owned();
+    assert_eq!(refused(&|state| state.scene.stance = Some(3)), ("stance".into(), none.clone()));
+    let contact = NamedContact { link: 3, offset: [0.0; 3], radius: 0.0 };
+    assert_eq!(refused(&|state| state.scene.contacts = Some(vec![contact])), ("contacts".into(), none.clone()));
+    let base = LinkPoint { link: 0, ..point };
+    assert_eq!(refused(&|state| state.scene.loops = vec![NamedLoop { a: base, b: point }]), ("loops".into(), none));
+    let (place, reason) = refused(&|state| state.scene.braked = vec![1]);
+    assert_eq!((&*place, &*reason), ("held", "no index 1: the robot has 1 joints, counted from 0"));
+    let uncertainty = || Uncertainty {
+        position: vec![0.0; 4],
+        velocity: Vec::new(),
+        friction: ByLink::default(),
+        rotor_inertia: Vec::new(),
+    };
+    assert_eq!(refused(&|state| state.uncertainty = Some(uncertainty())).0, "uncertainty.velocity");
 }
