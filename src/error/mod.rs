@@ -109,7 +109,6 @@ pub struct Error(Box<Refusal>);
 
 #[derive(Debug, Clone, thiserror::Error)]
 struct Refusal {
-    #[source]
     reason: Reason,
     file: Option<String>,
     location: Option<Location>,
@@ -281,6 +280,12 @@ mod tests {
     fn display_names_the_place_from_the_outside_in() {
         let error = Error::new(Reason::Missing("friction".into())).at("state").on(3, 7).in_file("a.json");
         assert_eq!(error.to_string(), "a.json:3:7: state: friction is missing");
+    }
+
+    #[test]
+    fn a_chain_of_errors_says_each_reason_once() {
+        let error = Error::new(Reason::Missing("friction".into()));
+        assert!(std::error::Error::source(&error).is_none());
     }
 
     #[test]
