@@ -7,34 +7,10 @@ use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet, normali
 use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// The library's settings, as its hints name them, and their options.
-const FLAGS: &[(&str, &str)] = &[
-    ("base", "--base"),
-    ("plane", "--plane"),
-    ("all", "--all"),
-    ("hold", "--hold"),
-    ("axis_tolerance", "--axis-tolerance"),
-    ("feet", "--contact"),
-    ("contact_tolerance", "--contact-tolerance"),
-    ("package_path", "--package-path"),
-    ("place", "--place"),
-    ("strict_limits", "--strict-limits"),
-    ("resting_speed", "--resting-speed"),
-    ("friction", "--friction"),
-    ("velocity", "--velocity"),
-    ("drop", "--drop"),
-    ("ground_height", "--ground-height"),
-    ("foreign", "--foreign"),
-    ("touchdowns", "--touchdowns"),
-    ("at", "--at"),
-    ("touching", "--touching"),
-    ("input_format", "--input-format"),
-    ("format", "--format"),
-    ("budget", "--budget"),
-    ("budget_total", "--budget-total"),
-    ("brief", "--brief"),
-    ("simulated", "--simulated"),
-];
+/// The library's settings, as its hints name them; each has an option of its name, and `feet` has `--contact`.
+const SETTINGS: &str = "base plane all hold axis_tolerance feet contact_tolerance package_path place strict_limits \
+    resting_speed friction velocity drop ground_height foreign touchdowns at touching input_format format budget \
+    budget_total brief simulated";
 
 /// The text with settings such as `base: floating` in backticks written as options: --base floating.
 pub(super) fn with_flags(text: &str) -> String {
@@ -44,9 +20,10 @@ pub(super) fn with_flags(text: &str) -> String {
         // Every second piece stands between two backticks, except a last one that nothing closes.
         let quoted = at % 2 == 1 && at + 1 < pieces.len();
         let (name, value) = piece.split_once(": ").unwrap_or((piece, ""));
-        match FLAGS.iter().find(|(setting, _)| quoted && *setting == name) {
-            Some((_, flag)) if value.is_empty() => out.push_str(flag),
-            Some((_, flag)) => out.extend([flag, " ", value]),
+        let flag = || format!("--{}", if name == "feet" { "contact".into() } else { name.replace('_', "-") });
+        match (quoted && SETTINGS.split(' ').any(|setting| setting == name)).then(flag) {
+            Some(flag) if value.is_empty() => out.push_str(&flag),
+            Some(flag) => out.extend([&flag, " ", value]),
             None if at % 2 == 1 => out.extend(["`", piece, if quoted { "`" } else { "" }]),
             None => out.push_str(piece),
         }

@@ -19,8 +19,9 @@ pub(super) struct Dynamics {
 }
 
 impl Dynamics {
-    /// G = J M^-1 J^T by rows and c = J v in numbers of any kind, without pivoting: M is positive definite.
-    pub fn numbers<T: Real>(&self) -> (Vec<T>, Vec<Pair<T>>) {
+    /// G = J M^-1 J^T by rows and c = J v in numbers of any kind, without pivoting: M is positive definite. Also what
+    /// the elimination leaves of M's diagonal.
+    pub fn numbers<T: Real>(&self) -> (Vec<T>, Vec<Pair<T>>, Vec<T>) {
         let dofs = self.velocity.len();
         let lower = |i: usize, j: usize| T::from_f64(self.mass_matrix[i.max(j)][i.min(j)]);
         let mut mass: Vec<Vec<T>> = (0..dofs).map(|i| (0..dofs).map(|j| lower(i, j)).collect()).collect();
@@ -47,7 +48,7 @@ impl Dynamics {
         let velocity: Vec<T> = self.velocity.iter().map(|&entry| T::from_f64(entry)).collect();
         let before =
             jacobian.chunks_exact(2).map(|pair| [dot(&pair[0], &velocity), dot(&pair[1], &velocity)]).collect();
-        (delassus, before)
+        (delassus, before, (0..dofs).map(|k| mass[k][k]).collect())
     }
 }
 
@@ -79,68 +80,42 @@ impl ContactProblem {
         for &entry in velocity {
             finite(entry, || "an entry of velocity".into())?;
         }
-        let cholesky = dense_cholesky(mass_matrix)?;
-        let rows: Vec<Vec<f64>> = contact_jacobian.iter().map(|row| forward_substituted(&cholesky, row)).collect();
-        let entry = |i: usize, j: usize| -> f64 { rows[i].iter().zip(&rows[j]).map(|(a, b)| a * b).sum() };
-        let count = contact_jacobian.len();
-        let mut delassus = vec![0.0; count * count];
-        for i in 0..count {
-            for j in 0..=i {
-                let entry = finite(entry(i, j), || format!("entry [{i}][{j}] of J M^-1 J^T"))?;
-                delassus[i * count + j] = entry;
-                delassus[j * count + i] = entry;
-            }
+        check_symmetry(mass_matrix)?;
+        let (mass_matrix, contact_jacobian) = (mass_matrix.to_vec(), contact_jacobian.to_vec());
+        let dynamics = Dynamics { mass_matrix, contact_jacobian, velocity: velocity.to_vec() };
+        let (mut delassus, before, left) = dynamics.numbers::<f64>();
+        let is_lost = |&k: &usize| !(left[k] > 4.0 * dofs as f64 * f64::EPSILON * dynamics.mass_matrix[k][k]);
+        if let Some(k) = (0..dofs).find(is_lost) {
+            return Err(Error::new(Reason::Singular(format!("coordinate {k}")))
+                .at(format!("mass_matrix[{k}][{k}]"))
+                .hint("every coordinate needs inertia: add a mass, or a rotor inertia on the diagonal"));
         }
-        let speed = |row: &[f64]| row.iter().zip(velocity).map(|(j, v)| j * v).sum::<f64>();
-        let before: Vec<Pair<f64>> =
-            contact_jacobian.chunks_exact(2).map(|pair| [speed(&pair[0]), speed(&pair[1])]).collect();
+        let rows = 2 * before.len();
+        for (i, j) in (0..rows).flat_map(|i| (0..=i).map(move |j| (i, j))) {
+            finite(delassus[i * rows + j], || format!("entry [{i}][{j}] of J M^-1 J^T"))?;
+            delassus[j * rows + i] = delassus[i * rows + j];
+        }
         let mut problem = Self::checked(delassus, before.clone(), before, friction, restitution)?;
-        problem.origin = Origin::Dynamics(Box::new(Dynamics {
-            mass_matrix: mass_matrix.to_vec(),
-            contact_jacobian: contact_jacobian.to_vec(),
-            velocity: velocity.to_vec(),
-        }));
+        problem.origin = Origin::Dynamics(Box::new(dynamics));
         Ok(problem)
     }
 }
 
-/// Lower Cholesky factor of a dense symmetric matrix, by rows.
-fn dense_cholesky(matrix: &[Vec<f64>]) -> Result<Vec<Vec<f64>>> {
-    let size = matrix.len();
-    let rounding = 4.0 * size as f64 * f64::EPSILON;
-    if let Some(place) = (0..size).find(|&i| matrix[i][i] < 0.0) {
-        let (what, value) = ("an entry of the mass matrix's diagonal".into(), matrix[place][place]);
+fn check_symmetry(mass_matrix: &[Vec<f64>]) -> Result<()> {
+    let size = mass_matrix.len();
+    if let Some(place) = (0..size).find(|&i| mass_matrix[i][i] < 0.0) {
+        let (what, value) = ("an entry of the mass matrix's diagonal".into(), mass_matrix[place][place]);
         return Err(Error::new(Reason::OutOfRange { what, allowed: "positive", value })
             .at(format!("mass_matrix[{place}][{place}]")));
     }
-    let mut lower = vec![vec![0.0; size]; size];
-    for i in 0..size {
-        for j in 0..=i {
-            if (matrix[i][j] - matrix[j][i]).abs() > rounding * matrix[i][i].sqrt() * matrix[j][j].sqrt() {
-                return Err(Error::new(Reason::Inconsistent("the mass matrix is not symmetric".into()))
-                    .at(format!("mass_matrix[{i}][{j}]")));
-            }
-            let rest = matrix[i][j] - (0..j).map(|k| lower[i][k] * lower[j][k]).sum::<f64>();
-            if i != j {
-                lower[i][j] = rest / lower[j][j];
-            } else if rest > 4.0 * size as f64 * f64::EPSILON * matrix[i][i] {
-                lower[i][i] = rest.sqrt();
-            } else {
-                return Err(Error::new(Reason::Singular(format!("coordinate {i}")))
-                    .at(format!("mass_matrix[{i}][{i}]"))
-                    .hint("every coordinate needs inertia: add a mass, or a rotor inertia on the diagonal"));
-            }
-        }
+    let rounding = 4.0 * size as f64 * f64::EPSILON;
+    let differs = |&(i, j): &(usize, usize)| {
+        let scale = mass_matrix[i][i].sqrt() * mass_matrix[j][j].sqrt();
+        (mass_matrix[i][j] - mass_matrix[j][i]).abs() > rounding * scale
+    };
+    match (0..size).flat_map(|i| (0..i).map(move |j| (i, j))).find(differs) {
+        Some((i, j)) => Err(Error::new(Reason::Inconsistent("the mass matrix is not symmetric".into()))
+            .at(format!("mass_matrix[{i}][{j}]"))),
+        None => Ok(()),
     }
-    Ok(lower)
-}
-
-/// y with `lower` y = `right`.
-fn forward_substituted(lower: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
-    let mut y = Vec::with_capacity(right.len());
-    for (row, &entry) in lower.iter().zip(right) {
-        let known: f64 = row.iter().zip(&y).map(|(a, b)| a * b).sum();
-        y.push((entry - known) / row[y.len()]);
-    }
-    y
 }

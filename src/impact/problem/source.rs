@@ -149,7 +149,7 @@ impl Source for ContactProblem {
         match &self.origin {
             Origin::Given | Origin::Symmetrized => self.map(T::from_f64),
             Origin::Dynamics(dynamics) => {
-                let (delassus, before) = dynamics.numbers();
+                let (delassus, before, _) = dynamics.numbers();
                 let (laws, restitution) = (self.laws.clone(), self.restitution.clone());
                 ContactProblem::of_parts(delassus, before.clone(), before, laws, restitution)
             }

@@ -3,13 +3,12 @@
 //! ```text
 //!     ball, capsule                     projected center line + circle
 //!     cylinder along the normal         center + circle
-//!     cylinder in the plane, box        zonogon of the projected half axes
+//!     cylinder in the plane, box        hull of the projected corners
 //!     cylinder oblique to the plane     projected center line + ellipse, the projection of its rims
 //!     mesh                              convex hull of its projected vertices
 //! ```
 
 mod hull;
-mod zonogon;
 
 use super::{FootShape, Rim};
 use crate::description::{Geometry, Matrix, Mesh, apply};
@@ -68,7 +67,9 @@ pub(super) fn outline(
 const POINT: Rim = Rim::Circle { radius: 0.0 };
 
 fn projected(center: Vector<f64>, half_sides: &[Vector<f64>], rim: Rim) -> Result<FootShape, String> {
-    swept(zonogon::corners(center, half_sides), rim)
+    let side = |of: usize, at: usize| if of >> at & 1 == 1 { half_sides[at] } else { -half_sides[at] };
+    let corner = |of: usize| center + (0..half_sides.len()).fold(Vector::zero(), |sum, at| sum + side(of, at));
+    swept(hull::corners(&(0..1 << half_sides.len()).map(corner).collect::<Vec<_>>())?, rim)
 }
 
 fn swept(corners: Vec<Vector<f64>>, rim: Rim) -> Result<FootShape, String> {
