@@ -217,16 +217,16 @@ impl Pipeline<'_> {
 
     /// The forces just after an `outcome`; `None` of more contacts than are enumerated.
     fn next(&mut self, after: &State, struck: &Prepared, outcome: &Outcome) -> Result<Option<Next>> {
-        let slip = |(contact, mode): (usize, &Mode)| match mode {
-            Mode::Separate => None,
-            _ if struck.impact.problem.bounce(contact) != 0.0 => None,
-            mode => mode.direction().partial_cmp(&0.0),
-        };
-        let slips: Vec<Option<Ordering>> = outcome.modes.iter().enumerate().map(slip).collect();
         // The foot of a stance may move after the impact. What stands has rates of rounding, whose squares would decide what
         // dependent contacts do.
         let mut velocity: Vec<f64> = outcome.velocity().collect();
         let fastest = f64::max(self.fastest(&struck.velocity), self.fastest(&velocity));
+        let slip = |(contact, mode): (usize, &Mode)| match mode {
+            Mode::Separate => None,
+            _ if struck.impact.problem.bounce(contact).abs() > STOPPED * fastest => None,
+            mode => mode.direction().partial_cmp(&0.0),
+        };
+        let slips: Vec<Option<Ordering>> = outcome.modes.iter().enumerate().map(slip).collect();
         self.stop(&mut velocity, STOPPED * fastest);
         let mut prepared = Prepared { velocity, foot: None, still: Still::default(), ..struck.clone() };
         prepared.impact.stance = None;

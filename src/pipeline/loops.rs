@@ -155,6 +155,7 @@ impl Pipeline<'_> {
         let widest = openings.zip(named).enumerate().reduce(|most, next| if next.1.0 > most.1.0 { next } else { most });
         let Some((worst, (opening, own))) = widest else { return Ok(None) };
         self.assembly.constrain(foot);
+        let given = velocity.to_vec();
         let amplitudes = self.assembly.close(velocity);
         let Assembly { plan, workspace, loops, .. } = &self.assembly;
         if let Some(foot) = foot {
@@ -168,10 +169,10 @@ impl Pipeline<'_> {
         if spent > OPENING * energy && opening > resting {
             return Err(moves_apart(own, worst, opening, robot));
         }
-        // What was left out must hold all the same.
+        // What was left out must hold all the same, up to a part of what moved its points: they may rest now.
         for (index, own) in loops.iter().enumerate().filter(|(index, _)| !self.is_whole(*index)) {
             let left = own.opening(plan, velocity, workspace).length();
-            let [a, b] = named[index].arms(robot).map(|end| self.bounds.speed(plan, end, velocity));
+            let [a, b] = named[index].arms(robot).map(|end| self.bounds.speed(plan, end, &given));
             if left * left > OPENING * (a * a + b * b) && left > resting {
                 return Err(moves_apart(&named[index], index, left, robot));
             }

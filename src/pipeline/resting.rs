@@ -77,7 +77,9 @@ impl Pipeline<'_> {
             let name = &contact.1.name;
             if let Some(because) = because {
                 resting[index] = true;
-                if !self.options.brief && (slow > 0.0 || bound > 0.0 && self.options.resting_speed.is_none()) {
+                // So small a bound has room for underflow alone.
+                let is_blurred = bound > f64::MIN_POSITIVE.sqrt() && self.options.resting_speed.is_none();
+                if !self.options.brief && (slow > 0.0 || is_blurred) {
                     notes.push(format!("{name}{AT_REST} although it moves at {slow:.1e} m/s ({because})"));
                 }
             } else if !self.options.brief && bound > 0.0 && slow <= bound {

@@ -11,6 +11,13 @@ use heelstrike::impact::Verdict;
 use heelstrike::pipeline::Options;
 use serde_json::{Value, json};
 
+#[test]
+fn an_exact_zero_is_not_noted() {
+    let block = robot(include_str!("../../urdf/block.urdf"));
+    let found = impact(&block, json!({"friction": 0.5, "velocity": {"base": {"pitch": 1}}}));
+    assert_eq!((found.contacts.len(), &found.notes[..]), (1, &[][..]));
+}
+
 /// A slide on the world, one on it and an arm: three contacts on three degrees of freedom, of which the arm's point rests
 /// to 1.6e-16 m/s. The base cannot move with it.
 #[test]

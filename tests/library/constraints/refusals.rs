@@ -19,6 +19,21 @@ fn rates_below_the_resting_speed_open_no_loop() {
     assert!(Pipeline::new(&robot, options).impact(&state).is_ok());
 }
 
+/// A braked crank and a free one hold the loop's points at rest, while an arm beside them turns: their rates of a little
+/// noise are taken away, and what rounding leaves of them opens nothing.
+#[test]
+fn a_loop_that_is_brought_to_rest_is_closed() {
+    let mechanism = parallelogram(&CRANKS).with("arm", "root", [0.0, 0.5], 1.0, [0.0, -0.2]);
+    let robot = bolted(&mechanism);
+    for at in 0..50 {
+        let q = 0.02 * f64::from(at) - 0.5;
+        let mut state = state(&mechanism, q, 0.0, json!([pin("rear", WIDTH)]));
+        state["velocity"] = json!({"joints": {"front": 3e-4, "arm": 1.0}});
+        state["held"] = json!(["rear", "coupler"]);
+        try_impact(&robot, &state).unwrap_or_else(|error| panic!("{q}: {error}"));
+    }
+}
+
 #[test]
 fn state_that_breaks_a_loop_is_refused() {
     let mechanism = parallelogram(&CRANKS);

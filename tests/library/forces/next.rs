@@ -38,6 +38,22 @@ fn disc_rests_slides_or_bounces() {
     assert_eq!(after(json!({}), push), expected(Verdict::Unique, Some(SlidePlus)));
 }
 
+/// A point that slides as its body turns about it; its normal velocity is what rounding leaves of 0.1 - 0.1.
+#[test]
+fn what_rounding_leaves_does_not_bounce() {
+    let disc = robot(DISC);
+    let turning = |restitution: f64| {
+        let rate = 1.0_f64.next_up();
+        json!({
+            "position": {"base": {"z": 0.4}}, "velocity": {"base": {"x": -1, "z": 0.1, "pitch": rate}},
+            "contacts": [{"link": "disc", "offset": [0.1, 0, -0.4]}], "friction": 0.5, "restitution": restitution,
+        })
+    };
+    let found = nexts(&disc, turning(0.5));
+    assert_eq!(found[0].modes, [[Some(Mode::SlideMinus)]]);
+    assert_eq!(found, nexts(&disc, turning(0.0)));
+}
+
 /// Loops, an uncertainty and a brief answer change nothing in it, nor it in them.
 #[test]
 fn next_stands_next_to_all_else() {
