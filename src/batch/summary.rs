@@ -337,7 +337,11 @@ impl fmt::Display for Summary {
         }
         if let Some(Needed { state, friction }) = &self.more_friction.greatest {
             let states = self.more_friction.states;
-            let friction = if friction.is_finite() { format!("{friction:.3}") } else { "infinite".to_owned() };
+            let friction = match *friction {
+                f64::INFINITY => "infinite".to_owned(),
+                ..0.001 => two_digits(*friction),
+                _ => format!("{friction:.3}"),
+            };
             writeln!(
                 f,
                 "all outcomes slide because friction is too small: {states}; most is needed by {state}: {friction}"

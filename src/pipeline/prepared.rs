@@ -369,6 +369,11 @@ impl Pipeline<'_> {
                 "the robot is bolted to the world: correct its joints, lower the ground by a profile, or give `base: floating`"
                     .to_owned()
             }
+            (Some(stance), _) if self.robot.links[stance].name == *link => {
+                "no foot of this shape stands between the ground's segments at x = 0: shift the profile along x, or give \
+                 `place: lowest` instead of the stance"
+                    .to_owned()
+            }
             (Some(_), _) | (_, None) => format!(
                 "a stance leaves the other feet where the pose puts them: correct the pitch or the joints, stand on \
                  {link}, or give `place: lowest` instead of the stance"

@@ -1,8 +1,10 @@
 //! Profiles with what else a scene has: contacts by name, slopes, a stance, uncertainty.
 
 use super::*;
-use crate::support::impact::modes;
+use crate::support::impact::{modes, ramone};
+use crate::support::random::Random;
 use crate::support::urdf::{HINGE, POINT, collision, joint, link};
+use heelstrike::impact::Verdict;
 use heelstrike::pipeline::Pipeline;
 use heelstrike::pipeline::robust::Robustness;
 use heelstrike::state::{Ground, Profile};
@@ -81,6 +83,33 @@ fn a_stance_stands_on_the_profile_at_x_0() {
     let error = try_impact(&robot, Options::default(), state("[[1, 0], [2, 0]]", "")).unwrap_err();
     assert_eq!(error.place(), Some("stance"));
     assert!(error.remedy().is_some_and(|remedy| remedy.contains("shift the profile")));
+    let error = try_impact(&disc(), Options::default(), state("[[-1, 0], [0, 0], [1, 1]]", "")).unwrap_err();
+    assert!(error.remedy().is_some_and(|remedy| remedy.contains("shift the profile")), "{error}");
+}
+
+/// Where the edge's corner lies under the circle's center only to rounding, its foot rests all the same.
+#[test]
+fn a_circle_that_stands_on_an_edge_rests_exactly() {
+    let robot = ramone();
+    let mut random = Random::new(5);
+    let shapes = [
+        json!([[-1, 0], [0, 0], [1, -0.1]]),
+        json!([[-1, -0.1], [0, 0], [1, 0]]),
+        json!([[-1, -0.2], [0, 0], [1, -0.2]]),
+    ];
+    for profile in shapes.iter().cycle().take(300) {
+        let mut angle = || random.between(-0.2, 0.2);
+        let text = json!({
+            "stance": "left_foot", "friction": 0.6, "ground": {"profile": profile},
+            "position": {"base": {"pitch": angle()},
+                "joints": {"left_hip": angle(), "left_knee": angle(), "right_hip": 1, "right_knee": -2}},
+            "velocity": {"base": {"pitch": angle()}, "joints": {"left_hip": angle(), "left_knee": angle()}},
+        });
+        let found = impact(&robot, &text);
+        let analysis = found.analysis.as_ref().expect("few contacts");
+        assert_eq!(analysis.verdict, Verdict::NoImpact, "{text}");
+        assert!(analysis.proven && found.notes.is_empty(), "{text}: {:?}", found.notes);
+    }
 }
 
 #[test]
