@@ -84,7 +84,8 @@ impl ContactProblem {
         let (mass_matrix, contact_jacobian) = (mass_matrix.to_vec(), contact_jacobian.to_vec());
         let dynamics = Dynamics { mass_matrix, contact_jacobian, velocity: velocity.to_vec() };
         let (mut delassus, before, left) = dynamics.numbers::<f64>();
-        let is_lost = |&k: &usize| !(left[k] > 4.0 * dofs as f64 * f64::EPSILON * dynamics.mass_matrix[k][k]);
+        let rounding = 4.0 * dofs as f64 * f64::EPSILON;
+        let is_lost = |&k: &usize| left[k].is_nan() || left[k] <= rounding * dynamics.mass_matrix[k][k];
         if let Some(k) = (0..dofs).find(is_lost) {
             return Err(Error::new(Reason::Singular(format!("coordinate {k}")))
                 .at(format!("mass_matrix[{k}][{k}]"))
