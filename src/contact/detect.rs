@@ -1,7 +1,6 @@
 //! Feet against the ground: which points touch, and where the base must be for a foot to stand.
 
 use super::Contact;
-use super::face::PARALLEL;
 use super::feet::Feet;
 use super::merge::{Merged, merge};
 use super::outline::Outline;
@@ -116,13 +115,6 @@ impl Footing<'_> {
                 contacts.extend(named.iter().map(|contact| self.contact(contact.link, touch(contact))));
             }
             None => self.detect(tolerance, &mut contacts)?,
-        }
-        if let Some(foot) = standing {
-            // At an edge the normal is the way from its corner to the circle's center, to rounding.
-            let is_foot = |contact: &&mut Contact| {
-                foot.has_circle_of(contact) && (contact.normal() - foot.normal()).length() <= PARALLEL
-            };
-            contacts.iter_mut().filter(is_foot).for_each(|contact| contact.ground = foot.ground);
         }
         if merges && self.named().is_none() {
             let stays = |contact: &Contact| standing.is_some_and(|foot| foot.has_circle_of(contact));

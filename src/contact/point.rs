@@ -1,6 +1,7 @@
 //! A material point of a body, and the contact that it makes.
 
 use super::Contact;
+use super::face::PARALLEL;
 use super::feet::Foot;
 use crate::dynamics::{Arm, ContactPoint};
 use crate::planar::{Rotation, Vector};
@@ -75,6 +76,12 @@ impl Contact {
     /// Whether it is the same circle of the same body as another, whatever the normals.
     pub fn has_circle_of(&self, other: &Self) -> bool {
         (self.link, self.body, self.center, self.radius) == (other.link, other.body, other.center, other.radius)
+    }
+
+    /// Whether it is the same circle with the same normal as another; at an edge that is the way from its corner to the
+    /// circle's center, to rounding.
+    pub fn is_the_same_as(&self, other: &Self) -> bool {
+        self.has_circle_of(other) && (self.normal() - other.normal()).length() <= PARALLEL
     }
 
     /// The same in numbers of any kind, a named point from the digits that it was named with.

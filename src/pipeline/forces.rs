@@ -217,17 +217,18 @@ impl Pipeline<'_> {
 
     /// The forces just after an `outcome`; `None` of more contacts than are enumerated.
     fn next(&mut self, after: &State, struck: &Prepared, outcome: &Outcome) -> Result<Option<Next>> {
-        // The foot of a stance may move after the impact. What stands has rates of rounding, whose squares would decide what
-        // dependent contacts do.
         let mut velocity: Vec<f64> = outcome.velocity().collect();
         let fastest = f64::max(self.fastest(&struck.velocity), self.fastest(&velocity));
+        // A bounce is made of the velocity before, and no larger than what rounding leaves of that it is none.
         let slip = |(contact, mode): (usize, &Mode)| match mode {
             Mode::Separate => None,
             _ if struck.impact.problem.bounce(contact).abs() > STOPPED * fastest => None,
             mode => mode.direction().partial_cmp(&0.0),
         };
         let slips: Vec<Option<Ordering>> = outcome.modes.iter().enumerate().map(slip).collect();
+        // What stands has rates of rounding, whose squares would decide what dependent contacts do.
         self.stop(&mut velocity, STOPPED * fastest);
+        // The foot of a stance may move after the impact.
         let mut prepared = Prepared { velocity, foot: None, still: Still::default(), ..struck.clone() };
         prepared.impact.stance = None;
         self.refuse_uneven(&prepared)?;

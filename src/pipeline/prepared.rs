@@ -178,7 +178,10 @@ impl Pipeline<'_> {
         check_length("velocity", state.velocity.len(), coordinates)?;
         let joints = self.robot.joints.len() + self.robot.mimic_joints.len();
         check_length("rotor_inertia", joints.max(state.scene.rotor_inertia.len()), joints)?;
-        if let Some(Uncertainty { position, velocity, rotor_inertia, .. }) = &state.uncertainty {
+        if let Some(Uncertainty { position, velocity, friction, rotor_inertia }) = &state.uncertainty {
+            let greatest = friction.links.keys().next_back().map_or(0, |link| link + 1);
+            let links = self.robot.links.len();
+            check_length("uncertainty.friction", greatest.max(links), links)?;
             check_length("uncertainty.position", position.len(), coordinates)?;
             check_length("uncertainty.velocity", velocity.len(), coordinates)?;
             check_length("uncertainty.rotor_inertia", joints.max(rotor_inertia.len()), joints)?;
@@ -370,8 +373,8 @@ impl Pipeline<'_> {
                     .to_owned()
             }
             (Some(stance), _) if self.robot.links[stance].name == *link => {
-                "no foot of this shape stands between the ground's segments at x = 0: shift the profile along x, or give \
-                 `place: lowest` instead of the stance"
+                "the foot that stands is in the ground beside x = 0: correct the pitch or the joints, shift the profile \
+                 along x, or give `place: lowest` instead of the stance"
                     .to_owned()
             }
             (Some(_), _) | (_, None) => format!(
@@ -501,10 +504,6 @@ const DYNAMICS_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// The contact of the foot that stands: the same circle with the same normal; a point rests whatever the normal is.
 fn place_of(foot: &Contact, contacts: &[Contact]) -> Option<usize> {
-    let at = |exactly: bool| {
-        contacts.iter().position(|other| {
-            foot.has_circle_of(other) && (other.ground == foot.ground || !exactly && foot.radius == 0.0)
-        })
-    };
-    at(true).or_else(|| at(false))
+    let same_point = || contacts.iter().position(|other| foot.radius == 0.0 && foot.has_circle_of(other));
+    contacts.iter().position(|other| foot.is_the_same_as(other)).or_else(same_point)
 }

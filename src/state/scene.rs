@@ -69,13 +69,15 @@ impl Scene {
             SpringEnd::World(_) => [spring.a.link; 2],
         });
         let (links, joints) = (("links", robot.links.len()), ("joints", robot.joints.len()));
-        let greatest = [
+        let greatest: [(&str, Option<usize>, _); 8] = [
             ("stance", self.stance, links),
             ("held", self.braked.iter().copied().max(), joints),
             ("contacts", self.contacts.iter().flatten().map(|contact| contact.link).max(), links),
             ("loops", self.loops.iter().flat_map(|own| [own.a.link, own.b.link]).max(), links),
-            ("impulses", self.impulses.iter().map(|impulse| impulse.link).max(), links),
+            ("impulse", self.impulses.iter().map(|impulse| impulse.link).max(), links),
             ("virtual", of_springs.max(), links),
+            ("friction", self.friction.links.keys().next_back().copied(), links),
+            ("restitution", self.restitution.links.keys().next_back().copied(), links),
         ];
         match greatest.into_iter().find(|&(_, index, (_, count))| index.is_some_and(|index| index >= count)) {
             Some((place, Some(index), (what, count))) => {

@@ -5,7 +5,7 @@ use crate::support::urdf::{self, Axis, HINGE, joint, link};
 use heelstrike::pipeline::Options;
 use heelstrike::robot::{Base, Reduction};
 use heelstrike::state::{ByLink, LinkPoint, NamedContact, NamedLoop, Uncertainty};
-use heelstrike::{Pipeline, Robot, State};
+use heelstrike::{Friction, Pipeline, Robot, State};
 use serde_json::json;
 
 /// A body with the joint `hip`, whose limit is `limit`, and `calf`, which mimics it threefold.
@@ -139,6 +139,8 @@ fn an_index_that_the_robot_does_not_have_is_refused() {
     assert_eq!(refused(&|state| state.scene.loops = vec![NamedLoop { a: base, b: point }]), ("loops".into(), none));
     let (place, reason) = refused(&|state| state.scene.braked = vec![1]);
     assert_eq!((&*place, &*reason), ("held", "no index 1: the robot has 1 joints, counted from 0"));
+    let of_fourth = || ByLink { default: None, links: [(3, Friction::ZERO)].into() };
+    assert_eq!(refused(&|state| state.scene.friction = of_fourth()).0, "friction");
     let uncertainty = || Uncertainty {
         position: vec![0.0; 4],
         velocity: Vec::new(),

@@ -105,7 +105,8 @@ impl Carried {
     fn value(&self, which: usize) -> CarriedValue {
         let own = |cell: &[u8]| String::from_utf8_lossy(cell).into_owned();
         let text = |cell: &[u8]| to_raw_value(&own(cell)).unwrap_or_default();
-        let json = |cell: &[u8]| RawValue::from_string(own(cell)).unwrap_or_default();
+        // Carriage returns between values end lines for some readers.
+        let json = |cell: &[u8]| RawValue::from_string(own(cell).replace('\r', " ")).unwrap_or_default();
         CarriedValue(match self {
             Self::Text(cells) => text(cells.get(which).unwrap_or_default()),
             Self::Json(cells) => json(cells.get(which).unwrap_or_default()),
@@ -132,7 +133,8 @@ pub struct CarriedValue(Box<RawValue>);
 impl CarriedValue {
     /// The number that it is or that stands in its text.
     pub fn number(&self) -> Option<f64> {
-        self.0.get().trim_matches('"').trim().parse().ok()
+        let text: Option<String> = serde_json::from_str(self.0.get()).ok();
+        text.as_deref().unwrap_or(self.0.get()).trim().parse().ok()
     }
 }
 

@@ -37,7 +37,7 @@ pub(super) fn unreadable(error: impl std::fmt::Display) -> Error {
     let text = error.to_string();
     let refused = Error::new(Reason::Io(format!("cannot be read: {text}")));
     match ["zstd", "brotli", "lzo"].iter().any(|codec| text.to_lowercase().contains(codec)) {
-        true => refused.hint("write it with the compression snappy, lz4 or gzip, of Arrow lz4, or with none"),
+        true => refused.hint("write it with the compression snappy, lz4 or gzip, for Arrow only lz4, or with none"),
         false => refused,
     }
 }

@@ -3,12 +3,13 @@
 //! ```text
 //!     ball, capsule                     projected center line + circle
 //!     cylinder along the normal         center + circle
-//!     cylinder in the plane, box        hull of the projected corners
+//!     cylinder in the plane, box        zonogon of the projected half axes
 //!     cylinder oblique to the plane     projected center line + ellipse, the projection of its rims
 //!     mesh                              convex hull of its projected vertices
 //! ```
 
 mod hull;
+mod zonogon;
 
 use super::{FootShape, Rim};
 use crate::description::{Geometry, Matrix, Mesh, apply};
@@ -67,9 +68,7 @@ pub(super) fn outline(
 const POINT: Rim = Rim::Circle { radius: 0.0 };
 
 fn projected(center: Vector<f64>, half_sides: &[Vector<f64>], rim: Rim) -> Result<FootShape, String> {
-    let side = |of: usize, at: usize| if of >> at & 1 == 1 { half_sides[at] } else { -half_sides[at] };
-    let corner = |of: usize| center + (0..half_sides.len()).fold(Vector::zero(), |sum, at| sum + side(of, at));
-    swept(hull::corners(&(0..1 << half_sides.len()).map(corner).collect::<Vec<_>>())?, rim)
+    swept(zonogon::corners(center, half_sides), rim)
 }
 
 fn swept(corners: Vec<Vector<f64>>, rim: Rim) -> Result<FootShape, String> {
@@ -133,6 +132,8 @@ mod tests {
         let flat = |x, z| Geometry::Box { size: [x, 0.1, z] };
         assert_outline(&flat(0.2, 0.0), unturned, 0.0, &line([0.1 - 0.1, -0.3], [0.1 + 0.1, -0.3]), 0.0);
         assert_outline(&flat(0.0, 0.4), unturned, 0.0, &line([0.1, -0.5], [0.1, -0.3 + 0.2]), 0.0);
+        // Thinner than what a mesh's side may bulge: the side below is the sole.
+        assert_outline(&flat(0.2, 2e-8), unturned, 0.0, &rectangle(0.1, 1e-8), 0.0);
         assert_outline(&flat(0.0, 0.0), unturned, 0.0, &[CENTER], 0.0);
         assert_outline(&Geometry::Sphere { radius: 0.0 }, [1.0, 2.0, 3.0], 0.0, &[CENTER], 0.0);
 

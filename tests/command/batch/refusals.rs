@@ -135,6 +135,9 @@ fn carried_json_is_copied_as_it_stands() {
     let row = format!(r#"{{"q_base_z":0.5,"v_base_z":-1,{}"#, &carried[1..]);
     let run = batch(&["-", "--friction", "1"], format!("{row}\n")).well();
     assert!(run.stdout.contains(&format!(r#""carried":{carried}"#)), "{}", run.stdout);
+    // But for what some readers take as the end of a line.
+    let run = batch(&["-", "--friction", "1"], "{\"q_base_z\":0.5,\"v_base_z\":-1,\"list\":[1,\r2]}\n").well();
+    assert!(run.stdout.contains(r#""carried":{"list":[1, 2]}"#), "{}", run.stdout);
 }
 
 #[test]

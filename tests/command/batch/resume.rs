@@ -276,7 +276,7 @@ fn a_full_disk_leaves_the_old_result_and_a_part() {
         let run =
             shell.args(["-c", script, env!("CARGO_BIN_EXE_heelstrike")]).args(arguments).output().expect("it runs");
         let stderr = String::from_utf8_lossy(&run.stderr);
-        assert!(run.status.code() == Some(1) && !stderr.contains("whole lines"), "{stderr}");
+        assert!(run.status.code() == Some(1) && !stderr.contains("it ends after"), "{stderr}");
         assert!(!fs::exists(format!("{output}.part")).expect("known"), "{stderr}");
     }
 }
