@@ -81,7 +81,8 @@ impl Contact {
     /// Whether it is the same circle with the same normal as another; at an edge that is the way from its corner to the
     /// circle's center, to rounding.
     pub fn is_the_same_as(&self, other: &Self) -> bool {
-        self.has_circle_of(other) && (self.normal() - other.normal()).length() <= PARALLEL
+        let is_parallel = || (self.normal() - other.normal()).length() <= PARALLEL;
+        self.has_circle_of(other) && (self.ground == other.ground || is_parallel())
     }
 
     /// The same in numbers of any kind, a named point from the digits that it was named with.
