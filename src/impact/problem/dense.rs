@@ -38,9 +38,12 @@ impl Dynamics {
                 }
             }
         }
-        // Of two rows both products are the same, and those of one row are squares.
-        let entry = |a: &[T], b: &[T]| (0..dofs).fold(T::zero(), |sum, k| sum + a[k] * b[k] / mass[k][k]);
-        let delassus = forward.iter().flat_map(|row| forward.iter().map(|column| entry(row, column))).collect();
+        // The mean of both orders, so that G is symmetric in f64, and equal rows have equal entries.
+        let divided = |row: &Vec<T>| (0..dofs).map(|k| row[k] / mass[k][k]).collect();
+        let quotients: Vec<Vec<T>> = forward.iter().map(divided).collect();
+        let entry = |i: usize, j: usize| dot(&quotients[i], &forward[j]) + dot(&quotients[j], &forward[i]);
+        let rows = forward.len();
+        let delassus = (0..rows * rows).map(|at| entry(at / rows, at % rows) * T::from_f64(0.5)).collect();
         let velocity: Vec<T> = self.velocity.iter().map(|&entry| T::from_f64(entry)).collect();
         let before =
             jacobian.chunks_exact(2).map(|pair| [dot(&pair[0], &velocity), dot(&pair[1], &velocity)]).collect();
@@ -133,6 +136,17 @@ mod tests {
         for (i, j) in (0..4).flat_map(|i| (0..4).map(move |j| (i, j))) {
             assert_eq!(problem.delassus(i, j), problem.delassus(i % 2, j % 2), "{i} {j}");
             assert_eq!(problem.delassus(i, j), problem.delassus(j, i), "{i} {j}");
+        }
+    }
+
+    /// Neither products of two rows nor what is left of M leaves the range of f64 before G does.
+    #[test]
+    fn a_problem_in_far_units_is_refused_with_its_size() {
+        for unit in [1e-200, 1e200] {
+            let square = [vec![unit, 0.0], vec![0.0, unit]];
+            let found = ContactProblem::from_dynamics(&square, &square, &[1.0, -1.0], vec![Friction::ZERO], vec![0.0]);
+            let error = found.expect_err("out of range");
+            assert!(matches!(error.reason(), Reason::OutOfRange { value, .. } if *value == unit), "{error}");
         }
     }
 }
