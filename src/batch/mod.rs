@@ -196,6 +196,7 @@ impl Answerer<'_> {
                 .columns
                 .filter(|columns| !columns.form().is_text())
                 .map(|columns| write::ColumnBlock::new(columns, records)),
+            summary: Summary { question: self.question.options.aspect, ..Summary::default() },
             ..Block::default()
         }
     }

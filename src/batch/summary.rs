@@ -215,6 +215,7 @@ impl Summary {
 
     /// Adds the summary of the states that follow.
     pub fn merge(&mut self, following: Self) {
+        self.question = following.question;
         self.states += following.states;
         self.refused += following.refused;
         self.beyond_budget += following.beyond_budget;

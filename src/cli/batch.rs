@@ -175,7 +175,6 @@ pub(super) fn run(args: &Args) -> Completion {
     let OutputSink { output, summary: mut counts, gait, .. } = sink;
     let useful = answered > 0 || counts.refused < counts.states || counts.states == 0 || args.refused == Answered::All;
     output.finish(useful)?;
-    counts.question = args.aspect();
     counts.missing_columns = header.as_ref().map_or(Vec::new(), |header| header.missing().to_vec());
     progress.finish_and_clear();
 
