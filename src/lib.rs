@@ -19,8 +19,8 @@
 //!     Study of one or two parameters --[sweep]--> regions, borders --[write, draw]--> JSON, CSV, text, picture, page
 //! ```
 //!
-//! The types below are the library's surface. `docs/architecture.md` describes the modules behind them, in which each
-//! uses only those declared above it.
+//! The types that most programs need are re-exported below. Each is documented in its module with what it refers to;
+//! a module uses only those that `docs/architecture.md` lists above it.
 //!
 //! # The impact
 //!
@@ -81,45 +81,26 @@ pub mod guarantees {}
 #[doc = include_str!("../docs/reductions.md")]
 pub mod left_out {}
 
-#[doc(hidden)]
 pub mod error;
-#[doc(hidden)]
 pub mod budget;
-#[doc(hidden)]
 pub mod scalar;
-#[doc(hidden)]
 pub mod planar;
-#[doc(hidden)]
 pub mod law;
 pub mod reductions;
-#[doc(hidden)]
 pub mod description;
-#[doc(hidden)]
 pub mod robot;
-#[doc(hidden)]
 pub mod state;
-#[doc(hidden)]
 pub mod dynamics;
-#[doc(hidden)]
 pub mod contact;
-#[doc(hidden)]
 pub mod impact;
-#[doc(hidden)]
 pub mod pipeline;
-#[doc(hidden)]
 pub mod gait;
-#[doc(hidden)]
 pub mod read;
-#[doc(hidden)]
 pub mod sweep;
 #[cfg(feature = "accuracy")]
-#[doc(hidden)]
 pub mod accuracy;
-#[doc(hidden)]
 pub mod write;
-#[doc(hidden)]
 pub mod draw;
-#[doc(hidden)]
 pub mod batch;
 #[cfg(feature = "cli")]
 #[doc(hidden)]

@@ -22,10 +22,12 @@ pub struct Vector<T = f64> {
 pub type Pair<T> = [T; 2];
 
 impl<T> Vector<T> {
+    /// The vector with these components.
     pub const fn new(x: T, z: T) -> Self {
         Self { x, z }
     }
 
+    /// x and z.
     pub fn components(self) -> [T; 2] {
         [self.x, self.z]
     }
@@ -42,10 +44,12 @@ impl<T: Real> Vector<T> {
         [Self { x: T::one(), z: T::zero() }, Self { x: T::zero(), z: T::one() }]
     }
 
+    /// The zero vector.
     pub fn zero() -> Self {
         Self { x: T::zero(), z: T::zero() }
     }
 
+    /// The scalar product.
     pub fn dot(self, other: Self) -> T {
         self.x * other.x + self.z * other.z
     }
@@ -57,6 +61,7 @@ impl<T: Real> Vector<T> {
 }
 
 impl Vector<f64> {
+    /// The Euclidean norm.
     pub fn length(self) -> f64 {
         libm::hypot(self.x, self.z)
     }
@@ -146,11 +151,14 @@ impl<T: schemars::JsonSchema> schemars::JsonSchema for Vector<T> {
 /// A rotation about the plane's normal, as the cosine and sine of its angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rotation<T> {
+    /// Cosine of the angle.
     pub cos: T,
+    /// Sine of the angle.
     pub sin: T,
 }
 
 impl<T: Real> Rotation<T> {
+    /// The turn by zero.
     pub fn identity() -> Self {
         Self { cos: T::one(), sin: T::zero() }
     }

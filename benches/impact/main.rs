@@ -50,7 +50,7 @@ fn state(robot: &Robot) -> State {
 fn points(robot: &Robot, state: &State) -> Vec<ContactPoint> {
     let contacts: &[NamedContact] = state.scene.contacts.as_deref().expect("named contacts");
     let point = |contact: &NamedContact| {
-        let link = &robot.links[contact.link];
+        let link = &robot.links()[contact.link];
         let ground = Rotation { cos: 1.0, sin: 0.0 };
         ContactPoint { body: link.body, center: link.point(contact.offset), radius: contact.radius, ground }
     };

@@ -15,7 +15,7 @@ pub type Claim = (String, bool);
 /// What the lecture says of its biped.
 pub fn claims() -> Result<Vec<Claim>, Box<dyn Error>> {
     let robot = Robot::from_urdf(include_str!("../../urdf/ramone.urdf"))?;
-    let weight = GRAVITY * robot.bodies.iter().map(|body| body.mass).sum::<f64>();
+    let weight = GRAVITY * robot.bodies().iter().map(|body| body.mass).sum::<f64>();
     let standing: Value = serde_json::from_str(include_str!("../ramone_stands.json"))?;
     let forces = |state: &Value| -> Result<Box<Impact>, Box<dyn Error>> {
         let state = State::from_json(&state.to_string(), &robot, &Defaults::default())?;
@@ -44,14 +44,14 @@ pub fn claims() -> Result<Vec<Claim>, Box<dyn Error>> {
     ));
 
     // By the lever rule.
-    let weights = robot.bodies.iter().enumerate();
+    let weights = robot.bodies().iter().enumerate();
     let moment: f64 = weights.map(|(at, own)| GRAVITY * own.mass * stands.placement.world(at, own.com).x).sum();
     let [left, right] = [0, 1].map(|foot| stands.contacts[foot].point.x);
     let on_right = (moment - weight * left) / (right - left);
     let pressed = [weight - on_right, on_right];
     let mut springs = Vec::new();
-    for link in robot.links.iter().filter(|link| link.has_inertial) {
-        let body = &robot.bodies[link.body];
+    for link in robot.links().iter().filter(|link| link.has_inertial) {
+        let body = &robot.bodies()[link.body];
         let (force, at) = (GRAVITY * body.mass, stands.placement.world(link.body, body.com));
         let mut spring = json!({"a": {"link": link.name, "offset": link.offset(body.com)}, "b": {"world": at}});
         if link.name == "torso" {
@@ -66,7 +66,7 @@ pub fn claims() -> Result<Vec<Claim>, Box<dyn Error>> {
         springs.push(spring);
     }
     for (contact, force) in stands.contacts.iter().zip(pressed) {
-        let foot = &robot.links[contact.link].name;
+        let foot = &robot.links()[contact.link].name;
         springs.push(json!({"a": {"link": foot}, "b": {"world": [0, 0]}, "force": [0.0, -force]}));
     }
     let mut carried = standing.clone();

@@ -31,7 +31,7 @@ pub fn answer(py: Python<'_>, model: &Model, kind: &str, question: &str, frictio
         if kind == "sweep" {
             let work = Work { friction, threads: threads(0), budget: None };
             let drawn = studied(model, question, work, |study, findings, workers| {
-                let text = Regions::new(study.study, findings).text(&robot.name, &Palette::default());
+                let text = Regions::new(study.study, findings).text(robot.name(), &Palette::default());
                 (sweep::of(study, findings, Forward::Along, workers).svg(), text)
             });
             return Ok(drawn?.0);

@@ -201,7 +201,7 @@ impl Robot {
     /// The robot's name in its file.
     #[getter]
     fn name(&self) -> &str {
-        &self.model.robot.name
+        self.model.robot.name()
     }
 
     /// Names of q's entries: x, z, pitch of the root link unless it is fixed to the world, then the joints.
@@ -213,14 +213,14 @@ impl Robot {
     /// The plane's axes in the root link's, forward before up: xz, yz, xy, zy, zx or yx.
     #[getter]
     fn plane(&self) -> &'static str {
-        self.model.robot.reading.plane.name()
+        self.model.robot.reading().plane.name()
     }
 
     /// Values of joints that `hold` fixed, and of those that follow joints without a coordinate; all others without a
     /// coordinate are at zero.
     #[getter]
     fn held(&self) -> HashMap<&str, f64> {
-        let held = self.model.robot.reading.frozen.iter().filter_map(|joint| match joint.reason {
+        let held = self.model.robot.reading().frozen.iter().filter_map(|joint| match joint.reason {
             FreezeReason::Asked { value } | FreezeReason::Follows { value, .. } => Some((&*joint.name, value)),
             _ => None,
         });
@@ -397,14 +397,14 @@ impl Robot {
     }
 
     fn __repr__(&self) -> String {
-        format!("Robot({:?}, coordinates={:?})", self.model.robot.name, self.coordinates())
+        format!("Robot({:?}, coordinates={:?})", self.model.robot.name(), self.coordinates())
     }
 }
 
 impl Robot {
     /// The robot, once Python was warned with its cautions.
     fn cautioned(self, py: Python<'_>) -> PyResult<Self> {
-        warn(py, self.model.robot.reading.cautions.iter().cloned())?;
+        warn(py, self.model.robot.reading().cautions.iter().cloned())?;
         Ok(self)
     }
 

@@ -196,7 +196,7 @@ impl Asker {
         // On a profile every foot may touch twice, as in a notch.
         let twice = |link: usize| [(); 2].map(|()| NamedContact { link, offset: [0.0; 3], radius: 0.0 });
         let on_profile =
-            || (0..model.robot.links.len()).filter(|&link| has_foot(model, link)).flat_map(twice).collect::<Vec<_>>();
+            || (0..model.robot.links().len()).filter(|&link| has_foot(model, link)).flat_map(twice).collect::<Vec<_>>();
         let table = match (&state.scene.contacts, &state.scene.ground) {
             (Some(contacts), _) => of_contacts(contacts),
             (None, Ground::Profile(_)) => of_contacts(&on_profile()),
@@ -211,7 +211,7 @@ impl Asker {
 
 /// Whether a link has a shape of the file or one that was added.
 fn has_foot(model: &Model, link: usize) -> bool {
-    !model.robot.links[link].shapes.is_empty() || model.options.feet.iter().any(|foot| foot.link == link)
+    !model.robot.links()[link].shapes.is_empty() || model.options.feet.iter().any(|foot| foot.link == link)
 }
 
 /// Whether both are the same and of Python's own types.
@@ -440,7 +440,7 @@ fn restituted(value: f64) -> heelstrike::Result<f64> {
 fn names(robot: &heelstrike::Robot, contacts: &[NamedContact]) -> Vec<String> {
     let of = |link: usize| contacts.iter().filter(move |contact| contact.link == link).count();
     let all = contacts.iter().enumerate().map(|(at, contact)| {
-        let name = &robot.links[contact.link].name;
+        let name = &robot.links()[contact.link].name;
         let before = contacts[..at].iter().filter(|other| other.link == contact.link).count();
         if of(contact.link) == 1 { name.clone() } else { format!("{name}/{before}") }
     });

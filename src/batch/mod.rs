@@ -107,6 +107,7 @@ impl Around<'_> {
 }
 
 impl<'q> Batch<'q> {
+    /// With memory that grows with the first records.
     pub fn new(question: &'q Question<'q>) -> Self {
         // Keyframes show all.
         let brief = question.detail.brief && !question.keyframes;

@@ -22,6 +22,7 @@ const STATES: usize = 16;
 pub struct RowOrigin {
     /// Its line, from 1.
     pub line: usize,
+    /// The id of its state.
     pub id: Option<Value>,
     /// The fields to copy to the result.
     pub carried: Option<Carried>,

@@ -22,6 +22,7 @@ use std::thread::{self, Builder};
 
 /// Gives tasks, one after the other.
 pub trait TaskSource: Send {
+    /// What a thread answers at once.
     type Task: Send;
 
     /// How many blocks per thread the buffer holds: while one thread takes long for a task, the others answer as many.
@@ -34,10 +35,12 @@ pub trait TaskSource: Send {
 /// The answers to a task.
 #[derive(Debug, Default)]
 pub struct Block {
+    /// The answers as text.
     pub out: Vec<u8>,
     /// The answers as columns, if these are asked for.
     #[cfg(feature = "columnar")]
     pub columns: Option<ColumnBlock>,
+    /// The records that were refused, in order.
     pub refused: Vec<RefusedRecord>,
     /// The summary of these records; see [`Summary::merge`].
     pub summary: Summary,

@@ -169,6 +169,7 @@ pub struct ModeCount {
     /// The names of the contacts.
     #[serde(serialize_with = "strings")]
     pub contacts: Vec<Arc<str>>,
+    /// The mode of each of them.
     pub modes: Vec<Mode>,
     /// How many outcomes have these modes.
     pub outcomes: u64,

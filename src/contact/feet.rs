@@ -73,6 +73,7 @@ impl Feet {
         self
     }
 
+    /// The feet, link by link.
     pub fn iter(&self) -> impl Iterator<Item = &Foot> {
         self.feet.iter()
     }

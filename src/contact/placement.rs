@@ -6,6 +6,7 @@ use crate::dynamics::{Workspace, kinematics};
 use crate::planar::{Rotation, Vector};
 use crate::robot::{Base, Rim, Robot};
 
+/// Where each body of a robot is.
 #[derive(Debug, Clone, Default)]
 pub struct Placement {
     /// Origin of each body in the world \[m\].

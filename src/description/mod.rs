@@ -92,6 +92,8 @@ pub struct Collision {
 
 /// A shape about the origin of its own frame; all sizes are finite and none is negative \[m\].
 #[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs, reason = "the text of each variant names its fields")]
+#[non_exhaustive]
 pub enum Geometry {
     /// A box with sides of these whole lengths along x, y and z.
     Box { size: [f64; 3] },
@@ -137,6 +139,7 @@ pub struct UrdfJoint {
 
 /// How a joint moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum JointKind {
     /// Does not move.
     Fixed,

@@ -1,6 +1,7 @@
 //! Pictures and pages of robots, impacts, sweeps and gaits.
 
 #[cfg(feature = "plot")]
+#[allow(missing_docs, reason = "names of colors, marks and strokes")]
 pub mod plot;
 #[cfg(feature = "plot")]
 mod forward;
@@ -24,6 +25,7 @@ use crate::state::{NamedContact, State};
 use crate::{Error, Impact, Outcome, Robot, Verdict};
 use serde_json::Value;
 
+/// A drawn state and its answer.
 #[derive(Debug, Clone)]
 pub struct Keyframe {
     /// The robot, its contacts and the ground; `None` if the state is refused.
@@ -34,12 +36,16 @@ pub struct Keyframe {
     pub notes: Vec<String>,
 }
 
+/// What a keyframe shows of its answer.
 #[derive(Debug, Clone)]
 pub struct KeyframeAnswer {
+    /// What was asked.
     pub aspect: Aspect,
+    /// The verdict.
     pub verdict: Verdict,
     /// Whether the list of outcomes is proven to be complete and right.
     pub proven: bool,
+    /// The outcomes.
     pub outcomes: Vec<Outcome>,
     /// The friction with which no contact would have to slide ([`Impact::friction_needed`]).
     pub friction_needed: Option<f64>,
@@ -47,13 +53,16 @@ pub struct KeyframeAnswer {
     pub open: Option<OpenCombinations>,
 }
 
+/// A keyframe with its place in the list of a page.
 #[derive(Debug, Clone)]
 pub struct ListedKeyframe {
     /// The line on which it begins, from 1.
     pub line: usize,
+    /// The id of the state.
     pub id: Option<Value>,
     /// In s.
     pub time: Option<f64>,
+    /// The state and its answer.
     pub keyframe: Keyframe,
 }
 
@@ -79,6 +88,7 @@ impl Keyframe {
         self.answer.iter_mut().for_each(|answer| forward.outcomes(&mut answer.outcomes));
     }
 
+    /// That of a refused state.
     pub fn refused(error: Error) -> Self {
         Self { drawing: None, answer: Err(error), notes: Vec::new() }
     }

@@ -90,7 +90,9 @@ pub(crate) struct MimicRatio {
 /// pitch and turning joints the turn, of x, z and sliding joints the displacement \[m\].
 #[derive(Debug, Clone, Default)]
 pub struct Configuration<T = f64> {
+    /// Cosines and sines; of sliding coordinates the identity.
     pub turns: Vec<Rotation<T>>,
+    /// Displacements \[m\]; of turning coordinates zero.
     pub displacement: Vec<T>,
 }
 

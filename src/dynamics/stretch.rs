@@ -13,6 +13,7 @@ pub(super) const SMALL: f64 = 0.1;
 /// A contact with its arm stretched.
 #[derive(Debug, Clone, Copy)]
 pub struct Arm {
+    /// The body that it ends on.
     pub body: usize,
     /// At least its distance from the body's origin, and the sum of all terms that it was added up from \[m\].
     pub length: f64,

@@ -58,6 +58,7 @@ pub struct Workspace<T = f64> {
     pub bias: Vec<T>,
 
     // Computed by `orthogonalize`.
+    /// What closed loops add.
     pub loops: LoopRows<T>,
 
     // Computed by `delassus` or `articulated_delassus`.

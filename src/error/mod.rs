@@ -17,6 +17,7 @@ pub type Result<T> = std::result::Result<T, Error>;
 /// Why an input was refused; `what` is the kind of thing or the quantity, as in `joint`.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
+#[allow(missing_docs, reason = "the text of each variant names its fields")]
 pub enum Reason {
     /// The text is not well-formed XML, JSON or the like.
     #[error("{}", short(.0))]

@@ -203,6 +203,7 @@ impl At {
 
 /// Which points touch the ground in addition to the striking one.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[allow(missing_docs, reason = "the text of each variant names its fields")]
 pub enum Touching {
     /// None.
     Strike,

@@ -30,6 +30,7 @@ use std::collections::BTreeMap;
 /// The most contacts of a problem (4^16 combinations are four billions).
 pub const CONTACT_LIMIT: usize = 16;
 
+/// The refusal of so many contacts, more than [`CONTACT_LIMIT`].
 pub fn too_many_contacts(contacts: usize) -> Error {
     Error::new(Reason::TooManyContacts { contacts, limit: CONTACT_LIMIT })
         .hint("leave out the contacts that matter least")

@@ -18,9 +18,11 @@ pub const EXPLAINED: usize = 6;
 /// Which rejected combinations an analysis lists.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ListedRejections<'a> {
+    /// None.
     Nothing,
     /// All of up to [`EXPLAINED`] contacts, and the paper's section 4 for each of them.
     Everything,
+    /// Those with these modes.
     Only(&'a [Vec<Mode>]),
 }
 

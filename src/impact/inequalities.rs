@@ -63,6 +63,7 @@ impl Inequalities {
         all
     }
 
+    /// Which inequalities belong to a combination, by its number.
     pub fn of_combination(&self, combination: usize) -> std::ops::Range<usize> {
         combination.checked_sub(1).map_or(0, |before| self.ends[before])..self.ends[combination]
     }

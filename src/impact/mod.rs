@@ -1,16 +1,17 @@
 //! From a contact problem to every outcome; knows no robot.
 //!
-//! Read [`problem`], then [`enumerate`] (numbers), [`slack`] (inequalities), and [`analysis`], where they meet.
+//! Read `problem`, then [`enumerate`] (numbers), `slack` (inequalities), and `analysis`, where they meet.
 
 mod linear;
 mod simplex;
-pub mod outcome;
-pub mod problem;
+mod outcome;
+mod problem;
+#[doc(hidden)]
 pub mod enumerate;
-pub mod slack;
+pub(crate) mod slack;
 mod generators;
 mod digits;
-pub mod inequalities;
+mod inequalities;
 mod reading;
 mod kernel;
 mod index;
@@ -26,7 +27,7 @@ mod collected;
 mod survivors;
 mod passes;
 mod families;
-pub mod analysis;
+mod analysis;
 
 pub use crate::law::{Friction, Inequality, Law, Mode};
 pub use analysis::{CONTACT_LIMIT, Scratch, analyze, too_many_contacts};
@@ -37,7 +38,7 @@ pub(crate) use explanation::mirrored;
 pub use inequalities::{Inequalities, InequalityScratch};
 pub use outcome::{
     Analysis, AtZero, Border, Effort, Explanation, Family, ImpulseRegion, Motion, Next, OpenCombinations, Outcome,
-    Rejection, RejectionReason, Verdict,
+    Range, Rejection, RejectionReason, Verdict,
 };
-pub(crate) use problem::{Attempt, Precision, Rung, climb};
+pub(crate) use problem::{Attempt, Precision, Rung, check_matrix_size, climb};
 pub use problem::{ContactProblem, Errors, Ladder, MATRIX_LIMIT, Source};

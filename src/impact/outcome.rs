@@ -48,6 +48,7 @@ impl fmt::Display for Verdict {
 /// A consistent combination of modes, written as a JSON object with these fields; [`Analysis`] has an example.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Outcome {
     /// One mode per contact.
     pub modes: Vec<Mode>,
@@ -210,6 +211,7 @@ impl Motion {
 
 /// A combination of modes that is not an outcome, and what it would have been; [`Analysis`] has an example.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Rejection {
     /// One mode per contact.
     pub modes: Vec<Mode>,
@@ -243,6 +245,8 @@ pub struct OpenCombinations {
 
 /// Why a combination is no outcome; `contact` counts from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the text of each variant names its fields")]
+#[non_exhaustive]
 pub enum RejectionReason {
     /// The inequality that is violated most clearly.
     Violated { contact: usize, inequality: Inequality },
@@ -272,6 +276,7 @@ impl RejectionReason {
 /// The paper's section 4 for each contact: the body as seen from it while all other contacts stick.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "Explained"))]
+#[non_exhaustive]
 pub struct Explanation {
     /// Angle of the impulse that a purely tangential velocity change needs, atan(M_nt / M_tt) \[rad\].
     pub beta: Vec<f64>,
@@ -284,6 +289,7 @@ pub struct Explanation {
 /// The paper's regions of the plane of gamma and beta, for infinite friction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "Region"))]
+#[non_exhaustive]
 pub enum ImpulseRegion {
     /// Lift-off.
     A,
@@ -297,6 +303,7 @@ pub enum ImpulseRegion {
 
 /// How many combinations each precision decided.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub struct Effort {
     /// f64 with an error bound.
     pub bound: u64,
@@ -329,6 +336,7 @@ impl Effort {
 /// # Ok::<(), heelstrike::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Analysis {
     /// The answer in one word.
     pub verdict: Verdict,

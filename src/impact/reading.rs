@@ -21,7 +21,7 @@ pub struct CombinationReading {
 
 impl Rejection {
     /// Of a combination whose reading is negative; `motion` is not asked for if two equations contradict each other.
-    pub fn read(modes: &[Mode], reading: CombinationReading, motion: impl FnOnce() -> Motion) -> Self {
+    pub(super) fn read(modes: &[Mode], reading: CombinationReading, motion: impl FnOnce() -> Motion) -> Self {
         let solved = !matches!(reading.because, RejectionReason::NothingHolds { .. });
         let motion = solved.then(motion);
         Self { margin: reading.margin, motion, ..Self::of(modes, reading.because) }

@@ -9,11 +9,17 @@ use crate::scalar::Real;
 
 /// A linear function of a contact's two numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum Function<T = f64> {
+    /// The first number.
     First,
+    /// The first number times -1.
     MinusFirst,
+    /// The second number.
     Second,
+    /// mu second - first: the distance from the edge of the friction cone on the side of +t.
     ConeMinus(T),
+    /// mu second + first: that on the side of -t.
     ConePlus(T),
 }
 

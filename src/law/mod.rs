@@ -42,6 +42,7 @@ pub enum Impulse<T = f64> {
 
 /// The law of a contact; `T` is the number of its coefficients.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum Law<T = f64> {
     /// No friction: the impulse is normal, and a closed contact sticks or slides as the others let it.
     Frictionless,
@@ -99,6 +100,7 @@ impl<T: Real> Law<T> {
         self.modes().iter().find(|group| group.contains(&mode)).map_or(mode, |group| group[0])
     }
 
+    /// Which impulses a contact of this mode can have.
     #[inline]
     pub fn impulse(&self, mode: Mode) -> Impulse<T> {
         match (*self, mode) {

@@ -108,6 +108,7 @@ const UNKNOWN_IN_TIME: &str =
 
 /// The answer for one state, of an impact or, with [`Sustained`], of forces; [`Pipeline`] has an example.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct Impact {
     /// Where the bodies are.
     pub placement: Placement,
@@ -176,6 +177,7 @@ fn unlisted(contacts: usize) -> Error {
 
 /// Something that this scene does not need; what the file does not is in [`Robot`].
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum LeftOut {
     /// The column of a joint that keeps its rate (an index into [`Robot::joints`](crate::Robot)).
     Column(usize),

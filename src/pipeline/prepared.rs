@@ -15,7 +15,7 @@ use crate::contact::{Contact, Footing, Level, Merged, Placement, RigidParts, Sur
 use crate::dynamics::plan::Plan;
 use crate::dynamics::{Arm, Constraints, RoundingBounds, Workspace, has_balance, kinetic_energy, mass_diagonal};
 use crate::error::{Error, Reason, Result, finite};
-use crate::impact::problem::check_matrix_size;
+use crate::impact::check_matrix_size;
 use crate::impact::{ContactProblem, Errors};
 use crate::planar::{Pair, Vector};
 use crate::robot::Robot;

@@ -9,7 +9,9 @@ use crate::state::State;
 /// A state's contact problem, not yet analyzed.
 #[derive(Debug, Clone)]
 pub struct Unsolved {
+    /// The closed contacts.
     pub contacts: Vec<Contact>,
+    /// Their contact problem, in f64.
     pub problem: ContactProblem,
     /// How far each foot is from the ground \[m\]; empty if the state names its contacts.
     pub clearance: Vec<f64>,

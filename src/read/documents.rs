@@ -12,6 +12,7 @@ pub struct Document<'t> {
     pub text: &'t str,
     /// Where it begins, from 1.
     pub line: usize,
+    /// In which column of that line, from 1.
     pub column: usize,
 }
 

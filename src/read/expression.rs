@@ -32,6 +32,7 @@ impl Names {
         }
     }
 
+    /// The names, in the order in which they were set.
     pub fn iter(&self) -> impl Iterator<Item = &str> {
         self.0.iter().map(|(name, _)| name.as_str())
     }

@@ -1,7 +1,7 @@
 //! Reads a contact problem given as matrices.
 
 use super::state as read;
-use crate::impact::problem::check_matrix_size;
+use crate::impact::check_matrix_size;
 use crate::impact::{ContactProblem, Errors, Source};
 use crate::read::json::{Node, Value};
 use crate::scalar::{Ordered, Trigonometry};

@@ -59,22 +59,14 @@ pub enum Base {
 /// ```
 #[derive(Debug, Clone)]
 pub struct Robot {
-    /// The robot's name in the file.
-    pub name: String,
-    /// How the root is attached.
-    pub base: Base,
-    /// Rigid bodies; a parent comes before its children, the root is 0.
-    pub bodies: Vec<Body>,
-    /// Joints that move independently, in the file's order: joint `k` is coordinate `base_dofs + k`.
-    pub joints: Vec<Joint>,
-    /// Joints that mimic one of these, in the file's order; they have no coordinate of their own.
-    pub mimic_joints: Vec<MimicJoint>,
-    /// The links of the file, in its order; without those that are the base itself.
-    pub links: Vec<Link>,
-    /// What of the file does not enter the analysis, and why.
-    pub left_out: Vec<LeftOutPart>,
-    /// How the file was read.
-    pub reading: Reading,
+    pub(crate) name: String,
+    pub(crate) base: Base,
+    pub(crate) bodies: Vec<Body>,
+    pub(crate) joints: Vec<Joint>,
+    pub(crate) mimic_joints: Vec<MimicJoint>,
+    pub(crate) links: Vec<Link>,
+    pub(crate) left_out: Vec<LeftOutPart>,
+    pub(crate) reading: Reading,
 }
 
 /// Links that no moving joint separates.
@@ -94,6 +86,7 @@ pub struct Body {
 
 /// The joint between a body and its parent.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[allow(missing_docs, reason = "the text of each variant names its fields")]
 pub enum ParentJoint {
     /// A joint with a coordinate of its own: an index into [`Robot::joints`].
     Joint(usize),
@@ -136,6 +129,7 @@ pub struct MimicJoint {
 
 /// The motion of a joint for a coordinate that grows.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[allow(missing_docs, reason = "the text of each variant names its fields")]
 pub enum Axis {
     /// It rotates the child about the plane's normal; `sign` is +1 where the URDF's axis points along the normal, -1
     /// where against it.
@@ -208,6 +202,46 @@ impl Link {
 }
 
 impl Robot {
+    /// The robot's name in the file.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// How the root is attached.
+    pub fn base(&self) -> Base {
+        self.base
+    }
+
+    /// Rigid bodies; a parent comes before its children, the root is 0.
+    pub fn bodies(&self) -> &[Body] {
+        &self.bodies
+    }
+
+    /// Joints that move independently, in the file's order: joint `k` is coordinate `base_dofs + k`.
+    pub fn joints(&self) -> &[Joint] {
+        &self.joints
+    }
+
+    /// Joints that mimic one of these, in the file's order; they have no coordinate of their own.
+    pub fn mimic_joints(&self) -> &[MimicJoint] {
+        &self.mimic_joints
+    }
+
+    /// The links of the file, in its order; without those that are the base itself.
+    pub fn links(&self) -> &[Link] {
+        &self.links
+    }
+
+    /// What of the file does not enter the analysis, and why.
+    pub fn left_out(&self) -> &[LeftOutPart] {
+        &self.left_out
+    }
+
+    /// How the file was read.
+    pub fn reading(&self) -> &Reading {
+        &self.reading
+    }
+
     /// Number of coordinates of the base: 3 if it floats, else 0.
     pub fn base_dofs(&self) -> usize {
         match self.base {

@@ -33,6 +33,7 @@ pub enum Plane {
 }
 
 impl Plane {
+    /// All planes, the usual one first.
     pub const ALL: [Self; 6] = [Self::XZ, Self::YZ, Self::XY, Self::ZY, Self::ZX, Self::YX];
 
     /// Its name, forward before up: `xz`, `yz` and so on.

@@ -6,6 +6,7 @@ use std::fmt;
 
 /// How a file was read.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Reading {
     /// The plane that the robot was reduced to.
     pub plane: Plane,
@@ -25,6 +26,7 @@ pub struct Reading {
 
 /// Why a plane was taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub enum PlaneReason {
     /// It was asked for.
     Asked,
@@ -52,6 +54,8 @@ pub struct FrozenJoint {
 
 /// Why a joint has no coordinate.
 #[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs, reason = "the text of each variant names its fields")]
+#[non_exhaustive]
 pub enum FreezeReason {
     /// It is fixed.
     Fixed,

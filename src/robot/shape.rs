@@ -24,6 +24,7 @@ pub struct FootShape {
 
 /// What stands about each corner of a shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[allow(missing_docs, reason = "the text of each variant names its fields")]
 pub enum Rim {
     /// A circle of this radius \[m\]; of radius 0, the corner itself.
     Circle { radius: f64 },

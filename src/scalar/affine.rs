@@ -71,6 +71,7 @@ impl<const N: usize> Affine<N> {
         self.error
     }
 
+    /// The smaller of the number and zero.
     pub fn min_zero(self) -> Self {
         match self.sign() {
             Sign::Negative => self,

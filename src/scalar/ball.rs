@@ -11,6 +11,7 @@ use super::{Enclosure, Midpoint, Ordered, Real, Sign, Trigonometry, series};
 /// so that structural zeros stay zeros. A quotient by a ball that contains zero has an infinite radius.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Ball<M = f64> {
+    /// Its center.
     pub mid: M,
     /// The greatest distance of the number from the center; never negative, infinite if nothing is known.
     pub radius: f64,

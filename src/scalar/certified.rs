@@ -9,7 +9,9 @@ use super::{Ordered, Real, Residue, Sign, Trigonometry};
 /// digits decide every sign that is [`Sign::Undecided`] although the residue is not zero.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Certified<B> {
+    /// Where the number is.
     pub enclosure: B,
+    /// Its residue, which knows whether it is zero.
     pub residue: Residue,
 }
 

@@ -81,10 +81,12 @@ pub trait Real:
     /// The number that is exactly `value`.
     fn from_f64(value: f64) -> Self;
 
+    /// Exactly 0.
     fn zero() -> Self {
         Self::from_f64(0.0)
     }
 
+    /// Exactly 1.
     fn one() -> Self {
         Self::from_f64(1.0)
     }
@@ -102,6 +104,7 @@ impl Real for f64 {
     }
 }
 
+/// The scalar product of two vectors of the same length.
 pub fn dot<T: Real>(a: &[T], b: &[T]) -> T {
     a.iter().zip(b).fold(T::zero(), |sum, (&a, &b)| sum + a * b)
 }
@@ -117,8 +120,11 @@ pub fn subtract<T: Real>(y: &mut [T], z: &[T], factor: T) {
 /// The sign of a number that may be known inexactly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sign {
+    /// It is negative.
     Negative,
+    /// It is exactly zero.
     Zero,
+    /// It is positive.
     Positive,
     /// The error does not exclude zero.
     Undecided,

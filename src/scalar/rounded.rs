@@ -9,7 +9,9 @@ use super::{Ordered, Real, Sign};
 /// Higham 2002, chapter 3.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Rounded {
+    /// The rounded number.
     pub value: f64,
+    /// How far the exact number may be from it.
     pub error: f64,
 }
 

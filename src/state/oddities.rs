@@ -18,6 +18,7 @@ const STEEP: f64 = 0.8;
 /// A joint that is outside its limits by more than rounding.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OutsideLimits<'r> {
+    /// The joint.
     pub joint: &'r Joint,
     /// Where it is \[rad or m\].
     pub position: f64,

@@ -16,12 +16,14 @@ use std::f64::consts::PI;
 /// The outcomes of one region, at ascending values of the parameter.
 #[derive(Debug, Clone, Default)]
 pub struct RegionCurves {
+    /// At the region's ends and as many places between them as the curves need.
     pub places: Vec<CurvePoint>,
 }
 
 /// The outcomes at one value of the parameter.
 #[derive(Debug, Clone)]
 pub struct CurvePoint {
+    /// The value of the parameter.
     pub at: f64,
     /// Every outcome's modes and motion, in the order of modes, which all points of a region share.
     pub outcomes: Vec<(Vec<Mode>, Motion)>,

@@ -21,6 +21,7 @@ const BESIDE: f64 = 0.499;
 
 /// What is asked along a line of parameters.
 pub trait Landscape {
+    /// The regime of a place.
     fn regime(&mut self, at: f64) -> Arc<Regime>;
     /// The quantities that are followed from place to place; `None` if the place is refused.
     fn watched(&mut self, at: f64) -> Option<Arc<Watched>>;
@@ -46,14 +47,18 @@ impl<P: Fn(f64) -> Vec<f64>> Landscape for Along<'_, '_, P> {
 /// A place and what happens there.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Probe {
+    /// The place.
     pub at: f64,
+    /// Its regime.
     pub regime: Arc<Regime>,
 }
 
 /// Two neighboring places of different regimes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bracket {
+    /// The last place before the border.
     pub below: Probe,
+    /// The first place beyond it.
     pub above: Probe,
 }
 
@@ -67,8 +72,11 @@ impl Bracket {
 /// A stretch of one regime; of positive width.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stretch {
+    /// Its least place.
     pub from: f64,
+    /// Its greatest place.
     pub to: f64,
+    /// The regime of all its places.
     pub regime: Arc<Regime>,
 }
 

@@ -55,6 +55,7 @@ pub struct Map {
 /// Where one regime holds.
 #[derive(Debug, Clone)]
 pub struct Area {
+    /// What all its points have in common.
     pub regime: Arc<Regime>,
     /// Closed loops of points (first parameter, second parameter) with the area on their left; the first point is not
     /// repeated.

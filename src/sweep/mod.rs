@@ -40,7 +40,9 @@ use std::sync::Arc;
 /// The regions and borders of a study.
 #[derive(Debug, Clone)]
 pub enum Findings {
+    /// Of one parameter.
     Along(Survey),
+    /// Of two parameters.
     Map(Map),
 }
 

@@ -161,6 +161,7 @@ impl RobotStudy<'_> {
 }
 
 impl<'a> Solver<'a> {
+    /// A solver that has answered nothing yet.
     pub fn new(model: &'a RobotStudy<'a>) -> Self {
         let pipeline = (!model.study.varies_the_robot()).then(|| Pipeline::new(model.robot, model.asked()));
         let scratch = InequalityScratch::default();

@@ -7,7 +7,9 @@ use std::mem::{Discriminant, discriminant};
 
 /// What happens at a point; all points of a region have the same.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
+#[allow(missing_docs, reason = "the text of each variant names its fields")]
 pub enum Regime {
+    /// The state is answered.
     Answered {
         /// Names of the closed contacts.
         contacts: Vec<String>,
@@ -16,6 +18,7 @@ pub enum Regime {
         /// Combinations that no precision shows or excludes.
         undecided: Vec<Vec<Mode>>,
     },
+    /// The state is refused, for a reason of this kind.
     Refused {
         reason: Discriminant<Reason>,
         /// The place inside the state.

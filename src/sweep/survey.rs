@@ -26,8 +26,11 @@ pub struct Survey {
 /// A stretch of the parameter with one set of outcomes.
 #[derive(Debug, Clone)]
 pub struct Region {
+    /// The least value of the parameter.
     pub from: f64,
+    /// The greatest value.
     pub to: f64,
+    /// What all its points have in common.
     pub regime: Arc<Regime>,
     /// The number of its regime, from 0 in the order of first regions.
     pub kind: usize,

@@ -252,6 +252,7 @@ impl Columns {
         &self.contacts
     }
 
+    /// Appends the row of names.
     pub fn append_header(&self, out: &mut Vec<u8>) {
         out.row(self, |row| (0..).zip(&self.names).for_each(|(at, name)| row.set(at, Cell::Text(name))));
     }
@@ -291,6 +292,7 @@ impl Columns {
         Ok(())
     }
 
+    /// Appends the row of a refused state.
     pub fn append_refused(&self, refused: &Refused, carried: Option<&Carried>, out: &mut impl RowSink) {
         let error = format!("line {}: {}", refused.line, refused.error);
         self.append_error((refused.id.as_ref(), Some(refused.line), carried), &error, out);

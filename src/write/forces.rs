@@ -2,7 +2,7 @@
 
 use super::result::{ContactRecord, ErrorObject, LeftOutRecord, NearestRecord, Rejected, Report};
 use crate::Mode;
-use crate::impact::outcome::Range;
+use crate::impact::Range;
 use crate::impact::{Border, Family, OpenCombinations, Outcome, Verdict};
 use crate::pipeline::{SpringForce, Unrealized};
 use crate::planar::{Pair, Vector};

@@ -40,7 +40,7 @@ pub use arrays::{Arrays, Texts};
 pub use columnar::{ColumnBlock, ColumnWriter};
 pub use csv::{Cell, Columns, Kind, Layout, Row, RowSink};
 pub use forces::{ForceOutcome, ForcesRecord, RejectedForces, SustainedContact};
-pub use inspection::Inspection;
+pub use inspection::{BodyRecord, FootRecord, FrozenRecord, Inspection, JointRecord, LinkRecord, MimicRecord};
 pub(crate) use result::short_id;
 pub use result::{
     Brief, ContactInBrief, ContactRecord, ErrorObject, LeftOutRecord, NearestRecord, OutcomeInBrief, Refused, Rejected,

@@ -23,10 +23,12 @@ use serde_json::{Map, Value, json};
 /// Marks a property that may be null although it may also be absent.
 const MAY_BE_NULL: &str = "x-may-be-null";
 
+/// The schema of a state.
 pub fn state() -> Value {
     input("State")
 }
 
+/// The schema of a contact problem.
 pub fn problem() -> Value {
     input("Problem")
 }
@@ -43,6 +45,7 @@ pub fn forces() -> Value {
     schema_of::<ForcesLine>()
 }
 
+/// The schema of the result of a study.
 pub fn sweep() -> Value {
     schema_of::<SweepWhole>()
 }
@@ -52,6 +55,7 @@ pub fn result() -> Value {
     schema_of::<ResultLine>()
 }
 
+/// The schema of a comparison of methods.
 #[cfg(feature = "accuracy")]
 pub fn accuracy() -> Value {
     schema_of::<super::Accuracy>()

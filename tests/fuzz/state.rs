@@ -64,9 +64,9 @@ fn answer(bytes: &[u8], kept: &mut Pipeline, case: &str) -> bool {
 
 /// The text of a state of `robot`, mostly a good one.
 pub fn state_of(robot: &Robot, choices: &mut Choices) -> String {
-    let links: Vec<&str> = robot.links.iter().map(|link| link.name.as_str()).collect();
-    let joints: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
-    let shaped = robot.links.iter().filter(|link| !link.shapes.is_empty()).map(|link| link.name.as_str()).collect();
+    let links: Vec<&str> = robot.links().iter().map(|link| link.name.as_str()).collect();
+    let joints: Vec<&str> = robot.joints().iter().map(|joint| joint.name.as_str()).collect();
+    let shaped = robot.links().iter().filter(|link| !link.shapes.is_empty()).map(|link| link.name.as_str()).collect();
     Writer { choices, links, shaped, joints }.state()
 }
 

@@ -245,7 +245,7 @@ fn a_robot_that_cannot_move_answers() {
         joint("j", HINGE, ["base", "rod"], [0.0, 1.0], ""),
     ];
     let robot = robot(&urdf::robot(&elements));
-    assert_eq!(robot.base, Base::Fixed);
+    assert_eq!(robot.base(), Base::Fixed);
     let found = impact(&robot, r#"{"held": ["j"]}"#);
     assert_eq!(found.analysis.expect("one contact").verdict, Verdict::NoImpact);
     // Held against the ground, the driven foot slides; nothing can stop it.

@@ -147,13 +147,13 @@ impl Model {
     fn in_words(&self) -> Result<Read<'_>> {
         let Self { robot, .. } = self;
         let inspection = Inspection::new(robot, &[]);
-        let state = match robot.base {
+        let state = match robot.base() {
             Base::Floating => r#"{"place": "lowest", "velocity": {"base": {"z": -1}}, "friction": 0.6}"#,
             Base::Fixed => r#"{"friction": 0.6}"#,
         };
         let state = State::from_json(state, robot, &Defaults::default())?.to_json(robot);
         let text = inspection.text(&Palette::default(), false);
-        let limits = robot.joints.iter().map(|joint| joint.limits).collect();
+        let limits = robot.joints().iter().map(|joint| joint.limits).collect();
         Ok(Read { robot: inspection, text, limits, state: raw(state) })
     }
 
@@ -164,7 +164,7 @@ impl Model {
         answered.unwrap_or_else(|error| {
             let refused = Refused::new(State::id_in(text), 1, &error);
             let words = refused.error.to_string();
-            let page = Page::of_state(self.robot.name.clone(), Keyframe::refused(error));
+            let page = Page::of_state(self.robot.name().to_owned(), Keyframe::refused(error));
             Answered { result: raw(serde_json::json!(refused).to_string()), text: words, state: None, base: None, page }
         })
     }
@@ -175,12 +175,12 @@ impl Model {
         let report = Report::of_state(robot, state, &impact, detail)?;
         let mut result = Vec::new();
         report.append_json(detail, &mut result);
-        let page = Page::of_state(titled(&robot.name, &state.id), Keyframe::of_impact(robot, &[], state, &impact));
+        let page = Page::of_state(titled(robot.name(), &state.id), Keyframe::of_impact(robot, &[], state, &impact));
         Ok(Answered {
             result: raw(String::from_utf8_lossy(result.trim_ascii_end()).into_owned()),
             text: text(&report, &Subject::of_state(robot, state, &impact), detail, &Palette::default()),
             state: raw(state.to_json(robot)),
-            base: robot.bodies.first().map(|_| impact.placement.world(0, Vector::zero())),
+            base: robot.bodies().first().map(|_| impact.placement.world(0, Vector::zero())),
             page,
         })
     }
@@ -195,7 +195,7 @@ impl Model {
         let workers = Workers { threads: 1, done: &|| {} };
         let swept = || {
             let findings = Findings::of(&model, workers);
-            let text = Regions::new(study, &findings).text(&robot.name, &Palette::default());
+            let text = Regions::new(study, &findings).text(robot.name(), &Palette::default());
             let rendered = sweep::of(&model, &findings, Forward::Along, workers).render().unwrap_or_default();
             let page =
                 Page::of_study(&model, &findings, &Stops::new(&model, &findings), rendered, Forward::Along, workers);

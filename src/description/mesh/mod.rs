@@ -25,7 +25,9 @@ const LFS_POINTER: &[u8] = b"version https://git-lfs";
 pub enum Mesh {
     /// [`Description::read_meshes`] was not called.
     Unread,
+    /// It has none that serve.
     LeftOut {
+        /// Why, in words.
         why: String,
     },
     /// In the mesh's own frame, before any factor of the URDF \[m\]; all are finite, there is at least one.

@@ -29,6 +29,7 @@ impl Gait {
         Self { forward, apart, ..Self::default() }
     }
 
+    /// Adds the next state.
     pub fn push(&mut self, mut state: ListedKeyframe) {
         for contact in state.keyframe.drawing.iter().flat_map(|drawing| &drawing.contacts) {
             if self.frictions.len() < 2 && !self.frictions.contains(&contact.friction) {
@@ -162,6 +163,7 @@ impl Gait {
         (feet, marks)
     }
 
+    /// The page of a picture of all states.
     pub fn page(&self, robot: &str, rendered: Rendered) -> Page {
         let (name, order) = self.order();
         let region = |run: &[ListedKeyframe]| {

@@ -40,6 +40,7 @@ const PROGRAM: [&str; 5] = [
 /// The most states that a page stops at; of more it takes every second, third ... one.
 pub const MOST: usize = 5000;
 
+/// A page to turn and step through, in one file.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct Page {
     title: String,
@@ -121,6 +122,7 @@ impl Page {
         &self.svg
     }
 
+    /// The file.
     pub fn html(&self) -> String {
         // As text of HTML.
         let title = self.title.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");

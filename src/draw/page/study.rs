@@ -25,6 +25,7 @@ pub struct Stops {
 }
 
 impl Stops {
+    /// The stops of a study.
     pub fn new(model: &RobotStudy, findings: &Findings) -> Self {
         let parameters = model.study.parameters();
         let mut every = vec![1; parameters.len()];
@@ -55,6 +56,7 @@ impl Stops {
         Self { values, every }
     }
 
+    /// How many there are.
     pub fn count(&self) -> usize {
         self.values.iter().map(Vec::len).product()
     }

@@ -34,15 +34,18 @@ pub struct Drawing {
     pub loops: Vec<Vector<f64>>,
     /// The ground's surface from left to right, as far as the drawing reaches; empty without a ground.
     pub ground: Vec<Vector<f64>>,
+    /// The closed contacts.
     pub contacts: Vec<DrawnContact>,
     /// Impulses that the state applies \[N s\].
     pub applied: Vec<Arrow>,
+    /// What happens at them.
     pub outcomes: Vec<DrawnOutcome>,
 }
 
 /// A rigid body; its frame's origin is where its joint is.
 #[derive(Debug, Clone)]
 pub struct DrawnBody {
+    /// The origin of its frame \[m\].
     pub origin: Vector<f64>,
     /// The x axis of its frame.
     pub x_axis: Vector<f64>,
@@ -58,30 +61,38 @@ pub struct DrawnBody {
     pub mass: f64,
 }
 
+/// A closed contact of a picture.
 #[derive(Debug, Clone)]
 pub struct DrawnContact {
+    /// Its name.
     pub name: String,
+    /// Where it is \[m\].
     pub point: Vector<f64>,
     /// Unit normal of the ground, toward the robot.
     pub normal: Vector<f64>,
     /// In m/s.
     pub velocity_before: Vector<f64>,
+    /// Its friction.
     pub friction: Friction,
 }
 
 /// The impulse of the ground on each contact \[N s\], and the contacts' velocities after the impact \[m/s\].
 #[derive(Debug, Clone)]
 pub struct DrawnOutcome {
+    /// The impulse on each contact \[N s\].
     pub impulse: Vec<Vector<f64>>,
     /// Of each loop the impulse on that of its links which it pushes up, away from the ground, and this link's name.
     pub loop_impulse: Vec<(String, Vector<f64>)>,
+    /// The velocity of each contact after the impact \[m/s\].
     pub velocity_after: Vec<Vector<f64>>,
 }
 
 /// A vector, in its own unit, at the point where it acts \[m\].
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct Arrow {
+    /// Where it begins \[m\].
     pub point: Vector<f64>,
+    /// The vector that it stands for.
     pub vector: Vector<f64>,
 }
 
@@ -230,6 +241,7 @@ impl DrawnBody {
 #[serde(untagged)]
 pub enum DrawnShape {
     /// A disc, or with radius 0 a point.
+    #[allow(missing_docs, reason = "a circle about a point")]
     Disc { center: Vector<f64>, radius: f64 },
     /// By its corners.
     Polygon(Vec<Vector<f64>>),
@@ -275,7 +287,9 @@ fn swept(corners: &[Vector<f64>], rim: Rim) -> Vec<Vector<f64>> {
 /// The smallest upright rectangle around some points \[m\].
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Extent {
+    /// The least x and z \[m\].
     pub low: Vector<f64>,
+    /// The greatest x and z \[m\].
     pub high: Vector<f64>,
 }
 

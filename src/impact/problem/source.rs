@@ -139,7 +139,9 @@ pub struct Errors<'a> {
 }
 
 impl Errors<'_> {
+    /// Of a problem that is given exactly.
     pub const NONE: Self = Self { delassus: 0.0, velocity: None, likely: [1.0; 2] };
+    /// Of a problem whose errors nobody knows.
     pub const UNKNOWN: Self = Self { delassus: f64::INFINITY, velocity: None, likely: [1.0; 2] };
 }
 

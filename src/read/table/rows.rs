@@ -66,6 +66,7 @@ pub enum Carried {
 }
 
 impl Carried {
+    /// Fields of text.
     pub fn new(fields: impl Iterator<Item = String>) -> Self {
         Self::Text(fields.collect::<Vec<_>>().into())
     }

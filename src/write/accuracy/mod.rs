@@ -36,6 +36,7 @@ pub struct Compliant {
 }
 
 impl Accuracy {
+    /// With the advice that follows.
     pub fn new(studies: Vec<CaseStudy>, compliant: Option<Compliant>) -> Self {
         Self { advice: advice(&studies), studies, compliant }
     }

@@ -9,6 +9,7 @@ use crate::write::words::grouped;
 use std::fmt::Write;
 
 impl Accuracy {
+    /// As tables for people.
     pub fn text(&self, palette: &Palette) -> String {
         let mut out = String::new();
         match self.studies.as_slice() {

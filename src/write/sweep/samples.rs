@@ -12,7 +12,9 @@ use serde_json::json;
 /// A sample: the parameters' values and the result there.
 #[derive(Debug, Clone)]
 pub struct SampleRecord<'a> {
+    /// The names of the parameters.
     pub names: Vec<&'a str>,
+    /// Their values.
     pub point: Vec<f64>,
     /// Its number, from 0.
     pub index: usize,
@@ -39,6 +41,7 @@ impl<'a> SampleRecord<'a> {
         Self { names: parameters.iter().map(|parameter| parameter.name.as_str()).collect(), point, index }
     }
 
+    /// How many samples a study has.
     pub fn count(model: &RobotStudy) -> usize {
         model.study.parameters().iter().map(|parameter| parameter.steps).product()
     }

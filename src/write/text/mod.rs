@@ -37,6 +37,7 @@ pub struct Subject<'a> {
 }
 
 impl<'a> Subject<'a> {
+    /// A state of a robot.
     pub fn of_state(robot: &Robot, state: &State, impact: &'a Impact) -> Self {
         let unit = |(_, unit): (_, &'static str)| match (impact.aspect(), unit.starts_with('m')) {
             (Aspect::Impact, _) => unit,
@@ -53,6 +54,7 @@ impl<'a> Subject<'a> {
         }
     }
 
+    /// A contact problem given as matrices.
     pub fn of_problem(problem: &Problem, analysis: &'a Analysis) -> Self {
         Self {
             title: words::titled("contact problem", &problem.id),

@@ -12,7 +12,7 @@ const FIXED: (&str, &str) = ("fixed", "1 0 0");
 
 /// How the root is attached, the body that the robot begins with, and its joints.
 fn found(robot: &Robot) -> (Base, &str, Vec<&str>) {
-    (robot.base, &robot.bodies[0].name, names(robot))
+    (robot.base(), &robot.bodies()[0].name, names(robot))
 }
 
 /// The chain with a root of this name.
@@ -53,12 +53,12 @@ fn root_floats_by_its_mass_and_joints() {
         ),
     ] {
         let robot = load(&text);
-        let signs = robot.bodies.iter().flat_map(|body| [body.mass, body.moment]);
+        let signs = robot.bodies().iter().flat_map(|body| [body.mass, body.moment]);
         assert!(signs.into_iter().all(f64::is_sign_positive), "{text}");
-        let base = if robot.base == Base::Floating { 3 } else { 0 };
+        let base = if robot.base() == Base::Floating { 3 } else { 0 };
         assert_eq!(robot.dofs(), base + expected.2.len(), "{text}");
         assert_eq!((found(&robot), robot.mass()), (expected, kg), "{text}");
-        assert_eq!(robot.reading.base_because, because.unwrap_or(&robot.reading.base_because), "{text}");
+        assert_eq!(robot.reading().base_because, because.unwrap_or(&robot.reading().base_because), "{text}");
     }
 }
 
@@ -68,10 +68,14 @@ fn a_whole_chain_is_the_base_itself() {
         let robot = load(&chain(&[0.0, 0.0, 0.0, 2.0, 1.0], &joints));
         assert_eq!(found(&robot), (Base::Floating, "d", vec!["m"]), "{joints:?}");
         assert_eq!(robot.coordinates().collect::<Vec<_>>(), ["x", "z", "pitch", "m"]);
-        assert_eq!(robot.reading.outside, ["a", "b", "c"]);
-        assert_eq!(robot.links.iter().map(|link| link.name.as_str()).collect::<Vec<_>>(), ["d", "e"]);
-        let still: Vec<_> =
-            robot.reading.frozen.iter().map(|FrozenJoint { name, reason: still, .. }| (name.as_str(), still)).collect();
+        assert_eq!(robot.reading().outside, ["a", "b", "c"]);
+        assert_eq!(robot.links().iter().map(|link| link.name.as_str()).collect::<Vec<_>>(), ["d", "e"]);
+        let still: Vec<_> = robot
+            .reading()
+            .frozen
+            .iter()
+            .map(|FrozenJoint { name, reason: still, .. }| (name.as_str(), still))
+            .collect();
         assert_eq!(still, [("j", &FreezeReason::Base), ("k", &FreezeReason::Base), ("l", &FreezeReason::Base)]);
         let why = "part of the floating base: x, z and pitch of d take its place";
         assert_eq!(robot.frozen("k").expect("the slide").why(), why);
@@ -90,7 +94,7 @@ fn a_turned_chain_keeps_the_axes_of_the_files_root() {
         .replace("<origin xyz=\"0 0 0\"/><mass value=\"2\"/>", "<origin xyz=\"0 -0.3 0.2\"/><mass value=\"2\"/>");
     let robot = load(&text);
     assert_eq!(found(&robot), (Base::Floating, "d", vec![]));
-    assert_at(robot.bodies[0].com, [0.3, 0.2]);
+    assert_at(robot.bodies()[0].com, [0.3, 0.2]);
 }
 
 #[test]
@@ -100,7 +104,7 @@ fn a_planar_or_floating_joint_is_the_base_itself() {
         for text in [text.clone(), world(&text), world(&text.replace("<link name=\"a\"></link>", ""))] {
             let robot = load(&text);
             assert_eq!(found(&robot), (Base::Floating, "b", vec!["k"]));
-            assert_eq!(robot.reading.base_because, format!("{kind} joint \"j\" is the base itself"));
+            assert_eq!(robot.reading().base_because, format!("{kind} joint \"j\" is the base itself"));
         }
         let bolted = reduce(&text, &Reduction { base: Some(Base::Fixed), ..Reduction::default() });
         assert_eq!(found(&bolted), (Base::Fixed, "a", vec!["k"]));
@@ -113,13 +117,13 @@ fn a_planar_joint_about_another_axis_slides() {
     for (axis, along) in [("0 0 1", [1.0, 0.0]), ("0 0 -2", [1.0, 0.0]), ("1 0 0", [0.0, 1.0]), ("0 3 4", [1.0, 0.0])] {
         let robot = of_base(axis);
         assert_eq!(found(&robot), (Base::Fixed, "a", vec!["j", "k"]), "{axis}");
-        assert_eq!(robot.joints[0].axis, Axis::Prismatic { direction: along.into() }, "{axis}");
+        assert_eq!(robot.joints()[0].axis, Axis::Prismatic { direction: along.into() }, "{axis}");
     }
     // As the same mechanism of single joints.
     let yaw = ("revolute", "0 0 1");
     let single = load(&chain(&[0.0, 0.0, 0.0, 2.0, 1.0], &[X, ("prismatic", "0 1 0"), yaw, PITCH]));
     assert_eq!(found(&single), (Base::Fixed, "a", vec!["j", "m"]));
-    assert_eq!(single.joints[0].axis, of_base("0 0 1").joints[0].axis);
+    assert_eq!(single.joints()[0].axis, of_base("0 0 1").joints()[0].axis);
     // Nearly normal, it is meant in the plane.
     let robot = of_base("0 1 0.02");
     assert_eq!(found(&robot), (Base::Floating, "b", vec!["k"]));
@@ -140,13 +144,13 @@ fn world_has_no_mass_and_needs_no_definition() {
     );
     let robot = load(&heavy);
     assert_eq!((found(&robot), robot.mass()), ((Base::Fixed, "world", vec!["j"]), 1.0));
-    assert!(robot.links[0].shapes.is_empty());
+    assert!(robot.links()[0].shapes.is_empty());
     let why = "bolted to the world: it cannot strike the ground";
-    assert!(robot.left_out.contains(&left_out("collision shapes of link \"world\"", why)), "{:?}", robot.left_out);
+    assert!(robot.left_out().contains(&left_out("collision shapes of link \"world\"", why)), "{:?}", robot.left_out());
 
     let robot = load(&world(&chain(&[0.0, 1.0], &[PITCH]).replace("<link name=\"a\"></link>", "")));
     assert_eq!(found(&robot), (Base::Fixed, "world", vec!["j"]));
-    assert_eq!(robot.links.iter().map(|link| link.name.as_str()).collect::<Vec<_>>(), ["b", "world"]);
+    assert_eq!(robot.links().iter().map(|link| link.name.as_str()).collect::<Vec<_>>(), ["b", "world"]);
 }
 
 #[test]
@@ -160,7 +164,7 @@ fn the_base_can_be_asked_for() {
     let floating = chain(&[1.0, 1.0], &[PITCH]);
     let robot = asked(&floating, Base::Fixed);
     assert_eq!((found(&robot), robot.dofs(), robot.mass()), ((Base::Fixed, "a", vec!["j"]), 1, 1.0));
-    assert_eq!(robot.reading.base_because, "as asked");
+    assert_eq!(robot.reading().base_because, "as asked");
 }
 
 #[test]
@@ -197,8 +201,12 @@ fn links_of_the_base_have_no_contacts() {
 #[test]
 fn a_joint_that_is_fixed_to_the_base_belongs_to_it() {
     let robot = load(&chain(&[0.0, 0.0, 0.0, 0.0, 2.0], &[FIXED, X, Z, PITCH]));
-    assert_eq!(robot.reading.outside, ["a", "b", "c", "d"]);
-    assert!(robot.reading.frozen.iter().all(|joint| joint.reason == FreezeReason::Base), "{:?}", robot.reading.frozen);
+    assert_eq!(robot.reading().outside, ["a", "b", "c", "d"]);
+    assert!(
+        robot.reading().frozen.iter().all(|joint| joint.reason == FreezeReason::Base),
+        "{:?}",
+        robot.reading().frozen
+    );
 }
 
 #[test]

@@ -109,12 +109,12 @@ fn massive(joints: &[(&str, &str)]) -> String {
 }
 
 fn names(robot: &Robot) -> Vec<&str> {
-    robot.joints.iter().map(|joint| joint.name.as_str()).collect()
+    robot.joints().iter().map(|joint| joint.name.as_str()).collect()
 }
 
 #[track_caller]
 fn only_caution(robot: &Robot) -> &str {
-    let [caution] = &robot.reading.cautions[..] else { panic!("{:?}", robot.reading.cautions) };
+    let [caution] = &robot.reading().cautions[..] else { panic!("{:?}", robot.reading().cautions) };
     caution
 }
 
@@ -138,15 +138,15 @@ fn left_out(what: &str, why: &str) -> LeftOutPart {
 #[test]
 fn wheels_are_discs_and_unread_meshes_left_out() {
     let upkie = load(include_str!("../../data/robots/upkie/upkie.urdf"));
-    let tire = &upkie.links[upkie.link("left_wheel_tire").expect("a tire")];
+    let tire = &upkie.links()[upkie.link("left_wheel_tire").expect("a tire")];
     assert_eq!(disc(tire).1, 0.05);
 
     let solo = load(include_str!("../../data/robots/solo8/solo.urdf"));
-    assert!(solo.links.iter().all(|link| link.shapes.is_empty()));
+    assert!(solo.links().iter().all(|link| link.shapes.is_empty()));
     let foot = "collision mesh \"package://example-robot-data/robots/solo_description/meshes/obj/with_foot/solo_foot.obj\" \
                 of link \"FL_FOOT\"";
-    assert!(solo.left_out.contains(&left_out(foot, "its file was not read")), "{:?}", solo.left_out);
-    assert!(solo.left_out.contains(&left_out("12 <limit> in <joint>", "joint limits do not enter an impact")));
+    assert!(solo.left_out().contains(&left_out(foot, "its file was not read")), "{:?}", solo.left_out());
+    assert!(solo.left_out().contains(&left_out("12 <limit> in <joint>", "joint limits do not enter an impact")));
 }
 
 #[test]
@@ -155,11 +155,11 @@ fn quarter_turns_leave_a_symmetric_robot_symmetric() {
     let upkie = load(include_str!("../../data/robots/upkie/upkie.urdf"));
     let bits = |point: Vector| point.components().map(f64::to_bits);
     for (left, right) in [(1, 4), (2, 5), (3, 6)] {
-        let [left, right] = [left, right].map(|body: usize| &upkie.bodies[body]);
+        let [left, right] = [left, right].map(|body: usize| &upkie.bodies()[body]);
         let joints = [left, right].map(|body| body.joint);
         let [Some(ParentJoint::Joint(a)), Some(ParentJoint::Joint(b))] = joints else { panic!("{joints:?}") };
-        assert_eq!(bits(upkie.joints[a].origin), bits(upkie.joints[b].origin), "{}", right.name);
-        assert_eq!(upkie.joints[a].origin.x, 0.0, "{}", left.name);
+        assert_eq!(bits(upkie.joints()[a].origin), bits(upkie.joints()[b].origin), "{}", right.name);
+        assert_eq!(upkie.joints()[a].origin.x, 0.0, "{}", left.name);
         assert_eq!(bits(left.com), bits(right.com), "{}", right.name);
         assert_eq!([left.mass, left.moment], [right.mass, right.moment], "{}", right.name);
     }
@@ -182,16 +182,16 @@ fn an_axis_has_a_sign_and_is_brought_into_line() {
     ] {
         for kind in ["revolute", "continuous"] {
             let robot = load(&two_links(kind, &format!("<origin rpy=\"{roll} 0 0\"/><axis xyz=\"{axis}\"/>")));
-            assert_eq!(robot.joints[0].axis, Axis::Revolute { sign }, "{axis}");
+            assert_eq!(robot.joints()[0].axis, Axis::Revolute { sign }, "{axis}");
             let expected: Vec<_> = off.map(|angle| left_out("joint \"j\"", &why(angle))).into_iter().collect();
-            assert_eq!(robot.left_out, expected, "{axis}");
+            assert_eq!(robot.left_out(), expected, "{axis}");
         }
     }
 }
 
 #[test]
 fn a_slide_has_its_direction_in_the_roots_axes() {
-    let direction = |joint: &str| match load(&two_links("prismatic", joint)).joints[0].axis {
+    let direction = |joint: &str| match load(&two_links("prismatic", joint)).joints()[0].axis {
         Axis::Prismatic { direction } => direction,
         Axis::Revolute { .. } => panic!("it turns"),
     };
@@ -218,11 +218,11 @@ fn joints_keep_their_order_and_parents_come_first() {
     ]);
     let robot = load(&text);
     assert_eq!(robot.coordinates().skip(3).collect::<Vec<_>>(), ["ankle", "knee", "hip", "tail"]);
-    let bodies: Vec<_> = robot.bodies.iter().map(|body| (body.name.as_str(), body.joint)).collect();
+    let bodies: Vec<_> = robot.bodies().iter().map(|body| (body.name.as_str(), body.joint)).collect();
     let joint = |joint| Some(ParentJoint::Joint(joint));
     let expected = [("root", None), ("thigh", joint(2)), ("shin", joint(1)), ("foot", joint(0)), ("tip", joint(3))];
     assert_eq!(bodies, expected);
-    assert_eq!(robot.links.iter().map(|link| link.body).collect::<Vec<_>>(), [3, 2, 1, 0, 4]);
+    assert_eq!(robot.links().iter().map(|link| link.body).collect::<Vec<_>>(), [3, 2, 1, 0, 4]);
 }
 
 // Welding.
@@ -242,19 +242,19 @@ fn fixed_links_are_merged_with_their_turned_inertia() {
     // The fixed joint turns b's x to the root's -z, y to -x and z to y: b's CoG is at (2 - 7, 5 + 1, 0), its moment
     // izz.
     let robot = load(&text);
-    let body = &robot.bodies[0];
-    assert_eq!((robot.bodies.len(), body.mass), (2, 4.0));
+    let body = &robot.bodies()[0];
+    assert_eq!((robot.bodies().len(), body.mass), (2, 4.0));
     // CoG (-5 * 3 / 4, 4 / 4), arms (3.75, 3) and (-1.25, -1).
     let expected = [-3.75, 1.0, 0.5 + 3.75 * 3.75 + 9.0 + 0.1 + 3.0 * (1.25 * 1.25 + 1.0)];
     for (value, expected) in [body.com.x, body.com.z, body.moment].into_iter().zip(expected) {
         assert!((value - expected).abs() < 1e-14, "{value} is not {expected}");
     }
     // The point (1, 2, 3) of b: (2, 5, 0) + (-2, 3, -1).
-    assert_at(robot.links[1].point::<f64>([1.0, 2.0, 3.0]), [0.0, -1.0]);
-    assert_eq!((disc(&robot.links[1]), robot.links[1].body), (([2.0, 0.0], 0.1), 0));
+    assert_at(robot.links()[1].point::<f64>([1.0, 2.0, 3.0]), [0.0, -1.0]);
+    assert_eq!((disc(&robot.links()[1]), robot.links()[1].body), (([2.0, 0.0], 0.1), 0));
     // The hinge stands in the merged body at (2, 6, 0); c's x is b's z, the normal.
-    assert_at(robot.joints[0].origin, [2.0, 0.0]);
-    assert_eq!((robot.joints[0].parent, robot.joints[0].axis), (0, Axis::Revolute { sign: 1.0 }));
+    assert_at(robot.joints()[0].origin, [2.0, 0.0]);
+    assert_eq!((robot.joints()[0].parent, robot.joints()[0].axis), (0, Axis::Revolute { sign: 1.0 }));
 }
 
 #[test]
@@ -264,7 +264,7 @@ fn a_box_foot_keeps_its_exact_corners_through_a_weld() {
         format!("<link name=\"foot\">{}</link>", urdf::collision([0.05, 0.0], "box size=\"0.2 0.1 0.04\"")),
         joint("j", urdf::Axis::Fixed, ["a", "foot"], [0.0, -0.3], ""),
     ]));
-    let [polygon] = &robot.links[1].shapes[..] else { panic!("one polygon") };
+    let [polygon] = &robot.links()[1].shapes[..] else { panic!("one polygon") };
     let (rear, front, low, high) = (0.05 - 0.1, 0.05 + 0.1, -0.3 - 0.02, -0.3 + 0.02);
     assert_eq!(polygon.corners(), [[rear, low], [front, low], [front, high], [rear, high]]);
 }
@@ -276,13 +276,16 @@ fn links_without_inertial_or_inertia_are_read() {
          <joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/></joint>",
     );
     let robot = load(&text);
-    assert_eq!((robot.bodies[0].mass, robot.bodies[0].com, robot.bodies[0].moment), (2.0, Vector::new(0.1, 0.0), 0.0));
-    assert_eq!(robot.links.iter().map(|link| link.has_inertial).collect::<Vec<_>>(), [true, false]);
+    assert_eq!(
+        (robot.bodies()[0].mass, robot.bodies()[0].com, robot.bodies()[0].moment),
+        (2.0, Vector::new(0.1, 0.0), 0.0)
+    );
+    assert_eq!(robot.links().iter().map(|link| link.has_inertial).collect::<Vec<_>>(), [true, false]);
     let expected = [
         left_out("joint \"j\"", "fixed: welded into a"),
         left_out("link \"a\"", "its <inertial> has no <inertia>: taken as a point mass"),
     ];
-    assert_eq!(robot.left_out, expected);
+    assert_eq!(robot.left_out(), expected);
 }
 
 #[test]
@@ -290,12 +293,12 @@ fn skipped_shapes_are_listed_one_by_one() {
     let shapes = ["mesh filename=\"foot.stl\"", "plane", "sphere radius=\"1\""];
     let shapes = shapes.map(|shape| urdf::collision([0.0; 2], shape)).concat();
     let robot = load(&urdf::body(1.0, &shapes));
-    assert_eq!(robot.links[0].shapes.len(), 1);
+    assert_eq!(robot.links()[0].shapes.len(), 1);
     let expected = [
         left_out("collision mesh \"foot.stl\" of link \"body\"", "its file was not read"),
         left_out("collision <plane> of link \"body\"", "no shape of URDF"),
     ];
-    assert_eq!(robot.left_out, expected);
+    assert_eq!(robot.left_out(), expected);
 }
 
 #[test]
@@ -308,6 +311,6 @@ fn a_long_chain_is_reduced_without_recursion() {
         joint(format!("j{k}"), if k % 2 == 0 { urdf::Axis::Fixed } else { HINGE }, [&parent, &child], [0.0, -1.0], "")
     });
     let robot = load(&urdf::robot(&links.chain(joints).collect::<Vec<_>>()));
-    assert_eq!((robot.bodies.len(), robot.joints.len()), (count / 2 + 1, count / 2));
-    assert_eq!(robot.bodies[1].com, [0.0, -1.0]);
+    assert_eq!((robot.bodies().len(), robot.joints().len()), (count / 2 + 1, count / 2));
+    assert_eq!(robot.bodies()[1].com, [0.0, -1.0]);
 }

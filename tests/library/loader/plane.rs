@@ -32,38 +32,38 @@ fn the_common_direction_of_hinges_gives_the_plane() {
         ("0 0 1", Plane::XY, -1.0),
     ] {
         let robot = load(&massive(&[("continuous", axis), ("revolute", axis)]));
-        assert_eq!((robot.reading.plane, robot.reading.plane_because), (plane, PlaneReason::CommonAxis), "{axis}");
+        assert_eq!((robot.reading().plane, robot.reading().plane_because), (plane, PlaneReason::CommonAxis), "{axis}");
         // The normal of y-z is -x and that of x-y is -z.
-        assert!(robot.joints.iter().all(|joint| joint.axis == Axis::Revolute { sign }), "{axis}");
-        assert_eq!(robot.reading.better_plane, None);
+        assert!(robot.joints().iter().all(|joint| joint.axis == Axis::Revolute { sign }), "{axis}");
+        assert_eq!(robot.reading().better_plane, None);
     }
 }
 
 #[test]
 fn plane_without_a_common_direction_is_that_of_legs() {
     let robot = load(&massive(&[("continuous", "1 0 0"), ROLL, PITCH]));
-    assert_eq!((robot.reading.plane, robot.reading.plane_because), (Plane::YZ, PlaneReason::Legs));
-    assert_eq!((robot.reading.better_plane, names(&robot)), (None, vec!["j", "k"]));
+    assert_eq!((robot.reading().plane, robot.reading().plane_because), (Plane::YZ, PlaneReason::Legs));
+    assert_eq!((robot.reading().better_plane, names(&robot)), (None, vec!["j", "k"]));
     // Of equally many the usual one.
     let robot = load(&massive(&[ROLL, PITCH]));
-    assert_eq!((robot.reading.plane, robot.reading.plane_because), (Plane::XZ, PlaneReason::Legs));
+    assert_eq!((robot.reading().plane, robot.reading().plane_because), (Plane::XZ, PlaneReason::Legs));
     // Two arms, whose ends are higher than the foot, do not count.
     let arms = with_arms(&massive(&[PITCH, PITCH, PITCH, ROLL, ROLL, ROLL, ROLL]));
     let robot = load(&arms);
-    assert_eq!((robot.reading.plane, names(&robot)), (Plane::XZ, vec!["j", "k", "l"]));
+    assert_eq!((robot.reading().plane, names(&robot)), (Plane::XZ, vec!["j", "k", "l"]));
     // An axis that lies between them is nearer to the normal of one.
     let oblique = ("revolute", "0 1 0.4");
     let robot = load(&massive(&[ROLL, oblique, oblique]));
-    assert_eq!(robot.reading.plane, Plane::XZ);
+    assert_eq!(robot.reading().plane, Plane::XZ);
 
     let robot = reduce(&massive(&[ROLL, ROLL, PITCH]), &in_plane(Plane::XZ));
-    assert_eq!((robot.reading.better_plane, names(&robot)), (Some((Plane::YZ, 2)), vec!["l"]));
-    assert!(robot.reading.plane_in_words().ends_with("plane yz would keep 2 joints"));
+    assert_eq!((robot.reading().better_plane, names(&robot)), (Some((Plane::YZ, 2)), vec!["l"]));
+    assert!(robot.reading().plane_in_words().ends_with("plane yz would keep 2 joints"));
     let given = reduce(&massive(&[("continuous", "1 0 0"), PITCH]), &in_plane(Plane::YZ));
-    assert_eq!((given.reading.plane_because, names(&given)), (PlaneReason::Asked, vec!["j"]));
+    assert_eq!((given.reading().plane_because, names(&given)), (PlaneReason::Asked, vec!["j"]));
     // No hinge has a direction.
     let slide = load(&massive(&[("prismatic", "0 1 0"), ("prismatic", "0 0 1")]));
-    assert_eq!((slide.reading.plane_because, names(&slide)), (PlaneReason::Usual, vec!["k"]));
+    assert_eq!((slide.reading().plane_because, names(&slide)), (PlaneReason::Usual, vec!["k"]));
 }
 
 #[test]
@@ -85,9 +85,9 @@ fn each_plane_takes_its_own_components_bit_for_bit() {
         (Plane::YX, [0.2, 0.1], 0.13, [0.8 + 2.0, 0.7 + 1.0], [0.8 + 2.0, 0.7 + 1.0]),
     ] {
         let robot = reduce(&alone, &in_plane(plane));
-        assert_eq!((robot.bodies[0].com.components(), robot.bodies[0].moment), (com, moment), "{plane:?}");
-        assert_eq!(robot.links[1].point::<f64>([1.0, 2.0, 3.0]), point);
-        let [shape] = &robot.links[1].shapes[..] else { panic!("one shape") };
+        assert_eq!((robot.bodies()[0].com.components(), robot.bodies()[0].moment), (com, moment), "{plane:?}");
+        assert_eq!(robot.links()[1].point::<f64>([1.0, 2.0, 3.0]), point);
+        let [shape] = &robot.links()[1].shapes[..] else { panic!("one shape") };
         let corners = shape.corners();
         assert!(corners.contains(&corner.into()), "{plane:?}: {corners:?}");
     }
@@ -99,19 +99,19 @@ fn joints_that_leave_the_plane_are_frozen_at_zero() {
     let robot = load(&text);
     assert_eq!(names(&robot), ["k", "m"]);
     let bodies: Vec<_> =
-        robot.bodies.iter().map(|body| (body.name.as_str(), body.mass, body.com.components())).collect();
+        robot.bodies().iter().map(|body| (body.name.as_str(), body.mass, body.com.components())).collect();
     // a and b are one body with its CoG half way; so are c and d, behind k.
     assert_eq!(bodies, [("a", 2.0, [0.0, -0.5]), ("c", 2.0, [0.0, -0.5]), ("e", 1.0, [0.0, 0.0])]);
-    assert_eq!(robot.joints[0].origin, [0.0, -2.0]);
+    assert_eq!(robot.joints()[0].origin, [0.0, -2.0]);
     let expected = [
         left_out("joint \"j\"", "frozen at zero, its axis being 90.00 degrees off the plane's normal: welded into a"),
         left_out("joint \"l\"", "frozen at zero, its axis being 4.50 degrees off the plane's normal: welded into c"),
     ];
-    assert_eq!(robot.left_out, expected);
+    assert_eq!(robot.left_out(), expected);
 
     let slides = reduce(&massive(&[("prismatic", "0 1 0"), ("prismatic", "1 0 1")]), &Reduction::default());
     let why = "frozen at zero, its axis being 90.00 degrees off the plane: welded into a";
-    assert_eq!(slides.left_out, [left_out("joint \"j\"", why)]);
+    assert_eq!(slides.left_out(), [left_out("joint \"j\"", why)]);
     assert_eq!(names(&slides), ["k"]);
 }
 
@@ -122,25 +122,25 @@ fn frozen_joints_keep_their_values() {
     let hold =
         |hold: &[(usize, f64)]| Reduction { plane: Some(Plane::XZ), hold: hold.to_vec(), ..Reduction::default() };
     let robot = reduce(&text, &hold(&[(0, FRAC_PI_2)]));
-    assert_eq!((names(&robot), robot.joints[0].axis), (vec!["k"], Axis::Revolute { sign: -1.0 }));
+    assert_eq!((names(&robot), robot.joints()[0].axis), (vec!["k"], Axis::Revolute { sign: -1.0 }));
     assert_eq!(still(&robot, "j"), &FreezeReason::Asked { value: FRAC_PI_2 });
     // The origin of k, 1 m down in b's frame, lies 1 m to the left: dropped.
-    assert_at(robot.joints[0].origin, [0.0, -1.0]);
+    assert_at(robot.joints()[0].origin, [0.0, -1.0]);
 
     // A slide that is frozen carries its child along: 1 m down and 0.25 m up.
     let robot = reduce(&text, &hold(&[(2, 0.25)]));
     assert_eq!(names(&robot), [""; 0]);
-    assert_eq!(robot.links[3].point::<f64>([0.0; 3]), [0.0, -2.75]);
+    assert_eq!(robot.links()[3].point::<f64>([0.0; 3]), [0.0, -2.75]);
     let why = "frozen at 0.25 as asked: welded into a";
-    assert!(robot.left_out.contains(&left_out("joint \"l\"", why)), "{:?}", robot.left_out);
+    assert!(robot.left_out().contains(&left_out("joint \"l\"", why)), "{:?}", robot.left_out());
 
     // A joint of the plane can be frozen as well, and then gives no plane.
     let robot = holding(&massive(&[ROLL, YAW]), &[(0, 0.0)]);
-    assert_eq!((robot.reading.plane, names(&robot)), (Plane::XY, vec!["k"]));
+    assert_eq!((robot.reading().plane, names(&robot)), (Plane::XY, vec!["k"]));
 
     // j dips the nose by a: what hung down points backward by sin a.
     let robot = holding(&massive(&[PITCH, PITCH]), &[(0, 0.3)]);
-    assert_at(robot.joints[0].origin, [-0.3_f64.sin(), -1.0 - 0.3_f64.cos()]);
+    assert_at(robot.joints()[0].origin, [-0.3_f64.sin(), -1.0 - 0.3_f64.cos()]);
 }
 
 #[test]
@@ -167,10 +167,10 @@ fn joints_without_one_axis_are_frozen_with_a_caution() {
         let robot = load(&massive(&[PITCH, (kind, "0 1 0")]));
         assert_eq!(names(&robot), ["j"]);
         let why = format!("frozen at zero, being {word}: welded into b");
-        assert_eq!(robot.left_out, [left_out("joint \"k\"", &why)]);
+        assert_eq!(robot.left_out(), [left_out("joint \"k\"", &why)]);
         let caution = "k could move in the plane and is frozen all the same, having no single axis: replace it by revolute \
                        and prismatic joints";
-        assert_eq!(robot.reading.cautions, [caution]);
+        assert_eq!(robot.reading().cautions, [caution]);
     }
 }
 
@@ -180,7 +180,7 @@ fn axes_that_are_all_a_little_off_get_a_caution() {
     let tilted = ("revolute", "0 1 0.087488663525924");
     let text = massive(&[ROLL, tilted, tilted]);
     let robot = load(&text);
-    assert!(robot.joints.is_empty());
+    assert!(robot.joints().is_empty());
     let caution = only_caution(&robot);
     let held = "2 of 3 joints that could move are frozen only because their axes are 5.0 degrees off the plane (k, l); to keep them";
     // From y + z tan 5 degrees back to y is a turn about x by minus 5 degrees.
@@ -207,7 +207,7 @@ fn axes_that_are_all_a_little_off_get_a_caution() {
 
     // Two shoulders are no reason to shout.
     let robot = load(&with_arms(&massive(&[PITCH, PITCH, PITCH, tilted, PITCH, tilted, PITCH])));
-    assert!(robot.reading.cautions.is_empty(), "{:?}", robot.reading.cautions);
+    assert!(robot.reading().cautions.is_empty(), "{:?}", robot.reading().cautions);
 
     let aside = load(&massive(&[("revolute", "1 1 2"), YAW]));
     let caution = only_caution(&aside);
@@ -249,14 +249,14 @@ fn each_hinge_has_one_remedy() {
     let torso = link("torso", 5.0, [0.0; 2], 1.0, "");
     let text = urdf::robot(&[torso, leg("left", 0.375), leg("right", -0.375)]);
     let robot = load(&text);
-    assert!(robot.joints.is_empty());
+    assert!(robot.joints().is_empty());
     let expected = "6 of 8 joints that could move are frozen only because their axes are 21.5 degrees off the plane (left_hip, \
                     left_knee, left_ankle, 3 more); to keep them: `hold: left_abduct=-0.375000`, `hold: \
                     right_abduct=0.375000`";
     assert_eq!(only_caution(&robot), expected);
     let held = holding(&text, &[(0, -0.375), (4, 0.375)]);
     assert_eq!(names(&held), ["left_hip", "left_knee", "left_ankle", "right_hip", "right_knee", "right_ankle"]);
-    assert!(held.reading.cautions.is_empty());
+    assert!(held.reading().cautions.is_empty());
 }
 
 #[test]
@@ -275,7 +275,7 @@ fn a_hinge_is_held_only_where_that_serves_all_beyond_it() {
     // What follows another joint cannot be held by itself.
     let follows = "<mimic joint=\"m\"/></joint>";
     let robot = load(&massive(&[ROLL, tilted, tilted, PITCH]).replacen("</joint>", follows, 1));
-    let caution = &robot.reading.cautions[0];
+    let caution = &robot.reading().cautions[0];
     assert!(caution.ends_with("(k, l); to keep them: straighten the axis of k, straighten the axis of l"), "{caution}");
     // What is in line already would be turned out of it.
     let robot = load(&massive(&[ROLL, tilted, tilted, PITCH]));
@@ -298,7 +298,7 @@ fn a_joint_frozen_outside_its_limits_is_named() {
     let limited = |limits: &str| {
         let axis = "<axis xyz=\"1 0 0\"/>";
         let limits = format!("{axis}<limit {limits} effort=\"1\" velocity=\"1\"/>");
-        load(&massive(&[PITCH, PITCH, ROLL]).replace(axis, &limits)).reading.cautions
+        load(&massive(&[PITCH, PITCH, ROLL]).replace(axis, &limits)).reading().cautions.clone()
     };
     let expected = "frozen at zero, which is beyond their limits: l in [0.3, 0.8]; give values (`hold: NAME=VALUE`), which may turn \
          joints beyond them out of the plane";
@@ -315,7 +315,7 @@ fn axis_tolerance_keeps_axes_that_are_off_by_digits() {
                     keep them: `axis_tolerance: 1.8e-3`";
     assert_eq!(only_caution(&robot), expected);
     let robot = reduce(&text, &Reduction { axis_tolerance: Some(1.8e-3), ..Reduction::default() });
-    assert_eq!((names(&robot), robot.reading.plane_because), (vec!["j", "k", "l"], PlaneReason::CommonAxis));
+    assert_eq!((names(&robot), robot.reading().plane_because), (vec!["j", "k", "l"], PlaneReason::CommonAxis));
     let in_degrees = Robot::reduce(
         &Description::from_urdf(&text).unwrap(),
         &Reduction { axis_tolerance: Some(3.0), ..Reduction::default() },
@@ -323,7 +323,7 @@ fn axis_tolerance_keeps_axes_that_are_off_by_digits() {
     let refused = in_degrees.expect_err("a hinge across the plane");
     assert_eq!(refused.to_string(), "`axis_tolerance` must be between 0 and 0.5 rad, not 3");
     let why = "its axis is 1.6e-3 rad off the plane's normal: taken as exactly on it";
-    assert_eq!(robot.left_out, [left_out("joint \"k\"", why)]);
+    assert_eq!(robot.left_out(), [left_out("joint \"k\"", why)]);
 }
 
 #[test]
@@ -340,7 +340,7 @@ fn elements_that_close_loops_are_named() {
     let expected = "what closes loops in the file is left out (loop_joint): close them by `loops` in each state";
     assert_eq!(only_caution(&robot), expected);
     let why = "a tree of joints has no loops: states close them by `loops`";
-    assert!(robot.left_out.contains(&left_out("<loop_joint> in <robot>", why)), "{:?}", robot.left_out);
+    assert!(robot.left_out().contains(&left_out("<loop_joint> in <robot>", why)), "{:?}", robot.left_out());
 }
 
 #[test]
@@ -348,7 +348,7 @@ fn a_joint_held_in_degrees_is_named() {
     let text = massive(&[PITCH, PITCH]);
     let caution = |value| {
         let held = Reduction { hold: vec![(0, value)], ..Reduction::default() };
-        reduce(&text, &held).reading.cautions
+        reduce(&text, &held).reading().cautions.clone()
     };
     assert_eq!(caution(1.5), [""; 0]);
     assert_eq!(caution(90.0), ["held beyond limits, or in degrees: j = 90 rad is more than a turn"]);
@@ -359,7 +359,7 @@ fn rotor_inertia_of_the_file_is_noted() {
     let caution = |value: &str| {
         let rotor = format!("<drake:gear_ratio value=\"9\"/><drake:rotor_inertia value=\"{value}\"/>");
         let more = format!("<transmission><joint name=\"j\"/><actuator name=\"m\">{rotor}</actuator></transmission>");
-        load(&massive(&[PITCH]).replace("</robot>", &(more + "</robot>"))).reading.cautions
+        load(&massive(&[PITCH]).replace("</robot>", &(more + "</robot>"))).reading().cautions.clone()
     };
     let words = "rotor inertia of the file is not read (j): give it times the gear ratio squared, by `rotor_inertia` in each \
                  state";
@@ -373,7 +373,7 @@ fn misspelt_names_are_named_with_their_lines() {
     let caution = |from: &str, to: &str| {
         let changed = text.replacen(from, to, 1);
         assert_ne!(changed, text);
-        load(&changed).reading.cautions.into_iter().find(|caution| caution.contains("misspelt"))
+        load(&changed).reading().cautions.iter().find(|caution| caution.contains("misspelt")).cloned()
     };
     assert_eq!(caution("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 1 0\" rpy=\"0\"/>"), None);
     let misspelt = caution("<origin ", "<orign ").unwrap();
@@ -437,9 +437,9 @@ fn a_mimic_joint_is_tied_to_the_last_mimicked_one() {
     let robot = load(&text);
     assert_eq!(names(&robot), ["l", "m"]);
     let mimics =
-        robot.mimic_joints.iter().map(|own| (own.joint.name.as_str(), own.mimicked, own.multiplier, own.offset));
+        robot.mimic_joints().iter().map(|own| (own.joint.name.as_str(), own.mimicked, own.multiplier, own.offset));
     assert_eq!(mimics.collect::<Vec<_>>(), [("j", 1, -6.0, 0.5), ("k", 1, -3.0, 0.0)]);
-    let movers: Vec<_> = robot.bodies.iter().map(|body| body.joint).collect();
+    let movers: Vec<_> = robot.bodies().iter().map(|body| body.joint).collect();
     let (mimic, joint) = (ParentJoint::Mimic, ParentJoint::Joint);
     assert_eq!(movers, [None, Some(mimic(0)), Some(mimic(1)), Some(joint(0)), Some(joint(1))]);
 }
@@ -450,25 +450,25 @@ fn a_mimic_joint_of_a_frozen_joint_is_frozen_with_it() {
         with_mimic(&massive(&[("revolute", axis), PITCH]), "k", "joint=\"j\" multiplier=\"2\" offset=\"0.1\"")
     };
     let robot = load(&mimic("1 0 0"));
-    assert!(robot.joints.is_empty() && robot.mimic_joints.is_empty());
+    assert!(robot.joints().is_empty() && robot.mimic_joints().is_empty());
     // At its offset, as the mimicked one is at zero.
     let frozen = still(&robot, "k");
     assert_eq!(frozen, &FreezeReason::Follows { mimicked: "j".into(), value: 0.1 });
     assert_eq!(frozen.to_string(), "frozen at 0.1 by j, which it follows");
-    assert_at(robot.links[2].point::<f64>([0.0, 0.0, -1.0]), [-0.1_f64.sin(), -2.0 - 0.1_f64.cos()]);
+    assert_at(robot.links()[2].point::<f64>([0.0, 0.0, -1.0]), [-0.1_f64.sin(), -2.0 - 0.1_f64.cos()]);
 
     // A mimicked joint that is frozen at a value takes its mimic joint along: 2 * 0.2 + 0.1.
     let robot = holding(&mimic("0 1 0"), &[(0, 0.2)]);
     let (first, both): (f64, f64) = (0.2, 0.2 + 2.0 * 0.2 + 0.1);
     let expected = [-first.sin() - both.sin(), -1.0 - first.cos() - both.cos()];
-    assert_at(robot.links[2].point::<f64>([0.0, 0.0, -1.0]), expected);
+    assert_at(robot.links()[2].point::<f64>([0.0, 0.0, -1.0]), expected);
 
     // So is one on the way to the joint that it mimics, which that turn leaves off the plane, or fixed.
     let tilted = with_mimic(&massive(&[PITCH, ROLL]), "j", "joint=\"k\" multiplier=\"-0.5\" offset=\"0.6\"");
     for text in [tilted.clone(), tilted.replace("name=\"k\" type=\"revolute\"", "name=\"k\" type=\"fixed\"")] {
         let robot = load(&text);
         assert_eq!(still(&robot, "j"), &FreezeReason::Follows { mimicked: "k".into(), value: 0.6 });
-        assert_at(robot.links[1].point::<f64>([0.0, 0.0, -1.0]), [-0.6_f64.sin(), -1.0 - 0.6_f64.cos()]);
+        assert_at(robot.links()[1].point::<f64>([0.0, 0.0, -1.0]), [-0.6_f64.sin(), -1.0 - 0.6_f64.cos()]);
     }
 
     // One on the way to the joint that it mimics does not turn that into the plane, where it would move.
@@ -479,11 +479,15 @@ fn a_mimic_joint_of_a_frozen_joint_is_frozen_with_it() {
 
     // A mimic joint off the plane is frozen as such; the mimicked one stays.
     let robot = load(&with_mimic(&massive(&[PITCH, ROLL]), "k", "joint=\"j\""));
-    assert_eq!((names(&robot), robot.mimic_joints.len()), (vec!["j"], 0));
+    assert_eq!((names(&robot), robot.mimic_joints().len()), (vec!["j"], 0));
     assert!(matches!(still(&robot, "k"), FreezeReason::OffPlane { .. }));
     let words =
         "frozen at zero although what they follow moves, their axes being off the plane: k follows j; to keep both";
-    assert!(robot.reading.cautions.iter().any(|caution| caution.starts_with(words)), "{:?}", robot.reading.cautions);
+    assert!(
+        robot.reading().cautions.iter().any(|caution| caution.starts_with(words)),
+        "{:?}",
+        robot.reading().cautions
+    );
 }
 
 // Whatever the order and the names.
@@ -498,23 +502,23 @@ fn names_and_order_in_the_file_change_nothing_else() {
         text.replace(&format!("\"{letter}\""), &format!("\"*{}\"", opposite(letter)))
     });
     let (forward, renamed) = (load(&text), load(&renamed.replace('*', "a name ü ")));
-    assert_eq!(renamed.joints[0].name, "a name ü q");
+    assert_eq!(renamed.joints()[0].name, "a name ü q");
     let numbers = |robot: &Robot| {
-        let bodies: Vec<_> = robot.bodies.iter().map(|body| (body.mass, body.com, body.moment, body.joint)).collect();
-        let joints: Vec<_> = robot.joints.iter().map(|joint| (joint.parent, joint.origin, joint.axis)).collect();
+        let bodies: Vec<_> = robot.bodies().iter().map(|body| (body.mass, body.com, body.moment, body.joint)).collect();
+        let joints: Vec<_> = robot.joints().iter().map(|joint| (joint.parent, joint.origin, joint.axis)).collect();
         (bodies, joints)
     };
     assert_eq!(numbers(&forward), numbers(&renamed));
 
     let elements = text.lines().rev().filter(|line| line.starts_with("<link") || line.starts_with("<joint"));
     let backward = load(&robot(&elements.collect::<String>()));
-    assert_eq!(forward.bodies.len(), backward.bodies.len());
-    for (a, b) in forward.bodies.iter().zip(&backward.bodies) {
+    assert_eq!(forward.bodies().len(), backward.bodies().len());
+    for (a, b) in forward.bodies().iter().zip(backward.bodies()) {
         assert_eq!((&a.name, a.mass, a.com, a.moment), (&b.name, b.mass, b.com, b.moment));
     }
     assert_eq!(names(&forward).into_iter().rev().collect::<Vec<_>>(), names(&backward));
-    for joint in &forward.joints {
-        let other = &backward.joints[backward.joint(&joint.name).expect("the joint")];
+    for joint in forward.joints() {
+        let other = &backward.joints()[backward.joint(&joint.name).expect("the joint")];
         assert_eq!(joint, other);
     }
 }

@@ -16,11 +16,11 @@ fn a_misspelt_or_late_declaration_is_passed_over() {
         "\u{feff}<?xml version=\"1.1\"?>",
     ] {
         let robot = load(&format!("{declaration}\r\n<robot>{LINK}</robot>"));
-        assert_eq!(robot.links.len(), 1, "{declaration}");
+        assert_eq!(robot.links().len(), 1, "{declaration}");
     }
     // Declaring macros is not using them.
     let declared = "<robot xmlns:xacro=\"http://www.ros.org/wiki/xacro\">";
-    assert_eq!(load(&format!("{declared}{LINK}</robot>")).links.len(), 1);
+    assert_eq!(load(&format!("{declared}{LINK}</robot>")).links().len(), 1);
 }
 
 #[test]
@@ -34,7 +34,7 @@ fn undeclared_prefixes_are_listed_and_passed_over() {
     assert_eq!(refused.to_string(), "3:1: link \"b\": links \"a\" and \"b\" are both roots");
     let robot = load(&text.replace("<link name=\"b\" drake:ignore=\"true\"/>", ""));
     let listed = |tag: &str| left_out(&format!("<{tag}> in <robot>"), "no part of the robot's mechanics");
-    assert_eq!(robot.left_out, [left_out("link \"a\"", POINT), listed("camera"), listed("x")]);
+    assert_eq!(robot.left_out(), [left_out("link \"a\"", POINT), listed("camera"), listed("x")]);
 }
 
 const POINT: &str = "its <inertial> has no <inertia>: taken as a point mass";
@@ -49,10 +49,10 @@ fn an_inertia_that_no_body_has_is_listed() {
     let why = "no body can have its inertia: the moment about the plane's normal is taken as it is, the rest left out";
     for (ixx, iyy, izz) in [(0.0, 0.5, 0.0), (-1.0, 0.5, 0.5), (0.1, 0.5, 0.1)] {
         let robot = load(&link(ixx, iyy, izz));
-        assert_eq!((robot.bodies[0].moment, &robot.left_out[..]), (iyy, &[left_out("link \"a\"", why)][..]));
+        assert_eq!((robot.bodies()[0].moment, robot.left_out()), (iyy, &[left_out("link \"a\"", why)][..]));
     }
     // A point mass is a body.
-    assert_eq!(load(&link(0.0, 0.0, 0.0)).left_out, []);
+    assert_eq!(load(&link(0.0, 0.0, 0.0)).left_out(), []);
 }
 
 #[test]
@@ -61,7 +61,7 @@ fn foreign_elements_at_a_shape_are_passed_over() {
         let link = LINK.replace("</link>", &format!("<collision><geometry>{inside}</geometry></collision></link>"));
         Robot::from_urdf(&format!("<robot name=\"r\">{link}</robot>"))
     };
-    let shapes = |inside: &str| geometry(inside).expect("a robot").links[0].shapes.len();
+    let shapes = |inside: &str| geometry(inside).expect("a robot").links()[0].shapes.len();
     assert_eq!(shapes("<drake:declare_convex/><sphere radius=\"1\"/>"), 1);
     assert_eq!(shapes("<sphere radius=\"1\"/><drake:declare_convex/>"), 1);
     assert_eq!(shapes("<drake:capsule radius=\"1\" length=\"2\"/>"), 1);
@@ -75,9 +75,9 @@ fn moment_that_is_negative_by_rounding_is_zero() {
         Robot::from_urdf(&robot(&format!("<link name=\"a\"><inertial><mass value=\"1\"/>{inertia}</inertial></link>")))
     };
     let robot = link(-5e-20).expect("a robot");
-    assert_eq!(robot.bodies[0].moment, 0.0);
+    assert_eq!(robot.bodies()[0].moment, 0.0);
     let why = "its moment about the plane's normal is -5e-20 kg m^2, which is rounding: taken as 0";
-    assert_eq!(robot.left_out, [left_out("link \"a\"", why)]);
+    assert_eq!(robot.left_out(), [left_out("link \"a\"", why)]);
     assert!(link(-5e-10).is_err());
 }
 
@@ -123,7 +123,7 @@ fn doubtful_inertias_and_angles_are_noted() {
     let shapeless = |moment: f64| load(&urdf::robot(&[link("a", 3.0, [0.0; 2], moment, "")]));
     let words = "with an inertia that needs a part far beyond the robot's size: a; ";
     assert!(only_caution(&shapeless(5000.0)).starts_with(words));
-    assert_eq!(shapeless(10.0).reading.cautions, [""; 0]);
+    assert_eq!(shapeless(10.0).reading().cautions, [""; 0]);
     let massless = |moment: f64| {
         let links = [link("a", 1.0, [0.0; 2], 1.0, ""), link("b", 0.0, [0.0; 2], moment, "")];
         load(&urdf::robot(&[links.concat(), joint("j", HINGE, ["a", "b"], [0.0, -1.0], "")]))
@@ -132,7 +132,7 @@ fn doubtful_inertias_and_angles_are_noted() {
         let [torso, leg] = ["torso", "leg"].map(|name| link(name, 1.0, [0.0; 2], 1.0, ""));
         let hip = joint("hip", HINGE, ["torso", "leg"], [0.0, -1.0], "");
         let hip = hip.replace("lower=\"-9\" upper=\"9\"", &format!("lower=\"{lower}\" upper=\"{upper}\""));
-        load(&urdf::robot(&[torso, leg, hip])).reading.cautions
+        load(&urdf::robot(&[torso, leg, hip])).reading().cautions.clone()
     };
     assert_eq!(limited([-90.0, 120.0]), ["with limits as in degrees: hip; angles are in radians"]);
     assert_eq!(limited([-10.0, 10.0]), [""; 0]);
@@ -146,7 +146,7 @@ fn doubtful_inertias_and_angles_are_noted() {
     let links = [("a", 1.0), ("b", 0.0), ("c", 1.0)].map(|(name, mass)| link(name, mass, [0.0; 2], mass, ""));
     let joints = [("j", "b", ""), ("k", "c", "<mimic joint=\"j\"/>")];
     let joints = joints.map(|(name, child, more)| joint(name, HINGE, ["a", child], [0.0, -1.0], more));
-    assert_eq!(load(&urdf::robot(&[links.concat(), joints.concat()])).reading.cautions, [""; 0]);
+    assert_eq!(load(&urdf::robot(&[links.concat(), joints.concat()])).reading().cautions, [""; 0]);
     // A whole turn, the moment of a planar model, a point mass that is meant, nothing at all.
     for (from, to) in [
         (drawn, "<origin xyz=\"0 0 -0.5\" rpy=\"0 6.2832 0\"/><geometry>"),
@@ -155,7 +155,7 @@ fn doubtful_inertias_and_angles_are_noted() {
         (inertia, "<inertia ixx=\"0\" iyy=\"0\" izz=\"0\"/>"),
         (inertia, inertia),
     ] {
-        assert_eq!(replaced(from, to).reading.cautions, [""; 0], "{to}");
+        assert_eq!(replaced(from, to).reading().cautions, [""; 0], "{to}");
     }
 }
 
@@ -168,7 +168,7 @@ fn lengths_that_look_like_millimeters_are_noted() {
     let caution = box_of("400");
     let caution = only_caution(&caution);
     assert!(caution.starts_with("a shape of a spans 400 m: lengths are in meters"), "{caution}");
-    assert!(box_of("4").reading.cautions.is_empty());
+    assert!(box_of("4").reading().cautions.is_empty());
     let far = load(&massive(&[PITCH]).replace("0 0 -1", "0 0 -350"));
     assert!(only_caution(&far).starts_with("the origin of j is 350 m away"), "{}", only_caution(&far));
     let sole = urdf::collision([0.0, -500.0], "sphere radius=\"0.02\"");
@@ -179,7 +179,7 @@ fn lengths_that_look_like_millimeters_are_noted() {
 #[test]
 fn shapes_that_urdf_does_not_have_are_noted() {
     let feet = ["ellipsoid radii=\"1 1 1\"", "plane normal=\"0 0 1\""].map(|shape| urdf::collision([0.0; 2], shape));
-    let with = |shapes: &str| load(&urdf::robot(&[link("a", 1.0, [0.0; 2], 1.0, shapes)])).reading.cautions;
+    let with = |shapes: &str| load(&urdf::robot(&[link("a", 1.0, [0.0; 2], 1.0, shapes)])).reading().cautions.clone();
     let words = "1 collision shape is left out, so that nothing touches there (<ellipsoid> of a): give a shape of URDF, or \
                  name a foot by `feet: LINK:X,Y,Z`";
     assert_eq!(with(&feet[0]), [words]);
@@ -194,7 +194,7 @@ fn a_sole_turned_by_3_14_is_flat() {
              </collision>"
         );
         let robot = load(&urdf::robot(&[link("a", 1.0, [0.0; 2], 1.0, &sole)]));
-        robot.links[0].shapes[0].corners().len()
+        robot.links()[0].shapes[0].corners().len()
     };
     assert_eq!([0.0, 314.0 / 100.0, 1e-2].map(corners), [4, 4, 2]);
 }
@@ -205,9 +205,9 @@ fn a_mass_in_grams_is_noted() {
         let shape = urdf::collision([0.0; 2], "sphere radius=\"0.1\"");
         load(&urdf::robot(&[link("a", mass, [0.0; 2], 4e-3 * mass, &shape)]))
     };
-    assert!(of_mass(32.0).reading.cautions.is_empty());
+    assert!(of_mass(32.0).reading().cautions.is_empty());
     let words = "the robot weighs 2000 kg, more than a ball of steel around all of it (radius 0.1 m): masses are in kg";
-    assert_eq!(of_mass(2000.0).reading.cautions.last().unwrap(), words);
+    assert_eq!(of_mass(2000.0).reading().cautions.last().unwrap(), words);
     // What slides may be as long as its joint reaches, which the size at zero does not show.
     let [body, foot] = ["body", "foot"].map(|name| {
         let shape = urdf::collision([0.0; 2], "sphere radius=\"0.03\"");
@@ -215,7 +215,7 @@ fn a_mass_in_grams_is_noted() {
     });
     let slide = "<joint name=\"leg\" type=\"prismatic\"><parent link=\"body\"/><child link=\"foot\"/><axis xyz=\"0 0 1\"/>\
                  <limit lower=\"-1\" upper=\"0\"/></joint>";
-    assert_eq!(load(&urdf::robot(&[body, foot, slide.to_owned()])).reading.cautions, [""; 0]);
+    assert_eq!(load(&urdf::robot(&[body, foot, slide.to_owned()])).reading().cautions, [""; 0]);
 }
 
 #[test]
@@ -233,7 +233,7 @@ fn moments_about_another_axis_and_no_mass_are_noted() {
     let cautions = |thigh: &str, knee: f64| {
         let parts = [limb("body", &massive(inertia)), limb("thigh", thigh), limb("shank", &massive(inertia))];
         let joints = [turned("hip", ["body", "thigh"], -0.5), turned("knee", ["thigh", "shank"], knee)];
-        load(&robot(&(parts.concat() + &joints.concat()))).reading.cautions
+        load(&robot(&(parts.concat() + &joints.concat()))).reading().cautions.clone()
     };
     assert_eq!(cautions(&massive(inertia), -0.5), [""; 0]);
     let aside = massive("<inertia ixx=\"0\" iyy=\"0\" izz=\"0.01\"/>");
@@ -252,7 +252,7 @@ fn moments_about_another_axis_and_no_mass_are_noted() {
     for weld in [true, false] {
         let reductions = heelstrike::reductions::Reductions { weld, ..Default::default() };
         assert_eq!(
-            reduce(&text, &Reduction { reductions, ..Reduction::default() }).reading.cautions,
+            reduce(&text, &Reduction { reductions, ..Reduction::default() }).reading().cautions,
             [""; 0],
             "{weld}"
         );

@@ -50,10 +50,10 @@ fn compare(name: &str, variant: &str) {
     let text = read(&urdf);
     let robot = |reductions| impact::reduced(&text, &Reduction { reductions, ..Reduction::default() });
     let reduced = robot(Reductions::ALL);
-    let joints: Vec<String> = reduced.joints.iter().map(|joint| joint.name.clone()).collect();
+    let joints: Vec<String> = reduced.joints().iter().map(|joint| joint.name.clone()).collect();
     let mut states = states(&variant, reduced.base_dofs(), &joints);
     // Feet that are found: each link with shapes stands once.
-    for link in reduced.links.iter().filter(|link| !link.shapes.is_empty() && reduced.base_dofs() > 0).take(6) {
+    for link in reduced.links().iter().filter(|link| !link.shapes.is_empty() && reduced.base_dofs() > 0).take(6) {
         let mut standing = states[2].clone();
         standing.as_object_mut().expect("an object").remove("contacts");
         for part in ["position", "velocity"] {

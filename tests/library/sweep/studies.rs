@@ -88,15 +88,15 @@ fn friction(random: &mut Random) -> Value {
 /// The text of a study with this many samples.
 pub fn study(subject: &Subject, random: &mut Random, steps: usize) -> Value {
     let robot = &subject.robot;
-    let links: Vec<&str> = robot.links.iter().map(|link| link.name.as_str()).collect();
-    let shaped = robot.links.iter().filter(|link| !link.shapes.is_empty()).map(|link| link.name.as_str());
+    let links: Vec<&str> = robot.links().iter().map(|link| link.name.as_str()).collect();
+    let shaped = robot.links().iter().filter(|link| !link.shapes.is_empty()).map(|link| link.name.as_str());
     let shaped: Vec<&str> = shaped.collect();
     let floats = robot.base_dofs() == 3;
     let standing = floats && !shaped.is_empty() && !random.once_in(4);
 
     let mut state = json!({});
     for (name, size) in [("position", 1.2), ("velocity", 2.0)] {
-        let joints = robot.joints.iter().map(|joint| (joint.name.clone(), linear(random, size)));
+        let joints = robot.joints().iter().map(|joint| (joint.name.clone(), linear(random, size)));
         state[name]["joints"] = joints.collect();
         let base = if standing { &["pitch"][..] } else { &["pitch", "x", "z"] };
         for coordinate in base.iter().filter(|_| floats) {
@@ -156,7 +156,7 @@ fn variation(subject: &Subject, random: &mut Random) -> Value {
         fields["inertia"] = near(random, 0.2);
     }
     let mut robot = json!({"links": {link.name.clone(): fields}});
-    let moving: Vec<&str> = subject.robot.joints.iter().map(|joint| joint.name.as_str()).collect();
+    let moving: Vec<&str> = subject.robot.joints().iter().map(|joint| joint.name.as_str()).collect();
     if random.once_in(2) && !moving.is_empty() {
         robot["joints"] = json!({random.pick(&moving): {"origin": [linear(random, 0.3), 0, linear(random, 0.3)]}});
     }

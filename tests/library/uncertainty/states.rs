@@ -22,7 +22,7 @@ fn feet() -> Value {
 }
 
 fn joints(robot: &Robot, random: &mut Random, size: f64) -> Value {
-    robot.joints.iter().map(|joint| (joint.name.clone(), json!(random.between(-size, size)))).collect()
+    robot.joints().iter().map(|joint| (joint.name.clone(), json!(random.between(-size, size)))).collect()
 }
 
 /// Both feet on the ground, in any configuration, with any velocities of order one and friction from 0.2 to 1.5, all
@@ -128,7 +128,7 @@ pub fn in_the_box(robot: &Robot, state: &State, mut place: impl FnMut() -> f64) 
         }
     }
     for (joint, width) in known.rotor_inertia.iter().enumerate().filter(|(_, width)| **width > 0.0) {
-        other.scene.rotor_inertia.resize(robot.joints.len() + robot.mimic_joints.len(), 0.0);
+        other.scene.rotor_inertia.resize(robot.joints().len() + robot.mimic_joints().len(), 0.0);
         other.scene.rotor_inertia[joint] = (other.scene.rotor_inertia[joint] + width * place()).max(0.0);
     }
     other

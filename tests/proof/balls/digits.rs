@@ -8,7 +8,7 @@ use super::states::{Model, chain, models, tied_models, tree};
 use crate::support::digits::{PROMISED, Truth};
 use crate::support::parallel::total;
 use crate::support::random::Random;
-use heelstrike::impact::{Friction, Outcome};
+use heelstrike::impact::Friction;
 use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::state::{Named, Scene, State};
 
@@ -89,11 +89,9 @@ fn impulses_of_loops_balance_the_momentum() {
                 let entries = after.iter().zip(before.values());
                 Some(entries.map(|((name, after), before)| (name.to_owned(), after - before)).collect())
             };
-            let jump = Outcome {
-                base_velocity_after: change(&outcome.base_velocity_after, &before[0].base_velocity_after),
-                joint_velocity_after: change(&outcome.joint_velocity_after, &before[0].joint_velocity_after),
-                ..outcome
-            };
+            let mut jump = outcome;
+            jump.base_velocity_after = change(&jump.base_velocity_after, &before[0].base_velocity_after);
+            jump.joint_velocity_after = change(&jump.joint_velocity_after, &before[0].joint_velocity_after);
             // Of a jump that is only rounding no part is balanced.
             if jump.loop_impulse.iter().flatten().all(|own| own.length() < 1e-3) {
                 continue;

@@ -121,7 +121,7 @@ pub struct Terms<N> {
 /// A point of a link in its body's frame.
 pub fn in_body<N: Number>(robot: &Robot, link: usize, offset: [f64; 3], bits: usize) -> Pair<N> {
     let number = |value: f64| N::new(value, bits);
-    robot.links[link].pose.map(|row| {
+    robot.links()[link].pose.map(|row| {
         let [x, y, z] = [0, 1, 2].map(|k| number(row[k]).times(&number(offset[k])));
         x.plus(&y).plus(&z).plus(&number(row[3]))
     })
@@ -137,7 +137,7 @@ pub fn terms<N: Number>(robot: &Robot, state: &State, position: &[N], bits: usiz
         .collect();
 
     let mut mass_matrix = vec![vec![number(0.0); free.len()]; free.len()];
-    for (body, pose) in robot.bodies.iter().zip(&poses) {
+    for (body, pose) in robot.bodies().iter().zip(&poses) {
         let velocities = pose.velocities(&pose.point(&body.com.map(number).components()));
         let [mass, moment] = [body.mass, body.moment].map(number);
         for (i, row) in mass_matrix.iter_mut().enumerate() {
@@ -151,7 +151,7 @@ pub fn terms<N: Number>(robot: &Robot, state: &State, position: &[N], bits: usiz
         }
     }
     for (own, rotor) in scene.rotor_inertia.iter().enumerate() {
-        let mimic = own.checked_sub(robot.joints.len()).map(|mimic| &robot.mimic_joints[mimic]);
+        let mimic = own.checked_sub(robot.joints().len()).map(|mimic| &robot.mimic_joints()[mimic]);
         let (joint, ratio) = mimic.map_or((own, 1.0), |mimic| (mimic.mimicked, mimic.multiplier));
         let Some(at) = free.iter().position(|&coordinate| coordinate == robot.base_dofs() + joint) else { continue };
         let [rotor, ratio] = [*rotor, ratio].map(number);
@@ -170,7 +170,7 @@ pub fn terms<N: Number>(robot: &Robot, state: &State, position: &[N], bits: usiz
     };
     let axes = [[cos.clone(), sin.clone()], [sin.negative(), cos]];
     let row = |contact: &NamedContact| {
-        let pose = &poses[robot.links[contact.link].body];
+        let pose = &poses[robot.links()[contact.link].body];
         let radius = number(-contact.radius);
         let reach = axes[1].clone().map(|entry| entry.times(&radius));
         let point = add(&pose.point(&in_body(robot, contact.link, contact.offset, bits)), &reach);
@@ -179,7 +179,7 @@ pub fn terms<N: Number>(robot: &Robot, state: &State, position: &[N], bits: usiz
     };
     let rows = scene.contacts.iter().flatten().map(row).collect();
     let moving = |end: LinkPoint| {
-        let pose = &poses[robot.links[end.link].body];
+        let pose = &poses[robot.links()[end.link].body];
         pose.velocities(&pose.point(&in_body(robot, end.link, end.offset, bits)))
     };
     let ends = scene.loops.iter().map(|own| [own.a, own.b].map(moving));
@@ -245,7 +245,7 @@ pub fn problem<N: Number>(
 
     let mut applied = vec![number(0.0); free.len()];
     for impulse in &scene.impulses {
-        let pose = &poses[robot.links[impulse.link].body];
+        let pose = &poses[robot.links()[impulse.link].body];
         let velocities = pose.velocities(&pose.point(&in_body(robot, impulse.link, impulse.offset, bits)));
         let vector = impulse.vector.components().map(number);
         for (entry, coordinate) in applied.iter_mut().zip(&free) {

@@ -37,7 +37,7 @@ fn spring<N: Number>(
     let still = || vec![[number(0.0), number(0.0)]; robot.dofs()];
     // Place and pitch, and how they move with each coordinate.
     let end = |LinkPoint { link, offset }: LinkPoint| {
-        let pose = &poses[robot.links[link].body];
+        let pose = &poses[robot.links()[link].body];
         let [x, z] = pose.point(&in_body(robot, link, offset, bits));
         let velocities = pose.velocities(&[x.clone(), z.clone()]);
         let place = match base {
@@ -99,7 +99,7 @@ pub fn loads<N: Number>(
     };
     let gravity = number(scene.gravity.unwrap_or(9.81));
     let mut forces = vec![number(0.0); robot.dofs()];
-    for (at, body) in robot.bodies.iter().enumerate() {
+    for (at, body) in robot.bodies().iter().enumerate() {
         let com = body.com.map(number).components();
         let [x, z] = accelerated(at, &com).map(|entry| entry.times(&number(-body.mass)));
         let force = [x, z.minus(&gravity.times(&number(body.mass)))];
@@ -116,7 +116,7 @@ pub fn loads<N: Number>(
         forces.iter_mut().zip(&torque).for_each(|(entry, torque)| *entry = entry.plus(torque));
     }
     let drift =
-        |link: usize, offset: [f64; 3]| accelerated(robot.links[link].body, &in_body(robot, link, offset, bits));
+        |link: usize, offset: [f64; 3]| accelerated(robot.links()[link].body, &in_body(robot, link, offset, bits));
     let opening = |[a, b]: [LinkPoint; 2]| {
         let [a, b] = [a, b].map(|end| drift(end.link, end.offset));
         [a[0].minus(&b[0]), a[1].minus(&b[1])]
@@ -178,7 +178,7 @@ pub fn imbalance(robot: &Robot, state: &State, outcome: &Outcome, power: f64) ->
     let change = energy(1.0)?.minus(&energy(-1.0)?).over(&step.plus(&step));
     let gravity = number(state.scene.gravity.unwrap_or(9.81));
     let mut given = number(power);
-    for (body, pose) in robot.bodies.iter().zip(&poses) {
+    for (body, pose) in robot.bodies().iter().zip(&poses) {
         let com = pose.velocities(&pose.point(&body.com.map(number).components()));
         let rise = com.iter().zip(&velocity).fold(number(0.0), |sum, (way, rate)| sum.plus(&way[1].times(rate)));
         given = given.minus(&rise.times(&gravity).times(&number(body.mass)));

@@ -55,8 +55,8 @@ pub fn dot<'a, N: Number + 'a>(pairs: impl IntoIterator<Item = (&'a N, &'a N)>, 
 pub fn poses<N: Number>(robot: &Robot, position: &[N], bits: usize) -> Vec<Pose<N>> {
     let number = |value: f64| N::new(value, bits);
     let base = robot.base_dofs();
-    let mut poses: Vec<Pose<N>> = Vec::with_capacity(robot.bodies.len());
-    for body in &robot.bodies {
+    let mut poses: Vec<Pose<N>> = Vec::with_capacity(robot.bodies().len());
+    for body in robot.bodies() {
         let pose = match body.joint {
             None => {
                 let angle = if base == 3 { position[2].clone() } else { number(0.0) };
@@ -73,11 +73,11 @@ pub fn poses<N: Number>(robot: &Robot, position: &[N], bits: usize) -> Vec<Pose<
                 // The joint with its axis, and the coordinate that moves it, by a factor and with an offset.
                 let (parent, origin, moves) = match mover {
                     ParentJoint::Joint(index) => {
-                        let joint = &robot.joints[index];
+                        let joint = &robot.joints()[index];
                         (joint.parent, joint.origin, Some((joint.axis, base + index, [1.0, 0.0])))
                     }
                     ParentJoint::Mimic(index) => {
-                        let MimicJoint { joint, mimicked, multiplier, offset } = &robot.mimic_joints[index];
+                        let MimicJoint { joint, mimicked, multiplier, offset } = &robot.mimic_joints()[index];
                         (joint.parent, joint.origin, Some((joint.axis, base + mimicked, [*multiplier, *offset])))
                     }
                     ParentJoint::Fixed { parent, origin } => (parent, origin, None),

@@ -215,7 +215,7 @@ impl Model {
         if random.once_in(8) && dofs > base {
             let joint = random.whole(base as i64, dofs as i64 - 1) as usize;
             // The feet of a walker with a hip alone would be one, and its legs of point masses one without inertia.
-            let straight = if self.robot.joints.len() == 1 { [1e-4, 1e-2] } else { [0.0, 1e-9] };
+            let straight = if self.robot.joints().len() == 1 { [1e-4, 1e-2] } else { [0.0, 1e-9] };
             state.position[joint] = random.pick(&straight);
         }
         state.scene = self.scene(random);
@@ -228,7 +228,7 @@ impl Model {
         state.scene.impulses.clear();
         state.scene.stance = None;
         state.scene.gravity = random.once_in(4).then(|| random.between(0.0, 20.0));
-        state.scene.torque = self.robot.joints.iter().map(|_| random.between(-20.0, 20.0)).collect();
+        state.scene.torque = self.robot.joints().iter().map(|_| random.between(-20.0, 20.0)).collect();
         state.scene.springs = (0..random.whole(-1, 2)).map(|_| self.spring(random)).collect();
         state.scene.loops.clone_from(&self.loops);
         (self.closing)(&mut state.position);
@@ -283,7 +283,7 @@ impl Model {
     /// A spring from one link to another or to the world.
     fn spring(&self, random: &mut Random) -> VirtualSpring {
         let point = |random: &mut Random| LinkPoint {
-            link: random.whole(0, self.robot.links.len() as i64 - 1) as usize,
+            link: random.whole(0, self.robot.links().len() as i64 - 1) as usize,
             offset: [random.between(-0.3, 0.3), 0.0, random.between(-0.3, 0.3)],
         };
         let a = point(random);
@@ -325,11 +325,11 @@ impl Model {
             let bounce = |link: usize| (link, random.pick(&[0.0, 0.5, 1.0, 0.3]));
             scene.restitution = ByLink { default: None, links: links.into_iter().map(bounce).collect() };
         }
-        if random.once_in(10) && !self.robot.joints.is_empty() {
-            scene.braked = vec![random.whole(0, self.robot.joints.len() as i64 - 1) as usize];
+        if random.once_in(10) && !self.robot.joints().is_empty() {
+            scene.braked = vec![random.whole(0, self.robot.joints().len() as i64 - 1) as usize];
         }
         if random.once_in(10) {
-            scene.rotor_inertia = self.robot.joints.iter().map(|_| random.decades(-4.0, -1.0)).collect();
+            scene.rotor_inertia = self.robot.joints().iter().map(|_| random.decades(-4.0, -1.0)).collect();
         }
         if random.once_in(10) {
             scene.impulses = vec![AppliedImpulse {

@@ -70,7 +70,7 @@ fn check(model: &Model, random: &mut Random) -> Counts {
         is(finding == Finding::Unknown),
         is(slips.iter().any(|slip| slip.is_ne())),
         is(!scene.loops.is_empty()),
-        is(!model.robot.mimic_joints.is_empty()),
+        is(!model.robot.mimic_joints().is_empty()),
         is(!scene.springs.is_empty()),
         is(!scene.braked.is_empty()),
         is(answer.outcomes.is_empty()),
