@@ -10,8 +10,6 @@ import sys
 
 import numpy as np
 import pyarrow as pa
-from pyspark.sql import SparkSession
-from pyspark.sql.pandas.types import from_arrow_schema, to_arrow_schema
 
 
 @functools.cache
@@ -41,11 +39,15 @@ def answered(urdf, batches):
 
 def answer(spark, urdf, states):
     """The data frame of results."""
+    from pyspark.sql.pandas.types import from_arrow_schema, to_arrow_schema
+
     schema = from_arrow_schema(table(urdf, to_arrow_schema(states.schema).empty_table()).schema)
     return states.mapInArrow(functools.partial(answered, urdf), schema)
 
 
 if __name__ == "__main__":
+    from pyspark.sql import SparkSession
+
     urdf, states, results = sys.argv[1:]
     session = SparkSession.builder.appName("heelstrike").getOrCreate()
     answer(session, urdf, session.read.parquet(states)).write.parquet(results)

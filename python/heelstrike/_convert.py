@@ -23,8 +23,7 @@ from ._core import Robot
 
 Array = NDArray[np.float64]
 
-_AXES = np.eye(3)
-_PLANES = {"xz": (0, 2), "yz": (1, 2), "xy": (0, 1)}
+_AXES = dict(zip("xyz", np.eye(3), strict=True))
 
 
 @dataclass
@@ -96,6 +95,8 @@ class Layout:
 
     @staticmethod
     def _rows(what: str, values: ArrayLike, columns: int) -> Array:
+        if np.iscomplexobj(values):
+            raise TypeError(f"{what} holds complex numbers")
         rows: Array = np.atleast_2d(np.ma.asarray(values, dtype=float).filled(np.nan))
         if rows.ndim != 2 or rows.shape[1] != columns:
             raise ValueError(f"{what} has the shape {np.shape(values)}, and the model needs (n, {columns})")
@@ -118,7 +119,7 @@ class Layout:
         """x, z, pitch of the base and their rates."""
         assert self.base is not None
         base = self.base
-        forward, up = (_AXES[axis] for axis in _PLANES[robot.plane])
+        forward, up = (_AXES[axis] for axis in robot.plane)
         normal = np.cross(up, forward)
         quaternion = q[:, base.quaternion]
         _refuse_length("a quaternion of the base has", quaternion)
@@ -236,6 +237,12 @@ def from_drake(plant: Any) -> Layout:
         q, v = joint.position_start(), joint.velocity_start()
         match joint.num_positions(), joint.num_velocities():
             case 7, 6 if layout.base is None:
+                frames = [own.GetFixedPoseInBodyFrame() for own in (joint.frame_on_parent(), joint.frame_on_child())]
+                if joint.parent_body().index() != plant.world_body().index() or not all(own.IsNearlyIdentity(1e-12) for own in frames):
+                    raise ValueError(
+                        f"the base's joint {joint.name()} does not join the frames of the world and of its body, so that "
+                        "its numbers are not those of the base: let it join plant.world_frame() and body.body_frame()"
+                    )
                 quaternion = list(range(q, q + 4))
                 layout.base = Base(slice(q + 4, q + 7), quaternion, slice(v + 3, v + 6), slice(v, v + 3), False, False)
             case 1, 1:

@@ -31,7 +31,7 @@ class _Reading(TypedDict, total=False):
 class _Scene(TypedDict, total=False):
     ground: dict[str, Any]
     stance: str
-    place: Literal["lowest"]
+    place: Literal["lowest", "given"]
     held: list[str]
     rotor_inertia: dict[str, float]
     loops: list[dict[str, Any]]
@@ -173,7 +173,6 @@ class Answers:
     def __len__(self) -> int: ...
     @staticmethod
     def _again(bytes: bytes) -> Answers: ...
-    def _stream(self) -> bytes: ...
     def to_arrow(self, id: Any = None) -> Any: ...
     def to_pandas(self, id: Any = None) -> Any: ...
 

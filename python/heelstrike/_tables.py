@@ -7,24 +7,63 @@ from typing import Any
 from ._core import Answers
 
 
-def to_arrow(answers: Answers, id: Any = None) -> Any:
+def _import(name: str) -> Any:
     try:
-        import pyarrow as pa  # type: ignore[import-untyped, unused-ignore]
+        return __import__(name)
     except ModuleNotFoundError as error:
         needs = "a table needs pyarrow, and a data frame pandas as well: pip install pyarrow pandas"
         raise ModuleNotFoundError(needs, name=error.name) from None
 
-    table = pa.ipc.open_stream(answers._stream()).read_all()
-    if id is None:
-        return table
-    ids = id if isinstance(id, (pa.Array, pa.ChunkedArray)) else pa.array(id)
+
+def to_arrow(answers: Answers, id: Any = None) -> Any:
+    pa = _import("pyarrow")
+    import numpy as np
+
+    from . import Mode, Verdict
+
+    outcomes = np.diff(answers.offsets)
+    # A state without outcome has a row as well.
+    state = np.repeat(np.arange(len(answers)), np.maximum(outcomes, 1))
+    verdict, nothing = answers.verdict[state], outcomes[state] == 0
+    outcome = np.cumsum(~nothing) - 1
+    at = pa.array(outcome, mask=nothing)
+
+    def per_outcome(values: Any, kind: Any = None) -> Any:
+        # NaN is null.
+        return pa.array(values, kind, from_pandas=True).take(at)
+
+    def named(values: Any, names: list[str]) -> Any:
+        return pa.array(names).take(pa.array(values, mask=values < 0))
+
+    def per_state(values: list[str | None]) -> Any:
+        return pa.array(values, pa.string()).take(pa.array(state))
+
+    ids = np.arange(len(answers)) if id is None else id
+    ids = ids if isinstance(ids, (pa.Array, pa.ChunkedArray)) else pa.array(ids)
     if len(ids) != len(answers):
         raise ValueError(f"id has {len(ids)} entries for {len(answers)} states")
-    return table.set_column(0, "id", ids.take(table["id"]))
+    all_proven = pa.array(answers.all_proven[state], mask=verdict == Verdict.REFUSED)
+    is_forces = hasattr(answers, "force")
+    vectors = answers.force if is_forces else answers.impulse
+    cells = [
+        ids.take(pa.array(state)),
+        named(verdict, [own.name.lower() for own in Verdict]),
+        pa.array(outcome - answers.offsets[state] + 1, mask=nothing),
+        per_outcome(answers.margin),
+        pa.compute.if_else(pa.array(nothing), all_proven, per_outcome(answers.proven)),
+    ]
+    modes = [own.name.lower().replace("_plus", "+").replace("_minus", "-") for own in Mode if own >= 0]
+    for contact in range(len(answers.contacts)):
+        cells.append(named(answers.modes[:, contact], modes).take(at))
+        cells += [per_outcome(vectors[:, contact, axis]) for axis in (0, 1)]
+    cells += map(per_outcome, (answers.acceleration if is_forces else answers.velocity_after).T)
+    cells += [per_outcome(answers.border, pa.string()), per_outcome(answers.family)]
+    cells += [per_outcome(answers.families, pa.string()), per_state(answers.error), per_state(answers.notes)]
+    return pa.table(cells, names=answers.columns)
 
 
 def to_pandas(answers: Answers, id: Any = None) -> Any:
-    import pandas as pd  # type: ignore[import-untyped, unused-ignore]
+    pd = _import("pandas")
 
     # A refused state has no outcome: with these types its row does not change those of the columns.
     types = {"bool": pd.BooleanDtype(), "int64": pd.Int64Dtype()}

@@ -7,7 +7,7 @@ import io
 import json
 import math
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ._core import Answers, Robot
@@ -28,11 +28,6 @@ def read(path: str | os.PathLike[str]) -> bytes:
         return file.read()
 
 
-def _text(path: str | os.PathLike[str]) -> str:
-    with open(path, encoding="utf-8-sig") as file:
-        return file.read()
-
-
 def robot(text: str, path: os.PathLike[str], options: dict[str, Any] | None) -> Robot:
     """A robot of another process."""
     return Robot._again(text, path, options)
@@ -49,12 +44,12 @@ def _plain(value: Any) -> Any:
     raise TypeError(f"a {type(value).__name__} is no part of JSON")
 
 
-def to_json(value: Any) -> str:
-    """JSON of a dictionary, or of the file of a path; text that begins with a brace is JSON already."""
+def to_json(value: Any) -> str | bytes:
+    """JSON of a dictionary, or what the file of a path holds; text that begins with a brace is JSON already."""
     if isinstance(value, str):
-        return value if value.lstrip().startswith("{") else _text(value)
+        return value if value.lstrip().startswith("{") else read(value)
     if isinstance(value, os.PathLike):
-        return _text(value)
+        return read(value)
     if isinstance(value, Mapping) and "friction" in value:
         value = {**value, "friction": _friction(value["friction"])}
     return json.dumps(value, default=_plain)
@@ -77,7 +72,9 @@ def _friction(value: Any) -> Any:
     return "infinite" if value == "inf" or isinstance(value, float) and value == math.inf else value
 
 
-def problem(delassus: Any, velocity: Any, friction: Any, restitution: Any) -> str:
+def problem(delassus: Any, velocity: Any, friction: Any, restitution: Any) -> str | bytes:
+    # Data frames are no arrays.
+    delassus, velocity = (own.to_numpy() if hasattr(own, "to_numpy") else own for own in (delassus, velocity))
     velocity = velocity.tolist() if hasattr(velocity, "tolist") else velocity
     for name, value in (("G", delassus), ("c", velocity)):
         if not isinstance(value, (list, tuple)) and not hasattr(value, "shape"):
@@ -94,7 +91,9 @@ def to_csv(table: Any) -> bytes:
     if isinstance(table, (str, os.PathLike)):
         return read(table)
     if hasattr(table, "to_csv"):
-        return str(table.to_csv(index=False)).encode()
+        # Of a float32 pandas writes fewer digits than its value has.
+        narrow = {name: "float64" for name, own in table.dtypes.items() if own in ("float32", "float16")}
+        return str(table.astype(narrow).to_csv(index=False)).encode()
     if hasattr(table, "to_pydict"):
         table = table.to_pydict()
     if not isinstance(table, Mapping):
@@ -103,6 +102,11 @@ def to_csv(table: Any) -> bytes:
     text = io.StringIO()
     writer = csv.writer(text)
     writer.writerow(table)
-    columns = (column.tolist() if hasattr(column, "tolist") else column for column in table.values())
-    writer.writerows(zip(*columns, strict=True))
+    columns = {name: column.tolist() if hasattr(column, "tolist") else column for name, column in table.items()}
+    for name, column in columns.items():
+        if not isinstance(column, Sequence) or isinstance(column, str):
+            raise TypeError(f"column {name} is a {type(column).__name__}, not a list")
+    if len(counts := {name: len(column) for name, column in columns.items()}) and len({*counts.values()}) > 1:
+        raise ValueError(f"the columns have different lengths: {counts}")
+    writer.writerows(zip(*columns.values(), strict=True))
     return text.getvalue().encode()

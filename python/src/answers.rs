@@ -1,6 +1,6 @@
 //! The arrays of a batch, made for Python when they are first asked for.
 
-use crate::values::{as_keywords, refused};
+use crate::values::as_keywords;
 use heelstrike::pipeline::Aspect;
 use heelstrike::state::NamedContact;
 use heelstrike::{
@@ -78,7 +78,7 @@ impl Table {
     /// That of a robot's feet and contacts that states name.
     pub fn new(aspect: Aspect, robot: &heelstrike::Robot, feet: &[NamedContact], named: &[&str]) -> Self {
         let layout = Layout { aspect, ..Layout::default() };
-        let columns = Columns::without_lines(robot, feet, named, &[], layout).numbered();
+        let columns = Columns::without_lines(robot, feet, named, &[], layout);
         let coordinates = robot.coordinates().map(str::to_owned).collect();
         Self { aspect, coordinates, empty: Arrays::new(&columns), columns, spare: Mutex::default() }
     }
@@ -132,9 +132,9 @@ impl Answers {
     ) -> PyResult<Py<PyAny>> {
         let make = || {
             let array = PyArray1::from_vec(py, self.with(|arrays| std::mem::take(list(arrays))));
-            let array = if shape.len() == 1 { array.into_any() } else { array.reshape(shape.to_vec())?.into_any() };
             // What is made of them later relies on them.
             array.getattr("flags")?.setattr("writeable", false)?;
+            let array = if shape.len() == 1 { array.into_any() } else { array.reshape(shape.to_vec())?.into_any() };
             Ok::<_, PyErr>(array.unbind())
         };
         made.get_or_try_init(py, make).map(|array| array.clone_ref(py))
@@ -332,13 +332,6 @@ impl Answers {
         let read: Result<(Table, Arrays), _> = postcard::from_bytes(bytes);
         let (table, arrays) = read.map_err(|error| PyValueError::new_err(error.to_string()))?;
         Ok(Self::new(Arc::new(table), Box::new(arrays)))
-    }
-
-    /// All as Arrow's stream.
-    fn _stream<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let arrays = self.copy(py)?;
-        let made = py.detach(|| arrays.arrow_stream(&self.table.columns));
-        Ok(PyBytes::new(py, &made.map_err(refused)?))
     }
 
     /// A pyarrow.Table with a row per outcome, and one for a state without outcome: the columns that `heelstrike batch`

@@ -19,7 +19,7 @@ type Shown = (Option<String>, String);
 
 pub fn robot(model: &Model) -> Shown {
     let Model { robot, options, .. } = model;
-    let text = Inspection::new(robot, &options.feet).text(&Palette::default(), false);
+    let text = Inspection::new(robot, &options.feet).text(&Palette::default(), true);
     (picture::robot(robot, &options.feet, Forward::Along).svg(), text)
 }
 

@@ -3,7 +3,7 @@
 use crate::answers::{Answers, Table};
 use crate::rows::{Asker, Rows, rough};
 use crate::study::limit;
-use crate::values::{choice, from_json, refused, to_json, warn};
+use crate::values::{choice, from_json, of_argument, refused, refused_in, to_json, warn};
 use crate::watch::{budget, without_python};
 use crate::{picture, study};
 use heelstrike::cli::{BASES, DIFFERENCES, Meshes, PLANES, ROWS, RecordingOptions, Seconds, from_zero};
@@ -57,19 +57,24 @@ impl Model {
         let (mut own, mut budget, mut package_path, mut feet) =
             (Options::default(), Some(Duration::from_secs(10)), Vec::new(), None);
         for (name, value) in options.into_iter().flatten() {
-            match name.extract::<String>()?.as_str() {
-                "plane" => reduction.plane = choice("plane", PLANES, value.extract()?)?.flatten(),
-                "hold" => reduction.hold = held(&description, value.cast()?)?,
-                "base" => reduction.base = choice("base", BASES, value.extract()?)?,
-                "axis_tolerance" => reduction.axis_tolerance = positive("axis_tolerance", &value)?,
-                "package_path" => package_path = folders(&value)?,
-                "feet" => feet = Some(value),
-                "contact_tolerance" => own.contact_tolerance = positive("contact_tolerance", &value)?,
-                "resting_speed" => own.resting_speed = positive("resting_speed", &value)?,
-                "strict_limits" => own.strict_limits = value.extract()?,
-                "budget" => budget = limit(&value)?,
-                other => return Err(PyTypeError::new_err(format!("Robot has no option \"{other}\""))),
-            }
+            let name: String = name.extract()?;
+            let mut set = || {
+                match name.as_str() {
+                    "plane" => reduction.plane = choice("plane", PLANES, value.extract()?)?.flatten(),
+                    "hold" => reduction.hold = held(&description, value.cast()?)?,
+                    "base" => reduction.base = choice("base", BASES, value.extract()?)?,
+                    "axis_tolerance" => reduction.axis_tolerance = positive("axis_tolerance", &value)?,
+                    "package_path" => package_path = folders(&value)?,
+                    "feet" => feet = Some(value.clone()),
+                    "contact_tolerance" => own.contact_tolerance = positive("contact_tolerance", &value)?,
+                    "resting_speed" => own.resting_speed = positive("resting_speed", &value)?,
+                    "strict_limits" => own.strict_limits = value.extract()?,
+                    "budget" => budget = limit(&value)?,
+                    _ => return Err(PyTypeError::new_err("Robot has no such option")),
+                }
+                Ok(())
+            };
+            set().map_err(of_argument(&name))?;
         }
         let meshes = Meshes::of(path, &package_path);
         description.read_meshes(|name| meshes.fetch(name));
@@ -119,7 +124,7 @@ fn positive(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
 }
 
 fn folders(value: &Bound<'_, PyAny>) -> PyResult<Vec<PathBuf>> {
-    value.extract().map_err(|_| PyTypeError::new_err("package_path is a list of folders"))
+    value.extract().map_err(|_| PyTypeError::new_err("a list of folders is expected"))
 }
 
 fn held(description: &Description, by_name: &Bound<'_, PyDict>) -> PyResult<Vec<(usize, f64)>> {
@@ -350,7 +355,8 @@ impl Robot {
         simulated: bool,
         foreign: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let height = |what, value: Option<_>| value.map_or(Ok(None), |value| positive(what, value));
+        let height =
+            |what, value: Option<_>| value.map_or(Ok(None), |value| positive(what, value)).map_err(of_argument(what));
         let recording = RecordingOptions {
             touchdowns: true,
             simulated,
@@ -448,7 +454,7 @@ impl Robot {
             let is_other = |state: &State| friction.is_some() && state.scene.friction.default != friction;
             model.answer(&text, asked, |state, _, _| is_other(state))
         };
-        let (out, has_own) = without_python(py, answered)?.map_err(refused)?;
+        let (out, has_own) = without_python(py, answered)?.map_err(|error| refused_in(state, error))?;
         warn(py, notes::own_friction(has_own.into(), "state"))?;
         let kind = if aspect == Aspect::Impact { "impact" } else { "forces" };
         let mu = friction.map(|own| own.to_string());

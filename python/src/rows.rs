@@ -2,7 +2,7 @@
 
 use crate::answers::{Answers, Table};
 use crate::robot::{Model, Robot, friction};
-use crate::values::{refused, to_json, warn};
+use crate::values::{of_argument, refused, to_json, warn};
 use crate::watch::{Call, budget, interrupted, raised, without_python};
 use heelstrike::batch::{Sink, TaskSource, run};
 use heelstrike::budget::TotalBudget;
@@ -142,19 +142,25 @@ fn array<'py>(what: &str, value: &Bound<'py, PyAny>, coordinates: Option<&[Strin
     Ok((own.shape()[0], if few { Given::Few(own.to_vec()?) } else { Given::Many(own.readonly()) }))
 }
 
-/// Refuses a data frame whose columns are named as coordinates and stand in another order.
+/// Refuses a table whose columns are named as coordinates, or as the tool's own tables name them, and stand in another
+/// order.
 fn check_order(what: &str, value: &Bound<'_, PyAny>, coordinates: &[String]) -> PyResult<()> {
-    let names = value.getattr("columns").and_then(|names| names.try_iter());
-    let Ok(names) = names.into_iter().flatten().map(|name| name?.extract::<String>()).collect::<PyResult<Vec<_>>>()
-    else {
-        return Ok(());
+    let names = value.getattr("column_names").or_else(|_| value.getattr("columns")).and_then(|names| names.try_iter());
+    let names = names.into_iter().flatten().map(|name| name?.extract::<String>()).collect::<PyResult<Vec<_>>>();
+    let place = |name: &str| {
+        let name = name.strip_prefix(what).and_then(|name| name.strip_prefix('_')).unwrap_or(name);
+        let base = name.strip_prefix("base_").filter(|name| ["x", "z", "pitch"].contains(name));
+        coordinates.iter().position(|own| own == base.unwrap_or(name))
     };
-    if names != coordinates && coordinates.iter().all(|name| names.contains(name)) {
-        let order = names.join(", ");
-        let refused = format!("{what} has the columns {order}, not in the order of robot.coordinates");
-        return Err(PyValueError::new_err(format!("{refused}: give {what}[robot.coordinates]")));
-    }
-    Ok(())
+    let is_elsewhere = |(at, name): (usize, &String)| place(name).is_some_and(|place| place != at);
+    let Some(names) = names.ok().filter(|names| names.iter().enumerate().any(is_elsewhere)) else { return Ok(()) };
+    let remedy = match coordinates.iter().all(|name| names.contains(name)) {
+        true => format!("give {what}[robot.coordinates]"),
+        false => format!("give {}", coordinates.join(", ")),
+    };
+    let order = names.join(", ");
+    let refused = format!("{what} has the columns {order}, not in the order of robot.coordinates");
+    Err(PyValueError::new_err(format!("{refused}: {remedy}")))
 }
 
 impl Asker {
@@ -253,8 +259,9 @@ fn argument<'py>(
         return Ok((None, None));
     }
     let is_list = value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>();
+    // Not by whether it can be read as a number: for some versions of NumPy, an array of one can.
     let is_array = || Ok::<_, PyErr>(is_list || value.hasattr("shape")? && !value.getattr("shape")?.is_empty()?);
-    if value.extract::<f64>().is_ok() || !is_array()? {
+    if value.is_instance_of::<PyFloat>() || value.is_instance_of::<PyInt>() || !is_array()? {
         return Ok((None, Some(value.clone())));
     }
     match array(what, value, None)? {
@@ -292,7 +299,9 @@ impl<'py> Rows<'py> {
         let scene = Scene {
             common,
             friction: mu.as_ref().map(friction).transpose()?,
-            restitution: own.map(|own| restituted(own.extract()?).map_err(refused)).transpose()?,
+            restitution: own
+                .map(|own| restituted(own.extract().map_err(of_argument("restitution"))?).map_err(refused))
+                .transpose()?,
         };
         let model = Arc::clone(model);
         Ok(Self { model, rows, q, v, scene, friction: friction_rows, restitution: restitution_rows })

@@ -1,7 +1,7 @@
 //! Sweeps, touchdowns and contact problems, as the command answers them.
 
 use crate::robot::{Robot, friction};
-use crate::values::{from_json, refused, to_json, warn};
+use crate::values::{from_json, refused, refused_in, to_json, warn};
 use crate::watch::{budget, interrupted, raised, shared, without_python};
 use heelstrike::batch::{Batch, Question, Recording, States, Summary, TaskSource};
 use heelstrike::budget::TotalBudget;
@@ -91,7 +91,8 @@ pub fn sweep<'py>(
         out
     };
     let model = &robot.get().model;
-    let (out, notes) = without_python(py, || studied(model, &text, work, made))?.map_err(refused)?;
+    let made = without_python(py, || studied(model, &text, work, made))?;
+    let (out, notes) = made.map_err(|error| refused_in(study, error))?;
     warn(py, notes)?;
     let mu = work.friction.map(|own| own.to_string());
     from_json(py, &out, Some((robot, "sweep", text, mu).into_pyobject(py)?.into_any()))

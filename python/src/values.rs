@@ -2,10 +2,12 @@
 
 use heelstrike::Error;
 use heelstrike::cli::{Choices, named};
+use heelstrike::read::documents::utf8;
 use heelstrike::write::ErrorObject;
 use pyo3::create_exception;
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
 
 create_exception!(
     heelstrike,
@@ -28,6 +30,21 @@ pub fn refused(error: Error) -> PyErr {
         let _ = value.setattr("place", short.place).and_then(|()| value.setattr("hint", hint));
     });
     refused
+}
+
+/// The exception of a refusal of `value`, whose places in the text are left out if no one has written it.
+pub fn refused_in(value: &Bound<'_, PyAny>, error: Error) -> PyErr {
+    refused(if value.is_instance_of::<PyDict>() { error.nowhere() } else { error })
+}
+
+/// The exception of Python's own for a value of the wrong type, with the argument's name.
+pub fn of_argument(name: &str) -> impl Fn(PyErr) -> PyErr + '_ {
+    move |error| {
+        Python::attach(|py| match error.is_instance_of::<PyTypeError>(py) {
+            true => PyTypeError::new_err(format!("{name}: {}", error.value(py))),
+            false => error,
+        })
+    }
 }
 
 /// The value of a name that an argument may have.
@@ -54,9 +71,15 @@ pub fn warn(py: Python<'_>, notes: impl IntoIterator<Item = String>) -> PyResult
     notes.into_iter().try_for_each(|note| warnings.call_method1("warn", (as_keywords(&note),)).map(drop))
 }
 
-/// A JSON text of a value, in which NumPy's numbers and arrays count as Python's.
+/// A JSON text of a value, in which NumPy's numbers and arrays count as Python's, or that of a file.
 pub fn to_json(value: &Bound<'_, PyAny>) -> PyResult<String> {
-    value.py().import("heelstrike._values")?.call_method1("to_json", (value,))?.extract()
+    let json = value.py().import("heelstrike._values")?.call_method1("to_json", (value,))?;
+    match json.cast::<PyBytes>() {
+        Ok(bytes) => {
+            utf8(bytes.as_bytes()).map(str::to_owned).map_err(|error| refused(error.in_file(value.to_string())))
+        }
+        Err(_) => json.extract(),
+    }
 }
 
 /// The value of a JSON text, with what `heelstrike.plot` needs to draw it.

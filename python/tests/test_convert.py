@@ -5,6 +5,7 @@ import pytest
 from conftest import peer
 
 import heelstrike
+from heelstrike._convert import Base
 
 # Right before left, continuous knees, and a roll joint that leaves the plane.
 LEG = """
@@ -325,3 +326,32 @@ def test_joint_that_follows_a_frozen_one_is_where_its_law_puts_it():
     at = model.idx_vs[model.getJointId("hip")]
     result = robot.impact({"friction": 1, "position": {"base": {"z": 3}}}, matrices=True)
     assert result["mass_matrix"][3][3] == pytest.approx(pin.crba(model, data, q)[at, at], rel=1e-12)
+
+
+@pytest.mark.parametrize("plane", ["xz", "yz", "xy", "zy", "zx", "yx"])
+def test_base_is_read_in_every_plane(plane):
+    layout = heelstrike.Layout(7, 6, base=Base(slice(0, 3), [3, 4, 5, 6], slice(0, 3), slice(3, 6), False, False))
+    robot = heelstrike.Robot.from_string(FLOATING, plane=plane)
+    forward, up = (np.eye(3)["xyz".index(axis)] for axis in plane)
+    normal = np.cross(up, forward)
+    q, v = layout(
+        robot,
+        [*(0.4 * forward + 0.5 * up), np.cos(0.15), *(np.sin(0.15) * normal)],
+        [*(0.6 * forward + 0.7 * up), *(0.8 * normal)],
+    )
+    np.testing.assert_allclose(q[0, :3], [0.4, 0.5, 0.3])
+    np.testing.assert_allclose(v[0, :3], [0.6, 0.7, 0.8])
+
+
+@pytest.mark.parametrize("side", ["parent", "child"])
+def test_base_that_drake_counts_from_elsewhere_is_refused(side):
+    plant = peer("pydrake.multibody.plant").MultibodyPlant(0.0)
+    tree, math = peer("pydrake.multibody.tree"), peer("pydrake.math")
+    peer("pydrake.multibody.parsing").Parser(plant).AddModelsFromString(URDF, "urdf")
+    frames = [plant.world_frame(), plant.GetBodyByName("torso").body_frame()]
+    at = ["parent", "child"].index(side)
+    frames[at] = plant.AddFrame(tree.FixedOffsetFrame("off", frames[at], math.RigidTransform([0.2, 0, 0.7])))
+    plant.AddJoint(tree.QuaternionFloatingJoint("free", *frames))
+    plant.Finalize()
+    with pytest.raises(ValueError, match="the base's joint free does not join the frames of the world and of its body"):
+        heelstrike.from_drake(plant)

@@ -83,7 +83,8 @@ def test_table_is_that_of_the_command(ramone, walk, tmp_path):
     for own, row in zip(table.to_pylist(), written):
         for name in names:
             value = own[name]
-            if name == "error" and value:
+            if name in ("error", "notes") and value:
+                # With the settings as keywords.
                 assert row[name]
             elif value is None or isinstance(value, (bool, str)):
                 assert row[name] == {None: "", True: "true", False: "false"}.get(value, value), (name, own)
@@ -116,6 +117,8 @@ def test_arrays_cannot_be_changed(ramone, walk):
     for array in (answers.verdict, answers.offsets, answers.modes, answers.impulse, answers.velocity_after):
         with pytest.raises(ValueError, match="read-only"):
             array[...] = 9
+        with pytest.raises(ValueError, match="WRITEABLE"):
+            array.setflags(write=True)
     assert len(answers.to_pandas()) == len(answers.margin)
 
 
@@ -124,6 +127,8 @@ def test_masked_numbers_are_refused(ramone, walk):
     masked = np.ma.masked_array(q, mask=np.arange(21).reshape(3, 7) == 10)
     answers = ramone.impacts(masked, v, friction=1, place="lowest")
     assert (answers.verdict == Verdict.REFUSED).tolist() == [False, True, False]
+    one = ramone.impacts(q[:1], v[:1], friction=np.ma.masked_array([0.5], mask=[True]), place="lowest")
+    assert one.verdict[0] == Verdict.REFUSED
 
 
 def test_infinite_friction_may_be_written_as_numbers_are(ramone, walk):
@@ -182,6 +187,13 @@ def test_data_frame_is_in_the_order_of_the_coordinates(ramone, walk):
     assert ramone.impacts(q, v, friction=0.5, place="lowest").velocity_after.tolist() == expected
     with pytest.raises(ValueError, match="q has the columns left_hip, .*not in the order.*: give q.robot.coordinates"):
         ramone.impacts(q[sorted(q)], v, friction=0.5)
+    of_tables = {name: f"q_base_{name}" if name in ("x", "z", "pitch") else f"q_{name}" for name in q}
+    assert ramone.impacts(q.rename(columns=of_tables), v, friction=0.5, place="lowest").velocity_after.tolist() == expected
+    pyarrow = pytest.importorskip("pyarrow")
+    for own in (q.rename(columns=of_tables), q.rename(columns={"left_hip": "hip"}), pyarrow.table(q.to_dict("list"))):
+        other = own.iloc[:, ::-1] if hasattr(own, "iloc") else own.select(own.column_names[::-1])
+        with pytest.raises(ValueError, match="not in the order of robot.coordinates: give "):
+            ramone.impacts(other, v, friction=0.5, place="lowest")
     unnamed = q.rename(columns={"x": "q0"})
     assert ramone.impacts(unnamed, v, friction=0.5, place="lowest").velocity_after.tolist() == expected
 

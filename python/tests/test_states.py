@@ -44,19 +44,23 @@ def test_refusal_names_place_and_remedy(ramone):
     with pytest.raises(heelstrike.Refused, match="left_hipp.*did you mean left_hip") as error:
         ramone.impact({"position": {"joints": {"left_hipp": 0.1}}, "friction": 1})
     assert error.value.place.startswith("position.joints") and error.value.hint == "did you mean left_hip?"
+    assert str(error.value).startswith("position.joints")
     with pytest.raises(heelstrike.Refused):
         heelstrike.Robot.from_string("<robot/>")
     with pytest.raises(FileNotFoundError):
         heelstrike.Robot("no.urdf")
     with pytest.raises(TypeError, match="plan"):
         heelstrike.Robot(URDF, plan="xz")
-    with pytest.raises(TypeError, match="package_path is a list of folders"):
+    with pytest.raises(TypeError, match="package_path: a list of folders is expected"):
         heelstrike.Robot(URDF, package_path=".")
     with pytest.raises(heelstrike.Refused, match="did you mean link") as error:
         heelstrike.Robot(URDF, feet=[{"lnk": "torso"}])
     assert str(error.value).startswith("feet[0].lnk: unknown field")
     with pytest.raises(TypeError, match="by link it is a dictionary, which rows take"):
         ramone.impact(STATE, friction={"default": 0.8})
+    for option in ("hold", "plane", "contact_tolerance"):
+        with pytest.raises(TypeError, match=f"^{option}: "):
+            heelstrike.Robot(URDF, **{option: {"left_knee": "x"}})
     with pytest.raises(ValueError, match="plane is one of auto, xz, yz, xy, zy, zx, yx, not"):
         heelstrike.Robot(URDF, plane="zz")
 
@@ -94,6 +98,10 @@ def test_file_that_is_not_utf_8_is_refused_with_a_remedy(tmp_path):
     with pytest.raises(heelstrike.Refused, match="not UTF-8.*iconv") as error:
         heelstrike.Robot(file)
     assert error.value.file == file
+    file.write_bytes('{"id": "h\xfcpfer"}'.encode("latin-1"))
+    for answer in (heelstrike.Robot(URDF).impact, heelstrike.Robot(URDF).sweep):
+        with pytest.raises(heelstrike.Refused, match="latin.urdf.*not UTF-8.*iconv"):
+            answer(file)
 
 
 def test_robots_and_results_go_into_other_processes(ramone):
@@ -199,6 +207,14 @@ def test_touchdowns_are_those_of_the_command(ramone, tmp_path):
         assert bool(own) == any_found and own == [json.loads(line) for line in lines], (field, value)
     with pytest.warns(UserWarning, match="no touchdown found: the lowest foot comes to z = 0 m; a foot must descend"):
         assert ramone.touchdowns(frame[:3], friction=0.8) == []
+    narrow = {name: frame[name].to_numpy("float32") for name in frame.select_dtypes("number")}
+    assert ramone.touchdowns(pandas.DataFrame(narrow), friction=0.8) == ramone.touchdowns(narrow, friction=0.8)
+    with pytest.raises(ValueError, match="the columns have different lengths: {'time': 1, 'q_left_hip': 2}"):
+        ramone.touchdowns({"time": [0.0], "q_left_hip": [0.0, 1.0]}, friction=0.8)
+    with pytest.raises(TypeError, match="column time is a float, not a list"):
+        ramone.touchdowns({"time": 0.0}, friction=0.8)
+    with pytest.raises(TypeError, match="drop: must be real number, not str"):
+        ramone.touchdowns(frame, friction=0.8, drop="1")
     with pytest.raises(TypeError, match="a table is a path.*not a list"):
         ramone.touchdowns([[0.0]])
     lines = frame.assign(remark=1.0)

@@ -79,13 +79,6 @@ impl Texts {
         self.known.clear();
     }
 
-    /// That of an entry; empty if it has none.
-    #[cfg(feature = "columnar")]
-    pub(super) fn get(&self, entry: usize) -> &str {
-        let found = self.at.binary_search_by_key(&entry, |&(at, _)| at);
-        found.map_or("", |found| &self.known[self.at[found].1])
-    }
-
     /// Adds those of a list that follows behind `before` entries.
     fn append(&mut self, before: usize, other: Self) {
         for (at, place) in other.at {

@@ -21,7 +21,7 @@ use parquet::schema::types::ColumnPath;
 use std::sync::Arc;
 
 /// So many rows are written together, and to a row group of Parquet.
-pub(super) const TOGETHER: usize = 1 << 13;
+const TOGETHER: usize = 1 << 13;
 const ROW_GROUP: usize = 1 << 17;
 
 /// Rows of results in the making.

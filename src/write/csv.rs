@@ -226,12 +226,6 @@ impl Columns {
         }
     }
 
-    /// The same of states whose ids are numbers.
-    pub fn numbered(mut self) -> Self {
-        self.kinds[0] = Kind::Integer;
-        self
-    }
-
     /// How they are written.
     pub fn form(&self) -> Form {
         self.layout.form

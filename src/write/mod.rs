@@ -23,8 +23,6 @@ mod text_row;
 #[cfg(feature = "columnar")]
 mod columnar;
 mod arrays;
-#[cfg(feature = "columnar")]
-mod stream;
 mod inspection;
 pub mod notes;
 pub mod sweep;
