@@ -120,9 +120,11 @@ impl<'t> Study<'t> {
         let most = (0..self.parameters.len()).rev().max_by_key(|&at| self.parameters[at].steps).unwrap_or_default();
         let Parameter { name, from, to, steps } = &self.parameters[most];
         let seconds = time.as_secs_f64();
+        // Of a few samples it is not their number.
+        let fewer = if *steps > 16 { format!("fewer than {steps} samples of {name}, ") } else { String::new() };
         self.refuse_steps(most, Reason::BeyondBudget).hint(format!(
-            "{seconds} s of processor time were not enough: take fewer than {steps} samples of {name}, a narrower range \
-             than {from:?} to {to:?}, or `budget: {:?}`",
+            "{seconds} s of processor time were not enough: take {fewer}a narrower range of {name} than {from:?} to \
+             {to:?}, or `budget: {:?}`",
             10.0 * seconds.max(1.0)
         ))
     }

@@ -340,31 +340,28 @@ fn of_ball(mass: f64) -> f64 {
 /// The caution about bodies that move without mass, although they reach from joint to joint or touch the ground, or carry
 /// nothing that weighs.
 pub(super) fn about_massless(robot: &Robot) -> Option<String> {
-    let is_of = |index: usize| move |body: usize| robot.rigid_body(body) == index;
-    let has_length = |index: usize| {
-        let movers = robot.bodies.iter().filter_map(|body| body.joint);
-        let mut joints = movers.map(|mover| robot.hinge(mover));
-        joints.any(|(parent, origin, motion)| motion.is_some() && is_of(index)(parent) && origin.length() > 0.0)
-            || robot.links.iter().any(|link| is_of(index)(link.body) && !link.shapes.is_empty())
-    };
     let weighs_nothing = |body: &Body| body.mass == 0.0 && body.moment == 0.0;
-    // Each together with all that it carries.
-    let mut weighs: Vec<bool> = robot.bodies.iter().map(|body| !weighs_nothing(body)).collect();
+    // Of each rigid body whether it reaches from joint to joint or touches the ground, and whether a part of it weighs.
+    let rigid: Vec<usize> = (0..robot.bodies.len()).map(|body| robot.rigid_body(body)).collect();
+    let [mut has_length, mut weighs] = [vec![false; rigid.len()], vec![false; rigid.len()]];
+    // The same as `weighs`, together with all that it carries.
+    let mut carries = vec![false; rigid.len()];
     for (index, body) in robot.bodies.iter().enumerate().rev() {
-        if let (true, Some(mover)) = (weighs[index], body.joint) {
-            weighs[robot.hinge(mover).0] = true;
+        weighs[rigid[index]] |= !weighs_nothing(body);
+        carries[index] |= !weighs_nothing(body);
+        if let Some((parent, origin, motion)) = body.joint.map(|mover| robot.hinge(mover)) {
+            carries[parent] |= carries[index];
+            has_length[rigid[parent]] |= motion.is_some() && origin.length() > 0.0;
         }
     }
+    robot.links.iter().for_each(|link| has_length[rigid[link.body]] |= !link.shapes.is_empty());
     // What follows a joint may weigh something.
     let is_alone = |joint: usize| !robot.mimic_joints.iter().any(|mimic| mimic.mimicked == joint);
-    let is_massless = |(index, body): &(usize, &Body)| {
-        let moves = match body.joint {
-            Some(ParentJoint::Joint(joint)) => has_length(*index) || !weighs[*index] && is_alone(joint),
-            Some(ParentJoint::Mimic(_)) => has_length(*index),
-            Some(ParentJoint::Fixed { .. }) | None => false,
-        };
-        let mut rigid = robot.bodies.iter().enumerate().filter(|(part, _)| is_of(*index)(*part));
-        weighs_nothing(body) && rigid.all(|(_, part)| weighs_nothing(part)) && moves
+    let is_massless = |&(index, body): &(usize, &Body)| match body.joint {
+        _ if weighs[index] => false,
+        Some(ParentJoint::Joint(joint)) => has_length[index] || !carries[index] && is_alone(joint),
+        Some(ParentJoint::Mimic(_)) => has_length[index],
+        Some(ParentJoint::Fixed { .. }) | None => false,
     };
     let massless = names(robot.bodies.iter().enumerate().filter(is_massless).map(|(_, body)| &body.name))?;
     Some(format!(
