@@ -149,15 +149,16 @@ impl Footing<'_> {
             && bounce(a) == bounce(b)
     }
 
-    /// How far the edges of a contact's friction cone are inclined; `None` if it also depends on where it is in height:
-    /// with infinite friction, and where it bounces against friction.
+    /// How far the edges of a contact's friction cone are inclined; `None` where it bounces against friction, so that it
+    /// also depends on its height.
     fn lean(&self, contact: &Contact) -> Option<f64> {
         let Scene { friction, restitution, .. } = self.scene;
+        let lean = match friction.of(contact.link)? {
+            Friction::Finite(mu) => mu,
+            Friction::Infinite => f64::INFINITY,
+        };
         let bounces = restitution.of(contact.link).is_some_and(|bounce| bounce > 0.0);
-        match friction.of(contact.link)? {
-            Friction::Finite(mu) if mu == 0.0 || !bounces => Some(mu),
-            Friction::Finite(_) | Friction::Infinite => None,
-        }
+        (lean == 0.0 || !bounces).then_some(lean)
     }
 
     fn detect(&self, tolerance: f64, contacts: &mut Vec<Contact>) -> Result<()> {

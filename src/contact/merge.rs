@@ -4,10 +4,11 @@
 //!     p = (1 - s) a + s b:    a force at p = (1 - s) of it at a + s of it at b,     c_n(p) = (1 - s) c_n(a) + s c_n(b)
 //! ```
 //!
-//! With the same friction the parts at a and b stay in their cones. c_t is the same all along the line, and Newton's
-//! bounce e min(c_n, 0) is concave, so that p is closed only where a and b are. Points that the contact tolerance lets
-//! be off the line act through a and b all the same if both edges of p's friction cone meet the line between them, and
-//! if e = 0 or there is no friction: then the body does not turn where p pushes, or c_t says nothing. Others stay.
+//! With the same friction the parts at a and b stay in their cones. c_t is the same all along a level line, and Newton's
+//! bounce e min(c_n, 0) is concave, so that p is closed only where a and b are. Along a line that the contact tolerance
+//! lets be tilted this needs e = 0, so that the body does not turn where p pushes, or no friction, so that c_t says
+//! nothing. Then points off the line act through a and b, too, if both edges of p's friction cone meet the line between
+//! them. Others stay.
 
 use super::Contact;
 use crate::planar::Vector;
@@ -26,8 +27,8 @@ pub struct Merged {
 }
 
 /// Leaves out of all contacts that are `together` those between the outer two, but none that `stays`; places are the
-/// same up to `rounding` \[m\]. Points off the line between the outer two act through these only with a `lean`, how far
-/// the edges of their friction cones are inclined.
+/// same up to `rounding` \[m\]. Points off a level line act through the outer two only with a `lean`, how far the edges of
+/// their friction cones are inclined.
 pub(super) fn merge(
     contacts: &mut Vec<Contact>,
     together: impl Fn(&Contact, &Contact) -> bool,
@@ -61,13 +62,14 @@ pub(super) fn merge(
             height - low - slope * (along - from)
         };
         let acts_through_outer = |at: usize| {
-            // Where an edge of its friction cone meets the line.
+            // Where an edge of its friction cone meets the line; one along the ground never does.
             let meets = |lean: f64| {
                 let steeper = 1.0 - slope * lean;
                 let along = place(at)[0] - off(at) * lean / steeper;
                 steeper > 0.0 && (from - rounding..=to + rounding).contains(&along)
             };
-            off(at).abs() <= rounding || lean(&contacts[at]).is_some_and(|lean| meets(lean) && meets(-lean))
+            let is_level = (high - low).abs() <= rounding && off(at).abs() <= rounding;
+            is_level || lean(&contacts[at]).is_some_and(|lean| off(at).abs() <= rounding || meets(lean) && meets(-lean))
         };
         let is_inner = |&at: &usize| !outer.contains(&at) && !stays(&contacts[at]) && acts_through_outer(at);
         let inner: Vec<usize> = members().filter(is_inner).collect();

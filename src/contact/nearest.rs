@@ -12,6 +12,7 @@ use super::surface::Surface;
 use super::terrain::Terrain;
 use crate::error::{Error, Reason, Result};
 use crate::planar::Vector;
+use crate::robot::Rim;
 
 /// A sole whose other end is lower than this part of the way to it is meant to be flat on the ground.
 const FLAT: f64 = 0.1;
@@ -107,7 +108,7 @@ impl Footing<'_> {
                     let is_clear = |foot| profile::is_clear(terrain, foot, &placement, rounding);
                     of_named(&placement).map_or_else(|| self.feet.iter().all(is_clear), |gap| gap > 0.0)
                 };
-                first_above(is_above, size, || self.around(terrain))
+                first_above(is_above, size, self.around(terrain))
             }
         };
         rise.filter(|rise| rise.is_finite()).ok_or_else(|| {
@@ -121,21 +122,16 @@ impl Footing<'_> {
     }
 }
 
-/// The least rise from which on all `is_above`; the search begins with steps of `size` \[m\], and if nothing is below
-/// there, at the highest of some `others`.
-fn first_above<I: Iterator<Item = f64>>(
-    is_above: impl Fn(f64) -> bool,
-    size: f64,
-    others: impl FnOnce() -> I,
-) -> Option<f64> {
+/// The least rise from which on all `is_above`; the search begins with steps of `size` \[m\] or, if it is below there and
+/// higher, at the highest of some `others`.
+fn first_above(is_above: impl Fn(f64) -> bool, size: f64, others: impl Iterator<Item = f64>) -> Option<f64> {
     let steps = || std::iter::successors(Some(size), |step| Some(2.0 * step)).take_while(|step| step.is_finite());
     let is_below = |rise: &f64| !is_above(*rise);
-    let highest = || {
-        let mut others: Vec<f64> = others().collect();
-        others.sort_unstable_by(|a, b| b.total_cmp(a));
-        others.into_iter().find(is_below)
-    };
-    let mut below = steps().map(|step| -step).find(is_below).or_else(highest)?;
+    let mut others: Vec<f64> = others.collect();
+    others.sort_unstable_by(|a, b| b.total_cmp(a));
+    let highest = others.into_iter().find(is_below);
+    let stepped = steps().map(|step| -step).find(is_below);
+    let mut below = stepped.into_iter().chain(highest).reduce(f64::max)?;
     let mut above = steps().map(|step| below.max(0.0) + step).find(|&rise| is_above(rise))?;
     loop {
         let middle = below + (above - below) / 2.0;
@@ -163,9 +159,11 @@ impl Surface {
             Self::HalfPlane(plane) => points(foot).map(|point| plane.touch(placement, point)).min_by(lowest),
             Self::Profile(terrain) => {
                 let reach = self.clearance(foot, placement).abs() + 2.0 * rounding;
-                let touches =
-                    profile::touching(terrain, foot, placement, Closeness { tolerance: reach, rounding }).ok()?;
-                touches.into_iter().min_by(lowest)
+                // The clearance of an ellipse may be less than the height that its point has as a contact.
+                let tries = if matches!(foot.outline.rim, Rim::Ellipse { .. }) { 8 } else { 1 };
+                let wider = std::iter::successors(Some(reach), |reach| Some(2.0 * reach)).take(tries);
+                let within = |tolerance| profile::touching(terrain, foot, placement, Closeness { tolerance, rounding });
+                wider.filter_map(|reach| within(reach).ok()).find_map(|touches| touches.into_iter().min_by(lowest))
             }
         }
     }

@@ -24,6 +24,7 @@ use super::survivors::{SEARCHED, Search, combinations};
 use crate::budget::is_spent;
 use crate::error::{Error, Reason, Result};
 use crate::law::{Impulse, Mode};
+use crate::planar::Pair;
 use crate::scalar::Rounded;
 use std::collections::BTreeMap;
 
@@ -34,6 +35,35 @@ pub const CONTACT_LIMIT: usize = 16;
 pub fn too_many_contacts(contacts: usize) -> Error {
     Error::new(Reason::TooManyContacts { contacts, limit: CONTACT_LIMIT })
         .hint("leave out the contacts that matter least")
+}
+
+/// How many times harder than their motion needs contacts may push before that is noted.
+const HARD: f64 = 1e6;
+
+impl Analysis {
+    /// What a reader of it should know, in sentences; `problem` is the one that was analyzed.
+    pub fn notes(&self, problem: &ContactProblem) -> impl Iterator<Item = String> {
+        [self.energy_note(), self.balance_note(problem), self.unlisted_note()].into_iter().flatten()
+    }
+
+    /// A note if contacts push against each other far harder than they move: then the last digits of what is given decide.
+    pub(crate) fn balance_note(&self, problem: &ContactProblem) -> Option<String> {
+        let most = |list: &[Pair<f64>]| list.as_flattened().iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
+        let fastest = most(problem.velocity_before()).max(most(problem.velocity_free()));
+        let excess = |outcome: &Outcome| {
+            let rows = outcome.impulse.as_flattened().iter().enumerate();
+            let push = rows.map(|(row, own)| own.abs() * problem.delassus(row, row)).fold(0.0, f64::max);
+            push / fastest.max(most(&outcome.velocity_after))
+        };
+        let decided = self.outcomes.iter().filter(|outcome| outcome.decided);
+        let hardest = decided.map(excess).fold(0.0, f64::max);
+        (hardest > HARD).then(|| {
+            format!(
+                "contacts push against each other {hardest:.0e} times harder than their motion needs: the last digits of \
+                 the pose or of the matrices decide, as where rounding tilts a flat sole, and velocities have fewer digits"
+            )
+        })
+    }
 }
 
 /// Memory that is reused from problem to problem.

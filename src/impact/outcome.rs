@@ -395,7 +395,7 @@ impl Analysis {
     }
 
     /// A note if not all rejected combinations are listed that were asked for.
-    pub fn unlisted_note(&self) -> Option<String> {
+    pub(super) fn unlisted_note(&self) -> Option<String> {
         let listed = self.rejected.len();
         (self.unlisted > 0).then(|| {
             let others = self.unlisted;
@@ -406,7 +406,7 @@ impl Analysis {
     }
 
     /// A note if an outcome gains energy: Newton's restitution with Coulomb friction can.
-    pub fn energy_note(&self) -> Option<String> {
+    pub(super) fn energy_note(&self) -> Option<String> {
         let gains = self.outcomes.iter().filter(|outcome| outcome.energy_loss < 0.0).count();
         let total = self.outcomes.len();
         (gains > 0).then(|| {

@@ -60,10 +60,31 @@ pub struct Assembly<T = f64> {
     pub rows: Vec<usize>,
     /// Whether those are the rows that hold something, whatever digits the pose does not have.
     pub is_rank_certain: bool,
+    /// What part of a diagonal entry of G without loops is rounding of the one with them, in f64.
+    pub rounding: f64,
     column: Vec<T>,
     /// Scratch of the elimination of contacts at rest.
     pub(super) left: Vec<T>,
     pub(super) motions: Vec<Motion<T>>,
+}
+
+impl Assembly {
+    /// [`Assembly::delassus`] in f64: rows of contacts that the loops hold are zero, and not what rounding leaves of them.
+    pub fn rounded_delassus(&mut self) {
+        if !self.is_constrained() {
+            return self.delassus();
+        }
+        delassus(&self.plan, &mut self.workspace);
+        let size = 2 * self.points.len();
+        let free: Vec<f64> = self.workspace.delassus.iter().step_by(size + 1).copied().collect();
+        eliminate_loops(&self.plan, &mut self.workspace);
+        let delassus = &mut self.workspace.delassus;
+        for (row, free) in free.into_iter().enumerate() {
+            if delassus[row * (size + 1)] <= self.rounding * free {
+                (0..size).for_each(|other| (delassus[row * size + other], delassus[other * size + row]) = (0.0, 0.0));
+            }
+        }
+    }
 }
 
 impl<T: Real> Assembly<T> {

@@ -109,6 +109,8 @@ impl Pipeline<'_> {
         }
         let asked = self.asked_of_forces(prepared.impact.contacts.len(), chosen);
         let mut analysis = self.analyze_forces(state, &prepared, &unforced, asked);
+        let Impact { notes, problem, .. } = &mut *prepared.impact;
+        notes.extend(analysis.as_ref().and_then(|own| own.balance_note(problem)));
         let is_none = analysis.as_ref().is_some_and(|own| own.verdict == Verdict::None);
         let mut shock = match is_none {
             true => self.shock(state, &prepared, &slips, asked),
@@ -237,7 +239,7 @@ impl Pipeline<'_> {
         self.assembly.points = contacts.iter().map(Contact::point_of).collect();
         self.assembly.contact_jacobian(&prepared.velocity, None);
         self.assembly.workspace.contact_velocity.clone_from(&outcome.velocity_after);
-        self.assembly.delassus();
+        self.assembly.rounded_delassus();
         self.take_part(after, &mut prepared, &slips)?;
         let taking: Vec<Ordering> = slips.iter().copied().flatten().collect();
         let unforced = self.pose(after, &mut prepared, &taking)?;
@@ -374,7 +376,7 @@ impl Pipeline<'_> {
             self.bound_velocities(contacts, levels, velocity, Standing { foot: foot.as_ref(), place: *stance });
             self.assembly.contact_jacobian(velocity, *stance);
             self.assembly.workspace.contact_velocity = known;
-            self.assembly.delassus();
+            self.assembly.rounded_delassus();
             self.problem(&state.scene, contacts, change, problem)?;
         }
         Ok(())

@@ -23,6 +23,9 @@ const OPENING: f64 = 1e-4;
 const PARTING: f64 = 1e-9;
 /// Below this part of the kinetic energy a motion that opens the loops is rounding, and not worth a word.
 const ROUNDING: f64 = 1e-20;
+/// If all rows of K are orthogonal, at most this part of a row of G is rounding once they hold its contact: a thousand
+/// units in the last place of a velocity, squared. Rows of which less is independent leave more.
+const HELD: f64 = (1e3 * f64::EPSILON) * (1e3 * f64::EPSILON);
 /// A row of K is taken to follow from others if less than this part of its squared reach is left.
 const DEPENDENT: f64 = 1e-22;
 /// A pose that leaves a loop open gives directions only to this multiple of the gap.
@@ -72,6 +75,7 @@ impl Pipeline<'_> {
         self.assembly.loops.clear();
         self.assembly.rows.clear();
         self.assembly.is_rank_certain = true;
+        self.assembly.rounding = HELD;
         if named.is_empty() {
             self.assembly.constrain(None);
             return Ok(true);
@@ -86,6 +90,7 @@ impl Pipeline<'_> {
         let Assembly { plan, loops, kept, workspace, .. } = &self.assembly;
         let rows = independent_rows(plan, loops, kept, &reaches, tolerance, workspace);
         self.assembly.rows = rows.iter().map(|&(row, _)| row).collect();
+        self.assembly.rounding = HELD / rows.iter().fold(1.0, |least: f64, (_, share)| least.min(*share));
         let [shortest, longest] = [
             reaches.as_flattened().iter().fold(f64::INFINITY, |least, reach| least.min(reach.shortest)),
             reaches.as_flattened().iter().fold(0.0, |most: f64, reach| most.max(reach.longest)),
@@ -169,11 +174,14 @@ impl Pipeline<'_> {
         if spent > OPENING * energy && opening > resting {
             return Err(moves_apart(own, worst, opening, robot));
         }
-        // What was left out must hold all the same, up to a part of what moved its points: they may rest now.
+        // What was left out must hold all the same, up to a part of what moved its points: they may rest now. If they rested
+        // before, the closing of other loops may move them by its rounding.
+        let speeds = |named: &NamedLoop| named.arms(robot).map(|end| self.bounds.speed(plan, end, &given));
+        let squared = |named: &NamedLoop| speeds(named).iter().map(|speed| speed * speed).sum::<f64>();
+        let fastest = named.iter().map(squared).fold(0.0, f64::max);
         for (index, own) in loops.iter().enumerate().filter(|(index, _)| !self.is_whole(*index)) {
             let left = own.opening(plan, velocity, workspace).length();
-            let [a, b] = named[index].arms(robot).map(|end| self.bounds.speed(plan, end, &given));
-            if left * left > OPENING * (a * a + b * b) && left > resting {
+            if left * left > OPENING * squared(&named[index]) + ROUNDING * fastest && left > resting {
                 return Err(moves_apart(&named[index], index, left, robot));
             }
         }

@@ -365,9 +365,8 @@ impl<'r> Pipeline<'r> {
             analysis.proven &= analysis.outcomes.iter().all(|outcome| outcome.proven);
         }
         let left_out = if brief { Vec::new() } else { self.left_out(scene, &prepared) };
-        let notes = &mut prepared.impact.notes;
-        notes.extend(analysis.as_ref().and_then(Analysis::energy_note));
-        notes.extend(analysis.as_ref().and_then(Analysis::unlisted_note));
+        let Impact { notes, problem, .. } = &mut *prepared.impact;
+        notes.extend(analysis.iter().flat_map(|analysis| analysis.notes(problem)));
         let matrices = self.options.matrices.then(|| self.matrices());
         let followed = analysis.as_mut().filter(|_| next).map(|analysis| self.follow(state, &prepared, analysis));
         prepared.impact.notes.extend(followed.into_iter().flatten());

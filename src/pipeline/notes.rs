@@ -127,7 +127,9 @@ impl Pipeline<'_> {
         let moving = along_normal(velocity);
         // A little more than the height, in two digits, next to four of the height.
         let enough = 1.1 * height;
-        let height = rounded(height);
+        // Only beyond the end of a profile a foot that does not touch is lower.
+        let place = if height < 0.0 { "below its end" } else { "above it" };
+        let height = rounded(height.abs());
         let by_base = if self.assembly.plan.floating { "`place: lowest`" } else { "its joints" };
         notes.push(match (contacts.is_empty(), is_near) {
             (true, true) => format!(
@@ -135,7 +137,7 @@ impl Pipeline<'_> {
                  it touch, put it there by {by_base}, or by the option `contact_tolerance: {enough:.1e}`"
             ),
             (true, false) => format!(
-                "nothing touches the ground: the lowest foot, {name}, is {height} m above it and {moving}; put it \
+                "nothing touches the ground: the lowest foot, {name}, is {height} m {place} and {moving}; put it \
                  there by {by_base}"
             ),
             (false, _) => {

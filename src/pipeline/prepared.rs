@@ -149,7 +149,7 @@ impl Pipeline<'_> {
             self.blur(contacts, *stance, opened.iter().zip(&*velocity).map(|(given, closed)| closed - given).collect());
         }
         self.find_resting(state, velocity, contacts, standing, (resting, notes));
-        self.assembly.delassus();
+        self.assembly.rounded_delassus();
         *kinetic_energy = self.energy_in_range(&state.velocity, velocity)?;
         self.bound_delassus();
         self.settle(contacts, (velocity, *stance), still, (resting, notes));

@@ -341,7 +341,9 @@ fn stance_uses_lowest_point_at_any_tolerance() {
 #[test]
 fn a_gain_of_energy_is_noted() {
     let delassus = [3.019_756_771_129_185_5, 2.127_611_009_867_684, 2.127_611_009_867_684, 1.602_399_100_432_706_7];
-    let found = solve(&delassus, [[-1.18, -0.5876]], [mu(1.0)], [1.0]);
+    let problem =
+        ContactProblem::new(delassus.into(), vec![[-1.18, -0.5876]], vec![mu(1.0)], vec![1.0]).expect("a problem");
+    let found = analyze(&problem, ListedRejections::Nothing).expect("one contact");
     assert!(found.outcomes.iter().any(|outcome| outcome.energy_loss < 0.0));
-    assert!(found.energy_note().is_some_and(|note| note.contains("add energy")));
+    assert!(found.notes(&problem).any(|note| note.contains("add energy")));
 }

@@ -40,6 +40,9 @@ pub(super) fn vertices(bytes: &[u8]) -> Result<Vec<[f64; 3]>, String> {
     }
     let unit = child(root, "asset").and_then(|asset| child(asset, "unit"));
     let meters = unit.and_then(|unit| unit.attribute("meter")).map_or(Ok(1.0), number)?;
+    if meters <= 0.0 || !meters.is_finite() {
+        return Err(format!("its unit is {meters} m"));
+    }
     Shown::new(&document).vertices((IDENTITY.map(|row| row.map(|entry| meters * entry)), [0.0; 3]))
 }
 
@@ -141,7 +144,9 @@ impl<'a, 'input: 'a> Shown<'a, 'input> {
             };
             let (offset, stride): (usize, usize) = (count("offset", 0)?, count("stride", 3)?);
             let points = values.get(offset..).unwrap_or_default().chunks(stride.max(3));
-            positions.extend(points.filter_map(|point| point.first_chunk::<3>()));
+            // The numbers of others, as normals, may follow in the same array.
+            let own = points.take(count("count", usize::MAX)?);
+            positions.extend(own.filter_map(|point| point.first_chunk::<3>()));
             if positions.len() > MOST_VERTICES {
                 return Err(format!("more than {MOST_VERTICES} vertices"));
             }

@@ -20,8 +20,10 @@ pub(super) fn vertices(bytes: &[u8]) -> Result<Vec<[f64; 3]>, String> {
 fn tidied(bytes: &[u8]) -> Result<Cow<'_, [u8]>, String> {
     let begin = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
     let begins_as_text = begin.len() >= 5 && begin[..5].eq_ignore_ascii_case(b"solid");
-    if begins_as_text && begin.is_ascii() && !begin.contains(&0) {
-        let mut text = begin.to_ascii_lowercase();
+    if begins_as_text && !begin.contains(&0) {
+        // Names may be in any encoding.
+        let plain = |byte: &u8| if byte.is_ascii() { byte.to_ascii_lowercase() } else { b'?' };
+        let mut text: Vec<u8> = begin.iter().map(plain).collect();
         let name = text[5..].split(|byte| matches!(byte, b'\n' | b'\r')).next().unwrap_or_default().trim_ascii();
         let is_facet = name.strip_prefix(b"facet").is_some_and(|rest| rest.trim_ascii_start().starts_with(b"normal"));
         if name.is_empty() || is_facet {

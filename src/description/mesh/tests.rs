@@ -97,6 +97,7 @@ fn every_format_gives_the_same_vertices() {
         ("foot.stl", ascii_stl().to_ascii_uppercase().into()),
         ("foot.stl", format!("\u{feff}{}", ascii_stl().replace("solid foot", "solid")).into()),
         ("foot.stl", ascii_stl().replace("solid foot", "solid facet").into()),
+        ("foot.stl", ascii_stl().replace("foot", "Fu\u{df}").into()),
         ("foot.STL", binary_stl(b"by hand")),
         ("foot.STL", [binary_stl(b"by hand"), vec![7; 60]].concat()),
         // Many programs begin a binary file as if it were a text.
@@ -117,6 +118,9 @@ fn every_format_gives_the_same_vertices() {
     // Texts keep their digits.
     assert_eq!(vertices("a.obj", "v 0.1 0.2 -0.3\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")[1], [0.1, 0.2, -0.3]);
     assert_eq!(vertices("a.dae", dae("", "", &[[0.1, 0.2, -0.3]])), [[0.1, 0.2, -0.3]]);
+    // Normals in the same array, behind the positions.
+    let shared = dae("", &shown, &[&PYRAMID[..], &[[7.0; 3]; 2]].concat());
+    assert_eq!(vertices("a.dae", shared.replace("count=\"7\" stride", "count=\"5\" stride")), sorted(&PYRAMID));
     let commented = dae("", "", &[[0.1, 0.2, -0.3]]).replacen("0.2", "<!-- y --> 0.2", 1);
     assert_eq!(vertices("a.dae", commented), [[0.1, 0.2, -0.3]]);
 }
@@ -175,6 +179,7 @@ fn files_that_cannot_be_read_have_a_reason() {
         ),
         ("a.dae", "<robot/>".into(), "cannot be read: "),
         ("a.dae", dae("<unit meter=\"x\"/>", "", &PYRAMID).into(), "cannot be read: "),
+        ("a.dae", dae("<unit meter=\"0\"/>", "", &PYRAMID).into(), "cannot be read: its unit is 0 m"),
         ("a.dae", in_scene("<node><instance_geometry url=\"#hand\"/></node>").into(), "cannot be read: "),
         ("a.dae", in_scene("<node><rotate>1 2 3</rotate></node>").into(), "cannot be read: "),
         ("a.dae", in_scene(circle).into(), endless),

@@ -71,7 +71,12 @@ fn projected(center: Vector<f64>, half_sides: &[Vector<f64>], rim: Rim) -> Resul
     swept(zonogon::corners(center, half_sides), rim)
 }
 
-fn swept(corners: Vec<Vector<f64>>, rim: Rim) -> Result<FootShape, String> {
+/// With corners that f64 cannot tell apart as one.
+fn swept(mut corners: Vec<Vector<f64>>, rim: Rim) -> Result<FootShape, String> {
+    corners.dedup();
+    while corners.len() > 1 && corners.first() == corners.last() {
+        corners.pop();
+    }
     FootShape::swept(corners, rim).ok_or_else(|| "its corners are not distinct in f64".into())
 }
 
@@ -135,6 +140,9 @@ mod tests {
         // Thinner than what a mesh's side may bulge: the side below is the sole.
         assert_outline(&flat(0.2, 2e-8), unturned, 0.0, &rectangle(0.1, 1e-8), 0.0);
         assert_outline(&flat(0.0, 0.0), unturned, 0.0, &[CENTER], 0.0);
+        // Shorter than what f64 tells apart there.
+        assert_outline(&Geometry::Capsule { radius: 0.05, length: 1e-17 }, unturned, 0.0, &[CENTER], 0.05);
+        assert_outline(&flat(1e-18, 0.4), unturned, 0.0, &line([0.1, -0.5], [0.1, -0.3 + 0.2]), 0.0);
         assert_outline(&Geometry::Sphere { radius: 0.0 }, [1.0, 2.0, 3.0], 0.0, &[CENTER], 0.0);
 
         // Pitch: x and z change places; which of the two level corners comes first is a matter of rounding.

@@ -3,7 +3,7 @@
 use crate::constraints::four_bar::{CRANKS, L, M, M_COUPLER, WIDTH, assert_stops, bolted, parallelogram, pin, state};
 use crate::constraints::{impact, matrices, try_impact};
 use crate::support::impact::{loop_impulses, velocities_after};
-use crate::support::mechanism::{Mechanism, point};
+use crate::support::mechanism::{Mechanism, point, turned};
 use heelstrike::pipeline::Impact;
 use serde_json::{Value, json};
 
@@ -86,4 +86,57 @@ fn a_braced_parallelogram_is_rigid() {
     let error =
         try_impact(&bolted(&mechanism), &state(&mechanism, Q, RATE, still["loops"].clone())).expect_err("refused");
     assert!(error.reason().to_string().starts_with("the velocities open loops[1] (coupler - root) at "), "{error}");
+}
+
+/// A parallelogram on a coupler that rests: its closing leaves 1e-33 m/s along the rows of the coupler's that are left out.
+#[test]
+fn a_loop_at_rest_may_carry_one_that_moves() {
+    let (mechanism, loops) = guided_twice();
+    let mechanism = mechanism
+        .with("crank", "coupler", [0.1, 0.2], 1.0, [0.0, -0.2])
+        .with("bar", "crank", [0.0, -0.5], 1.0, [0.3, 0.0])
+        .with("swing", "coupler", [0.7, 0.2], 1.0, [0.0, -0.2]);
+    let mut loops = loops.as_array().expect("two pins").clone();
+    loops.push(json!({"a": point("bar", [0.6, 0.0]), "b": point("swing", [0.0, -0.5])}));
+    for step in 0..40 {
+        let mut moving = state(&mechanism, 0.02 + 0.01 * f64::from(step), 0.0, json!(loops));
+        let angle = 0.1 + 0.013 * f64::from(step);
+        for (name, sign) in [("crank", 1.0), ("bar", -1.0), ("swing", 1.0)] {
+            moving["position"]["joints"][name] = json!(sign * angle);
+            moving["velocity"]["joints"][name] = json!(sign);
+        }
+        moving["contacts"] = json!([point("swing", [0.0, -0.3])]);
+        let found = impact(&bolted(&mechanism), &moving);
+        let expected = turned([0.0, -0.3], angle);
+        let [[along, up]] = found.velocity_before[..] else { panic!("{:?}", found.velocity_before) };
+        assert!((along - expected[1]).abs() < 1e-14 && (up + expected[0]).abs() < 1e-14, "{along} {up}");
+    }
+}
+
+/// Two cranks that are pinned together stand still. A wheel on one of them follows an arm beside it, which strikes: the
+/// pin's rounding in the rows of the cranks' feet does not hold the arm.
+#[test]
+fn what_a_loop_holds_does_not_hold_others() {
+    let mechanism = Mechanism::of(1.0, [0.0; 2], 1.0)
+        .with("front", "root", [-0.3, 0.4], 1.0, [0.0, -0.2])
+        .with("rear", "root", [0.3, 0.4], 1.0, [0.0, -0.2])
+        .with("arm", "root", [1.0, 0.1], 1.0, [0.2, 0.0])
+        .with("wheel", "front", [0.1, -0.2], 1.0, [0.05, 0.0])
+        .following("arm", 1.3, 0.0);
+    let robot = bolted(&mechanism);
+    for step in 0..40 {
+        let [front, rear, arm] = [1.0, 2.3, 3.7].map(|way| (way * f64::from(step + 1)).sin());
+        // Where the pin is on the rear crank, whose pivot is 0.6 m ahead.
+        let [x, z] = turned([0.1, -0.35], front);
+        let pinned = json!([{"a": point("front", [0.1, -0.35]), "b": point("rear", turned([x - 0.6, z], -rear))}]);
+        let feet = [point("front", [0.0, -0.4]), point("rear", [0.0, -0.4]), point("arm", [0.4, 0.0])];
+        let state = json!({"position": {"joints": {"front": front, "rear": rear, "arm": arm}},
+            "velocity": {"joints": {"arm": 1.0}}, "friction": 0.5, "loops": pinned, "contacts": feet});
+        let found = impact(&robot, &state);
+        let [x, z] = turned([0.4, 0.0], arm);
+        let [along, up] = found.velocity_before[2];
+        assert!((along - z).abs() < 1e-14 && (up + x).abs() < 1e-14, "{along} {up}, not {z} {}", -x);
+        assert_eq!(found.resting, [true, true, false], "{:?}", found.notes);
+        assert_eq!(crate::support::impact::outcomes(&found)[0].impulse[2][1] > 0.0, x > 0.0);
+    }
 }

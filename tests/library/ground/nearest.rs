@@ -1,6 +1,6 @@
 //! The lowest foot that does not touch, and the robot that is put on its lowest foot.
 
-use super::{FALLING, assert_close, assert_same_outcomes, sole, state, step};
+use super::{FALLING, assert_close, assert_same_outcomes, body, sole, state, step};
 use crate::support::impact::{impact, robot, try_impact};
 use crate::support::urdf::{self, Axis, POINT, collision, joint, link};
 use heelstrike::pipeline::{Impact, NearestFoot, Options};
@@ -133,6 +133,33 @@ fn a_foot_beyond_both_ends_of_the_ground_is_put_on() {
             let points: Vec<f64> = placed(z).contacts.iter().flat_map(|contact| contact.point.components()).collect();
             assert_close(&points, &[-0.2, 0.0, 0.2, 0.0]);
         }
+    }
+}
+
+#[test]
+fn a_foot_beside_the_end_is_put_on_it_from_any_height() {
+    // The ball's middle is beyond the end, and its other foot may be lower over the ground once the ball is past it.
+    let [ball, rear] =
+        [collision([0.03, 0.0], "sphere radius=\"0.05\""), collision([-0.5, 0.3], "sphere radius=\"0.01\"")];
+    let ball = robot(&urdf::robot(&[link("ball", 2.0, [0.0; 2], 0.1, &(ball + &rear))]));
+    for z in [-3.0, -0.3, 0.0, 0.1, 0.5, 5.0] {
+        let state = json!({"position": {"base": {"z": z}}, "velocity": {"base": {"z": -1}}, "place": "lowest",
+            "friction": 1, "ground": {"profile": [[-2, 0], [0, 0]]}});
+        let placed = impact(&ball, state);
+        assert_eq!(placed.contacts.len(), 1);
+        assert_close(&placed.contacts[0].point.components(), &[0.0, 0.0]);
+    }
+}
+
+#[test]
+fn nearest_rim_of_an_oblique_cylinder_is_found_over_a_profile() {
+    let oblique = body(r#"<origin rpy="0.7 0 0"/><geometry><cylinder radius="0.05" length="0.3"/></geometry>"#);
+    let profile = json!([[-0.5, 0], [0, 0], [0.3, -0.1], [0.6, 0.05], [1, 0.1]]);
+    for x in (-40..=80).map(|step| 0.01 * f64::from(step)) {
+        let state = json!({"position": {"base": {"x": x, "z": 0.3, "pitch": 0.3}}, "friction": 0.5,
+            "ground": {"profile": profile}});
+        let nearest = nearest(&impact(&oblique, state));
+        assert!((0.0..0.3).contains(&nearest.height), "{x}: {nearest:?}");
     }
 }
 

@@ -369,3 +369,16 @@ fn feet_of_held_legs_are_level_as_one_body_is() {
         }
     }
 }
+
+#[test]
+fn a_sole_that_few_digits_tilt_is_noted() {
+    for (pitch, is_noted) in [(0.0, false), (-1e-12, true), (-1e-8, true), (-1e-3, false)] {
+        let state = json!({"position": {"base": {"pitch": pitch}}, "velocity": {"base": {"x": 0.3, "z": -1, "pitch": 0.8}},
+            "place": "lowest", "friction": "infinite"});
+        let options = Options { contact_tolerance: Some(1e-3), ..Options::default() };
+        let found = try_impact(&sole(), options, state).expect("an answer");
+        assert_eq!(found.contacts.len(), 2);
+        let noted = found.notes.iter().any(|note| note.starts_with("contacts push against each other"));
+        assert_eq!(noted, is_noted, "{pitch}: {:?}", found.notes);
+    }
+}

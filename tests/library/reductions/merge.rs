@@ -23,10 +23,11 @@ struct Case {
 }
 
 /// Up to which height points of the cases touch \[m\].
-const TOLERANCE: f64 = 0.05;
+const TOLERANCE: f64 = 0.1;
 
 /// Three links, the root of which stands with three to five points, at times another with one. They are on level ground
-/// exactly, or inner ones are off it: as far as their cones let them act through the outer two, or farther.
+/// exactly or on a tilted line, or inner ones are off it: as far as their cones let them act through the outer two, or
+/// farther.
 fn case(seed: u64) -> Case {
     let mut random = Random::new(seed);
     let mut point = |size: f64| -> Point { [random.between(-size, size), random.between(-size, size)] };
@@ -48,11 +49,12 @@ fn case(seed: u64) -> Case {
     places.sort_by(f64::total_cmp);
     let [rear, front] = [places[0], places[places.len() - 1]];
     let (is_flat, reach) = (random.once_in(2), if random.once_in(2) { 1.0 } else { 4.0 });
+    let tilt = if random.once_in(3) { random.between(-0.1, 0.1) } else { 0.0 };
     let mut feet: Vec<NamedContact> = (places.iter())
         .map(|&x| {
             let room = (x - rear).min(front - x) / friction.unwrap_or(1.0).max(1e-3);
-            let off = if is_flat { 0.0 } else { (reach * room).min(TOLERANCE) * random.between(-1.0, 1.0) };
-            NamedContact { link: 0, offset: [x, 0.0, off - height], radius: 0.0 }
+            let off = if is_flat { 0.0 } else { (reach * room).min(0.5 * TOLERANCE) * random.between(-1.0, 1.0) };
+            NamedContact { link: 0, offset: [x, 0.0, off + tilt * x - height], radius: 0.0 }
         })
         .collect();
     if random.once_in(3) {
