@@ -450,10 +450,7 @@ impl Robot {
         let friction = mu.map(friction).transpose()?;
         let asked = Asked { aspect, friction, detail, next };
         let model = &slf.get().model;
-        let answered = || {
-            let is_other = |state: &State| friction.is_some() && state.scene.friction.default != friction;
-            model.answer(&text, asked, |state, _, _| is_other(state))
-        };
+        let answered = || model.answer(&text, asked, |state, _, _| state.scene.has_own_friction(friction));
         let (out, has_own) = without_python(py, answered)?.map_err(|error| refused_in(state, error))?;
         warn(py, notes::own_friction(has_own.into(), "state"))?;
         let kind = if aspect == Aspect::Impact { "impact" } else { "forces" };

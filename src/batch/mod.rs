@@ -237,8 +237,7 @@ impl Answerer<'_> {
     /// Appends the result of a state.
     fn result(&mut self, state: &State, around: Around<'_>, block: &mut Block) -> Result<()> {
         let Question { robot, detail, header, columns, .. } = *self.question;
-        let given = self.question.defaults.friction;
-        block.summary.own_friction += u64::from(given.is_some() && state.scene.friction.default != given);
+        block.summary.own_friction += u64::from(state.scene.has_own_friction(self.question.defaults.friction));
         let answer = match &self.question.total {
             Some(total) => total.within(|| self.pipeline.answer(state)),
             None => self.pipeline.answer(state),

@@ -80,7 +80,7 @@ impl StateArgs {
         let (mut pipeline, mut drawn, mut own_friction) = (Pipeline::new(&robot, options), None, 0);
         let answered = answer_all("state", &self.state, format, &self.output, several, |state, palette, out| {
             let state = State::from_json(state, &robot, &defaults)?;
-            own_friction += u64::from(defaults.friction.is_some() && state.scene.friction.default != defaults.friction);
+            own_friction += u64::from(state.scene.has_own_friction(defaults.friction));
             let impact = pipeline.answer(&state)?;
             if plotted {
                 drawn = picture::impact(&robot, &feet, &state, &impact, self.mirror.forward());

@@ -14,6 +14,9 @@ use super::slack::Scale;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
 
+/// What is left of X is rounding, where it is less than this part of what it is added up from.
+const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
+
 /// beta, gamma and region of each contact; none for a singular Delassus matrix.
 pub fn explanation(problem: &ContactProblem, scale: &Scale) -> Option<Explanation> {
     let rows = 2 * problem.contacts();
@@ -30,7 +33,12 @@ pub fn explanation(problem: &ContactProblem, scale: &Scale) -> Option<Explanatio
         let mass_tt = inverse[(t, t)] / (mobility[t] * mobility[t]);
         let mass_nt = inverse[(n, t)] / (mobility[n] * mobility[t]);
         let beta = libm::atan(mass_nt / mass_tt);
-        let gamma = libm::atan2(taken[n] / mobility[n], taken[t] / mobility[t]);
+        let [x_t, x_n] = [t, n].map(|row| {
+            let size: f64 = (0..rows).map(|other| (inverse[(row, other)] * free[other]).abs()).sum();
+            // The sum of both zeros is the positive one.
+            if taken[row].abs() <= ROUNDINGS * size { 0.0 } else { taken[row] / mobility[row] + 0.0 }
+        });
+        let gamma = libm::atan2(x_n, x_t);
         explanation.beta.push(beta);
         explanation.gamma.push(gamma);
         explanation.region.push(region(beta, gamma));
@@ -85,6 +93,24 @@ mod tests {
             assert_eq!(found.region, [region], "gamma {gamma}");
             // A few roundings of numbers of order one.
             assert!((found.beta[0] - beta).abs() < 1e-14 && (found.gamma[0] - gamma).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn rounding_has_no_direction() {
+        // c = G X, of which the first contact takes nothing over; G is no sum of powers of two.
+        let delassus: [[f64; 4]; 4] =
+            [[1.7, 0.3, 0.4, -0.1], [0.3, 1.1, 0.2, 0.7], [0.4, 0.2, 1.3, 0.6], [-0.1, 0.7, 0.6, 1.9]];
+        for step in 0..50 {
+            let x = [0.0, 0.0, f64::from(step).sin(), f64::from(step).cos()];
+            let row = |row: usize| delassus[row].iter().zip(x).map(|(entry, x)| entry * x).sum::<f64>();
+            let before = vec![[row(0), row(1)], [row(2), row(3)]];
+            let problem =
+                ContactProblem::new(delassus.concat(), before, vec![Friction::Infinite; 2], vec![0.0; 2]).unwrap();
+            let mut scale = Scale::default();
+            scale.measure(&problem, Errors::NONE);
+            let found = explanation(&problem, &scale).unwrap();
+            assert_eq!((found.gamma[0], found.region[0]), (0.0, ImpulseRegion::C), "{x:?}");
         }
     }
 }

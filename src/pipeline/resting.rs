@@ -80,7 +80,9 @@ impl Pipeline<'_> {
                 // So small a bound has room for underflow alone.
                 let is_blurred = bound > f64::MIN_POSITIVE.sqrt() && self.options.resting_speed.is_none();
                 if !self.options.brief && (slow > 0.0 || is_blurred) {
-                    notes.push(format!("{name}{AT_REST} although it moves at {slow:.1e} m/s ({because})"));
+                    let moves =
+                        if slow > 0.0 { format!(" although it moves at {slow:.1e} m/s") } else { String::new() };
+                    notes.push(format!("{name}{AT_REST}{moves} ({because})"));
                 }
             } else if !self.options.brief && bound > 0.0 && slow <= bound {
                 notes.push(format!(

@@ -62,6 +62,12 @@ impl Scene {
         self.gravity.unwrap_or(Self::GRAVITY)
     }
 
+    /// Whether friction that is `given` for all states is not that of every link.
+    pub fn has_own_friction(&self, given: Option<Friction>) -> bool {
+        let ByLink { default, links } = &self.friction;
+        given.is_some() && (*default != given || links.values().any(|own| Some(*own) != given))
+    }
+
     /// Refuses an index of a link or joint that `robot` does not have.
     pub(crate) fn check_indices(&self, robot: &Robot) -> Result<()> {
         let of_springs = self.springs.iter().flat_map(|spring| match spring.b {

@@ -153,7 +153,7 @@ impl RobotStudy<'_> {
         let mut read = |part: f64| {
             let point = parameters.iter().map(|parameter| parameter.from + part * parameter.range());
             let given = self.defaults.friction;
-            let is_other = |state: State| given.is_some() && state.scene.friction.default != given;
+            let is_other = |state: State| state.scene.has_own_friction(given);
             solver.at(&point.collect::<Vec<_>>(), |_, state, _| Ok(is_other(state)))
         };
         read(0.0).or_else(|first| read(0.5).or_else(|_| read(1.0)).map_err(|_| first))

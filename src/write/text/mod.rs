@@ -266,7 +266,11 @@ impl<'w> Writer<'w> {
                 (Some(rank), None) => format!("{rank} of {}, redundant", 2 * self.report.contacts.len()),
                 (None, _) => "not known".to_owned(),
             };
-            let hidden = if self.report.verdict == Some(Verdict::Undecided) { "unknown" } else { "hidden by a border" };
+            let hidden = match self.report.verdict {
+                Some(Verdict::Undecided) => "unknown",
+                _ if self.subject.analysis.is_some_and(|own| !own.families.is_empty()) => "not defined with families",
+                _ => "hidden by a border",
+            };
             let sum = self.report.index_sum.map(|sum| sum.map_or(hidden.to_owned(), |sum| sum.to_string()));
             let sum = sum.map_or(String::new(), |sum| format!("; sum of indices {sum}"));
             let proven = if is_proven { "proven" } else { "not proven" };

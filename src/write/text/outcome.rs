@@ -144,11 +144,16 @@ impl Writer<'_> {
 
     /// v after the impact, one column per outcome.
     pub(super) fn velocities(&mut self, outcomes: &[Outcome]) {
-        let Some(first) = outcomes.first().map(coordinates).filter(|names| !names.is_empty()) else { return };
+        // Of what is not decided no number is known.
+        let decided = || outcomes.iter().enumerate().filter(|(_, outcome)| outcome.decided);
+        let Some(first) = decided().next().map(|(_, first)| coordinates(first)).filter(|names| !names.is_empty())
+        else {
+            return;
+        };
         let mut table =
             Table::default().text(self.subject.wording.coordinates, first).text("", self.subject.units.iter().copied());
-        let velocities = scale(outcomes.iter().flat_map(Outcome::velocity)).max(self.speeds());
-        for (at, outcome) in outcomes.iter().enumerate() {
+        let velocities = scale(decided().flat_map(|(_, outcome)| outcome.velocity())).max(self.speeds());
+        for (at, outcome) in decided() {
             let head = if outcomes.len() == 1 { String::new() } else { format!("{}", at + 1) };
             table = table.numbers(&head, velocities, outcome.velocity());
         }

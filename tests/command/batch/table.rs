@@ -114,7 +114,7 @@ fn feet_at_rest_take_little_room_in_tables() {
     for note in cells {
         assert!(note.contains("_foot is taken as exactly at rest") && !note.contains("m/s"), "{note}");
     }
-    assert!(walk("ndjson").lines().all(|line| line.contains("at rest although it moves at ")));
+    assert!(walk("ndjson").lines().all(|line| line.contains("is taken as exactly at rest")));
 }
 
 #[test]

@@ -118,9 +118,9 @@ fn a_loop_at_rest_may_carry_one_that_moves() {
 #[test]
 fn what_a_loop_holds_does_not_hold_others() {
     let mechanism = Mechanism::of(1.0, [0.0; 2], 1.0)
+        .with("arm", "root", [1.0, 0.1], 1.0, [0.2, 0.0])
         .with("front", "root", [-0.3, 0.4], 1.0, [0.0, -0.2])
         .with("rear", "root", [0.3, 0.4], 1.0, [0.0, -0.2])
-        .with("arm", "root", [1.0, 0.1], 1.0, [0.2, 0.0])
         .with("wheel", "front", [0.1, -0.2], 1.0, [0.05, 0.0])
         .following("arm", 1.3, 0.0);
     let robot = bolted(&mechanism);

@@ -7,11 +7,12 @@ use heelstrike::state::NamedContact;
 use serde_json::{Value, json};
 
 use super::comparison::floating;
-use crate::support::impact::{outcomes, try_impact};
+use crate::support::impact::{outcomes, robot, try_impact};
 use crate::support::mechanism::{Mechanism, Point};
 use crate::support::parallel::total;
 use crate::support::random::Random;
 use crate::support::scaled::{largest, near};
+use crate::support::urdf::{self, POINT, collision, link};
 
 /// A robot, points of it that lie on the ground, and a state.
 struct Case {
@@ -133,4 +134,18 @@ fn outer_points_act_for_all() {
     println!("{merged} points were merged");
     assert!(merged > 0);
     assert_eq!(wrong, 0);
+}
+
+/// Where the body bounces and turns, c_t differs along a tilted line: the point between the ends may stick while both slide.
+#[test]
+fn points_on_a_tilted_line_stay_where_they_bounce() {
+    let foot = |x: f64| collision([x, 0.0], POINT);
+    let plank = urdf::robot(&[link("plank", 2.0, [0.0, 0.1], 0.02, &[-0.3, 0.02, 0.3].map(foot).concat())]);
+    for (bounce, contacts, count) in [(0.5, 3, 2), (0.0, 2, 1)] {
+        let state = json!({"friction": 0.8, "restitution": bounce, "place": "lowest", "position": {"base": {"pitch": 1e-3}},
+            "velocity": {"base": {"z": -1, "pitch": 1}}});
+        let options = Options { contact_tolerance: Some(1e-3), ..Options::default() };
+        let found = try_impact(&robot(&plank), options, &state).expect("an answer");
+        assert_eq!((found.contacts.len(), outcomes(&found).len()), (contacts, count), "e = {bounce}");
+    }
 }
