@@ -238,10 +238,12 @@ def from_drake(plant: Any) -> Layout:
         match joint.num_positions(), joint.num_velocities():
             case 7, 6 if layout.base is None:
                 frames = [own.GetFixedPoseInBodyFrame() for own in (joint.frame_on_parent(), joint.frame_on_child())]
-                if joint.parent_body().index() != plant.world_body().index() or not all(own.IsNearlyIdentity(1e-12) for own in frames):
+                is_on_world = joint.parent_body().index() == plant.world_body().index()
+                if not is_on_world or not all(own.IsNearlyIdentity(1e-12) for own in frames):
                     raise ValueError(
-                        f"the base's joint {joint.name()} does not join the frames of the world and of its body, so that "
-                        "its numbers are not those of the base: let it join plant.world_frame() and body.body_frame()"
+                        f"the base's joint {joint.name()} does not join the frames of the world and of its body, so "
+                        "that its numbers are not those of the base: let it join plant.world_frame() and "
+                        "body.body_frame()"
                     )
                 quaternion = list(range(q, q + 4))
                 layout.base = Base(slice(q + 4, q + 7), quaternion, slice(v + 3, v + 6), slice(v, v + 3), False, False)

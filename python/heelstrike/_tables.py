@@ -16,7 +16,7 @@ def _import(name: str) -> Any:
 
 
 def to_arrow(answers: Answers, id: Any = None) -> Any:
-    pa = _import("pyarrow")
+    pa = _import("pyarrow.compute")
     import numpy as np
 
     from . import Mode, Verdict
@@ -28,15 +28,16 @@ def to_arrow(answers: Answers, id: Any = None) -> Any:
     outcome = np.cumsum(~nothing) - 1
     at = pa.array(outcome, mask=nothing)
 
-    def per_outcome(values: Any, kind: Any = None) -> Any:
+    def per_outcome(values: Any) -> Any:
         # NaN is null.
-        return pa.array(values, kind, from_pandas=True).take(at)
+        return pa.array(values, from_pandas=True).take(at)
 
     def named(values: Any, names: list[str]) -> Any:
         return pa.array(names).take(pa.array(values, mask=values < 0))
 
-    def per_state(values: list[str | None]) -> Any:
-        return pa.array(values, pa.string()).take(pa.array(state))
+    def texts(values: list[str | None], places: Any) -> Any:
+        # Not by `take`, which gives no more than 2 GiB.
+        return pa.array((None if place is None else values[place] for place in places.tolist()), pa.string())
 
     ids = np.arange(len(answers)) if id is None else id
     ids = ids if isinstance(ids, (pa.Array, pa.ChunkedArray)) else pa.array(ids)
@@ -57,8 +58,9 @@ def to_arrow(answers: Answers, id: Any = None) -> Any:
         cells.append(named(answers.modes[:, contact], modes).take(at))
         cells += [per_outcome(vectors[:, contact, axis]) for axis in (0, 1)]
     cells += map(per_outcome, (answers.acceleration if is_forces else answers.velocity_after).T)
-    cells += [per_outcome(answers.border, pa.string()), per_outcome(answers.family)]
-    cells += [per_outcome(answers.families, pa.string()), per_state(answers.error), per_state(answers.notes)]
+    own = np.where(nothing, None, outcome)
+    cells += [texts(answers.border, own), per_outcome(answers.family), texts(answers.families, own)]
+    cells += [texts(answers.error, state), texts(answers.notes, state)]
     return pa.table(cells, names=answers.columns)
 
 

@@ -92,7 +92,8 @@ def to_csv(table: Any) -> bytes:
         return read(table)
     if hasattr(table, "to_csv"):
         # Of a float32 pandas writes fewer digits than its value has.
-        narrow = {name: "float64" for name, own in table.dtypes.items() if own in ("float32", "float16")}
+        wide = {"float32": "float64", "float16": "float64", "Float32": "Float64"}
+        narrow = {name: wide[str(own)] for name, own in table.dtypes.items() if str(own) in wide}
         return str(table.astype(narrow).to_csv(index=False)).encode()
     if hasattr(table, "to_pydict"):
         table = table.to_pydict()

@@ -147,13 +147,15 @@ fn array<'py>(what: &str, value: &Bound<'py, PyAny>, coordinates: Option<&[Strin
 fn check_order(what: &str, value: &Bound<'_, PyAny>, coordinates: &[String]) -> PyResult<()> {
     let names = value.getattr("column_names").or_else(|_| value.getattr("columns")).and_then(|names| names.try_iter());
     let names = names.into_iter().flatten().map(|name| name?.extract::<String>()).collect::<PyResult<Vec<_>>>();
-    let place = |name: &str| {
-        let name = name.strip_prefix(what).and_then(|name| name.strip_prefix('_')).unwrap_or(name);
-        let base = name.strip_prefix("base_").filter(|name| ["x", "z", "pitch"].contains(name));
-        coordinates.iter().position(|own| own == base.unwrap_or(name))
+    let known = |name: &str| coordinates.iter().position(|own| own == name);
+    let of_tables = |name: &str| {
+        let name = name.strip_prefix(what)?.strip_prefix('_')?;
+        known(name).or_else(|| known(name.strip_prefix("base_")?))
     };
+    let place = |name: &str| known(name).or_else(|| of_tables(name));
     let is_elsewhere = |(at, name): (usize, &String)| place(name).is_some_and(|place| place != at);
-    let Some(names) = names.ok().filter(|names| names.iter().enumerate().any(is_elsewhere)) else { return Ok(()) };
+    let is_mixed = |names: &Vec<String>| names != coordinates && names.iter().enumerate().any(is_elsewhere);
+    let Some(names) = names.ok().filter(is_mixed) else { return Ok(()) };
     let remedy = match coordinates.iter().all(|name| names.contains(name)) {
         true => format!("give {what}[robot.coordinates]"),
         false => format!("give {}", coordinates.join(", ")),

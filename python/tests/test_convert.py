@@ -333,7 +333,9 @@ def test_base_is_read_in_every_plane(plane):
     layout = heelstrike.Layout(7, 6, base=Base(slice(0, 3), [3, 4, 5, 6], slice(0, 3), slice(3, 6), False, False))
     robot = heelstrike.Robot.from_string(FLOATING, plane=plane)
     forward, up = (np.eye(3)["xyz".index(axis)] for axis in plane)
-    normal = np.cross(up, forward)
+    # As `heelstrike inspect` prints it.
+    axis = {"xz": "+y", "yz": "-x", "xy": "-z", "zy": "+x", "zx": "-y", "yx": "+z"}[plane]
+    normal = np.eye(3)["xyz".index(axis[1])] * float(axis[0] + "1")
     q, v = layout(
         robot,
         [*(0.4 * forward + 0.5 * up), np.cos(0.15), *(np.sin(0.15) * normal)],

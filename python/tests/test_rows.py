@@ -188,7 +188,8 @@ def test_data_frame_is_in_the_order_of_the_coordinates(ramone, walk):
     with pytest.raises(ValueError, match="q has the columns left_hip, .*not in the order.*: give q.robot.coordinates"):
         ramone.impacts(q[sorted(q)], v, friction=0.5)
     of_tables = {name: f"q_base_{name}" if name in ("x", "z", "pitch") else f"q_{name}" for name in q}
-    assert ramone.impacts(q.rename(columns=of_tables), v, friction=0.5, place="lowest").velocity_after.tolist() == expected
+    scene = {"friction": 0.5, "place": "lowest"}
+    assert ramone.impacts(q.rename(columns=of_tables), v, **scene).velocity_after.tolist() == expected
     pyarrow = pytest.importorskip("pyarrow")
     for own in (q.rename(columns=of_tables), q.rename(columns={"left_hip": "hip"}), pyarrow.table(q.to_dict("list"))):
         other = own.iloc[:, ::-1] if hasattr(own, "iloc") else own.select(own.column_names[::-1])
@@ -196,6 +197,23 @@ def test_data_frame_is_in_the_order_of_the_coordinates(ramone, walk):
             ramone.impacts(other, v, friction=0.5, place="lowest")
     unnamed = q.rename(columns={"x": "q0"})
     assert ramone.impacts(unnamed, v, friction=0.5, place="lowest").velocity_after.tolist() == expected
+
+
+@pytest.mark.parametrize("names", [("base_x", "base_z"), ("hip", "q_hip"), ("q_hip", "hip")])
+def test_joints_may_be_named_as_columns_are(names):
+    pandas = pytest.importorskip("pandas")
+    inertial = """<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>"""
+    parts = [
+        f"""<link name="l{at + 1}">{inertial}</link><joint name="{name}" type="continuous"><parent link="l{at}"/>
+            <child link="l{at + 1}"/><origin xyz="0 0 -1"/><axis xyz="0 1 0"/></joint>"""
+        for at, name in enumerate(names)
+    ]
+    text = f"""<robot name="arm"><link name="l0"/>{"".join(parts)}</robot>"""
+    arm = heelstrike.Robot.from_string(text, base="fixed")
+    q = pandas.DataFrame(np.zeros((2, 2)), columns=names)
+    assert len(arm.impacts(q, q)) == 2
+    with pytest.raises(ValueError, match="not in the order of robot.coordinates"):
+        arm.impacts(q[list(names[::-1])], q)
 
 
 def test_refused_rows_do_not_change_the_types_of_a_data_frame(ramone, walk):

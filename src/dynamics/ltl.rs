@@ -39,7 +39,7 @@ impl<T: Real> LtlFactor<T> {
         &self.entries[row * self.columns..][..row]
     }
 
-    /// The diagonal entry of a row.
+    /// The entry of D in a column.
     pub fn pivot(&self, column: usize) -> T {
         self.entries[column * self.columns + column]
     }

@@ -58,7 +58,7 @@ pub struct Workspace<T = f64> {
     pub bias: Vec<T>,
 
     // Computed by `orthogonalize`.
-    /// What closed loops add.
+    /// The rows of loops and of joints that keep their rates.
     pub loops: LoopRows<T>,
 
     // Computed by `delassus` or `articulated_delassus`.

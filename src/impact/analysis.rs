@@ -41,28 +41,32 @@ pub fn too_many_contacts(contacts: usize) -> Error {
 const HARD: f64 = 1e6;
 
 impl Analysis {
-    /// What a reader of it should know, in sentences; `problem` is the one that was analyzed.
-    pub fn notes(&self, problem: &ContactProblem) -> impl Iterator<Item = String> {
-        [self.energy_note(), self.balance_note(problem), self.unlisted_note()].into_iter().flatten()
+    /// What a reader of it should know, in sentences; `problem` is the one that was analyzed, of a robot of this `mass`
+    /// \[kg\], or 0 of none.
+    pub fn notes(&self, problem: &ContactProblem, mass: impl FnOnce() -> f64) -> impl Iterator<Item = String> {
+        [self.energy_note(), self.balance_note(problem, mass), self.unlisted_note()].into_iter().flatten()
     }
 
     /// A note if contacts push against each other far harder than they move: then the last digits of what is given decide.
-    pub(crate) fn balance_note(&self, problem: &ContactProblem) -> Option<String> {
+    pub(crate) fn balance_note(&self, problem: &ContactProblem, mass: impl FnOnce() -> f64) -> Option<String> {
         let most = |list: &[Pair<f64>]| list.as_flattened().iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
         let fastest = most(problem.velocity_before()).max(most(problem.velocity_free()));
-        let excess = |outcome: &Outcome| {
-            let rows = outcome.impulse.as_flattened().iter().enumerate();
-            let push = rows.map(|(row, own)| own.abs() * problem.delassus(row, row)).fold(0.0, f64::max);
-            push / fastest.max(most(&outcome.velocity_after))
+        // What a light foot passes on moves the whole robot.
+        let hardest = |lightest: f64| {
+            let excess = |outcome: &Outcome| {
+                let rows = outcome.impulse.as_flattened().iter().enumerate();
+                let push =
+                    rows.map(|(row, own)| own.abs() * problem.delassus(row, row).min(lightest)).fold(0.0, f64::max);
+                push / fastest.max(most(&outcome.velocity_after))
+            };
+            self.outcomes.iter().filter(|outcome| outcome.decided).map(excess).fold(0.0, f64::max)
         };
-        let decided = self.outcomes.iter().filter(|outcome| outcome.decided);
-        let hardest = decided.map(excess).fold(0.0, f64::max);
-        (hardest > HARD).then(|| {
-            format!(
-                "contacts push against each other {hardest:.0e} times harder than their motion needs: the last digits of \
-                 the pose or of the matrices decide, as where rounding tilts a flat sole, and velocities have fewer digits"
-            )
-        })
+        let is_hard = |push: &f64| *push > HARD;
+        let hardest = Some(hardest(f64::INFINITY)).filter(is_hard).map(|_| hardest(1.0 / mass())).filter(is_hard)?;
+        Some(format!(
+            "contacts push against each other {hardest:.0e} times harder than their motion needs: the last digits of the \
+             pose or of the matrices decide, as where rounding tilts a flat sole, and what follows has fewer digits"
+        ))
     }
 }
 

@@ -395,7 +395,7 @@ impl Analysis {
     }
 
     /// A note if not all rejected combinations are listed that were asked for.
-    pub(super) fn unlisted_note(&self) -> Option<String> {
+    pub(crate) fn unlisted_note(&self) -> Option<String> {
         let listed = self.rejected.len();
         (self.unlisted > 0).then(|| {
             let others = self.unlisted;

@@ -35,6 +35,10 @@ pub struct Loads<'a> {
     pub still: &'a [Option<usize>],
 }
 
+/// At most this part of a row of G is rounding once loops hold its contact: a thousand units in the last place of a
+/// velocity, squared. Where rows of K nearly depend on each other they leave more.
+const HELD: f64 = (1e3 * f64::EPSILON) * (1e3 * f64::EPSILON);
+
 /// How M^-1 is applied.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Elimination {
@@ -60,8 +64,6 @@ pub struct Assembly<T = f64> {
     pub rows: Vec<usize>,
     /// Whether those are the rows that hold something, whatever digits the pose does not have.
     pub is_rank_certain: bool,
-    /// What part of a diagonal entry of G without loops is rounding of the one with them, in f64.
-    pub rounding: f64,
     column: Vec<T>,
     /// Scratch of the elimination of contacts at rest.
     pub(super) left: Vec<T>,
@@ -80,7 +82,7 @@ impl Assembly {
         eliminate_loops(&self.plan, &mut self.workspace);
         let delassus = &mut self.workspace.delassus;
         for (row, free) in free.into_iter().enumerate() {
-            if delassus[row * (size + 1)] <= self.rounding * free {
+            if delassus[row * (size + 1)] <= HELD * free {
                 (0..size).for_each(|other| (delassus[row * size + other], delassus[other * size + row]) = (0.0, 0.0));
             }
         }

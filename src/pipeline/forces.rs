@@ -110,7 +110,8 @@ impl Pipeline<'_> {
         let asked = self.asked_of_forces(prepared.impact.contacts.len(), chosen);
         let mut analysis = self.analyze_forces(state, &prepared, &unforced, asked);
         let Impact { notes, problem, .. } = &mut *prepared.impact;
-        notes.extend(analysis.as_ref().and_then(|own| own.balance_note(problem)));
+        notes.extend(analysis.as_ref().and_then(|own| own.balance_note(problem, || self.robot.mass())));
+        notes.extend(analysis.as_ref().and_then(Analysis::unlisted_note));
         let is_none = analysis.as_ref().is_some_and(|own| own.verdict == Verdict::None);
         let mut shock = match is_none {
             true => self.shock(state, &prepared, &slips, asked),

@@ -23,9 +23,6 @@ const OPENING: f64 = 1e-4;
 const PARTING: f64 = 1e-9;
 /// Below this part of the kinetic energy a motion that opens the loops is rounding, and not worth a word.
 const ROUNDING: f64 = 1e-20;
-/// If all rows of K are orthogonal, at most this part of a row of G is rounding once they hold its contact: a thousand
-/// units in the last place of a velocity, squared. Rows of which less is independent leave more.
-const HELD: f64 = (1e3 * f64::EPSILON) * (1e3 * f64::EPSILON);
 /// A row of K is taken to follow from others if less than this part of its squared reach is left.
 const DEPENDENT: f64 = 1e-22;
 /// A pose that leaves a loop open gives directions only to this multiple of the gap.
@@ -75,7 +72,6 @@ impl Pipeline<'_> {
         self.assembly.loops.clear();
         self.assembly.rows.clear();
         self.assembly.is_rank_certain = true;
-        self.assembly.rounding = HELD;
         if named.is_empty() {
             self.assembly.constrain(None);
             return Ok(true);
@@ -90,7 +86,6 @@ impl Pipeline<'_> {
         let Assembly { plan, loops, kept, workspace, .. } = &self.assembly;
         let rows = independent_rows(plan, loops, kept, &reaches, tolerance, workspace);
         self.assembly.rows = rows.iter().map(|&(row, _)| row).collect();
-        self.assembly.rounding = HELD / rows.iter().fold(1.0, |least: f64, (_, share)| least.min(*share));
         let [shortest, longest] = [
             reaches.as_flattened().iter().fold(f64::INFINITY, |least, reach| least.min(reach.shortest)),
             reaches.as_flattened().iter().fold(0.0, |most: f64, reach| most.max(reach.longest)),

@@ -133,11 +133,11 @@ impl Pipeline<'_> {
             }
         });
         let speeds = &mut self.assembly.workspace.contact_velocity;
-        // Only a joint that keeps its rate can still move what the contacts at rest hold.
+        // Only a joint that keeps its rate can still move what the contacts at rest hold, unless rounding alone says so.
         let is_driven = self.braked.iter().any(|joint| velocity[self.robot.base_dofs() + joint] != 0.0);
         for &index in &still.held {
             let [slow, bound] = [speeds[index], bounds[index]].map(length);
-            if is_driven && (slow > bound || !bound.is_finite()) {
+            if slow > bound || is_driven && !bound.is_finite() {
                 continue;
             }
             (still.contacts[index], resting[index], speeds[index]) = (true, true, [0.0; 2]);

@@ -5,8 +5,8 @@
 //!
 //!     corners  rim      shape                            corners  rim      shape
 //!     one      point    point                            three +  point    box, convex hull of a mesh
-//!     one      circle   sphere, cylinder along n         three +  circle   rounded box
-//!     two      point    flat plate, upright              two      ellipse  cylinder oblique to the plane
+//!     one      circle   sphere, cylinder along n         two      ellipse  cylinder oblique to the plane
+//!     two      point    flat plate, upright
 //!     two      circle   capsule
 //! ```
 

@@ -3,12 +3,12 @@
 
 use crate::support::impact::{impact, ramone, robot, try_impact};
 use crate::support::urdf::{self, HINGE, POINT, collision, joint, link};
-use heelstrike::Robot;
 use heelstrike::impact::{
     Analysis, ContactProblem, Friction, Inequality, ListedRejections, Mode, RejectionReason, Verdict, analyze,
 };
 use heelstrike::pipeline::Options;
 use heelstrike::robot::Base;
+use heelstrike::{Defaults, Robot, State};
 
 use Mode::{Separate, SlideMinus, Stick};
 
@@ -345,5 +345,17 @@ fn a_gain_of_energy_is_noted() {
         ContactProblem::new(delassus.into(), vec![[-1.18, -0.5876]], vec![mu(1.0)], vec![1.0]).expect("a problem");
     let found = analyze(&problem, ListedRejections::Nothing).expect("one contact");
     assert!(found.outcomes.iter().any(|outcome| outcome.energy_loss < 0.0));
-    assert!(found.notes(&problem).any(|note| note.contains("add energy")));
+    assert!(found.notes(&problem, || 0.0).any(|note| note.contains("add energy")));
+}
+
+#[test]
+fn friction_by_link_is_a_states_own() {
+    let given = Some(mu(0.8));
+    let has_own = |friction: &str| {
+        let defaults = Defaults { friction: given, ..Defaults::default() };
+        let state = State::from_json(&format!("{{\"friction\": {friction}}}"), &ramone(), &defaults).expect("a state");
+        state.scene.has_own_friction(given)
+    };
+    let frictions = ["0.8", "0.5", r#"{"left_foot": 0.5}"#, r#"{"left_foot": 0.8}"#, r#"{"default": 0.8}"#];
+    assert_eq!(frictions.map(has_own), [false, true, true, false, false]);
 }

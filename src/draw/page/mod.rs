@@ -122,7 +122,7 @@ impl Page {
         &self.svg
     }
 
-    /// The file.
+    /// The whole page as HTML, with its scripts and data in it.
     pub fn html(&self) -> String {
         // As text of HTML.
         let title = self.title.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");

@@ -38,7 +38,7 @@ pub struct Drawing {
     pub contacts: Vec<DrawnContact>,
     /// Impulses that the state applies \[N s\].
     pub applied: Vec<Arrow>,
-    /// What happens at them.
+    /// What happens at the contacts.
     pub outcomes: Vec<DrawnOutcome>,
 }
 

@@ -284,7 +284,7 @@ fn notes(problem: &Problem, analysis: &Analysis) -> Cow<'static, [String]> {
     };
     let of_matrix = problem.contact.is_symmetrized().then(symmetrized);
     let notes = problem.contact.is_repaired().then(repaired).or(of_matrix).into_iter();
-    notes.chain(condition.map(ill)).chain(analysis.notes(&problem.contact)).collect()
+    notes.chain(condition.map(ill)).chain(analysis.notes(&problem.contact, || 0.0)).collect()
 }
 
 /// G, two rows and columns per contact.
