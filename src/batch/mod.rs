@@ -25,7 +25,7 @@ use crate::draw::{Keyframe, ListedKeyframe};
 use crate::error::Location;
 use crate::error::excerpt::Excerpt;
 use crate::gait::{Landing, Sample, Sampled};
-use crate::pipeline::{Options, Pipeline};
+use crate::pipeline::{AT_REST, Options, Pipeline};
 use crate::read::documents::utf8;
 use crate::read::lines::StateLines;
 #[cfg(feature = "columnar")]
@@ -275,12 +275,15 @@ impl Answerer<'_> {
         block.summary.slowed += u64::from(around.landing.is_some_and(|landing| landing.is_slowed));
         block.summary.deep += u64::from(around.landing.is_some_and(|landing| landing.is_deep));
         let place = || StateRef { id: state.id.clone().map(short_id), line: around.line };
-        // They are noted first.
-        if !impact.notes.is_empty()
-            && let Some(what) = state.oddities(robot).into_iter().next()
-        {
-            let first = Some(Oddity { state: place(), what });
-            block.summary.odd_states.add(OddStates { states: 1, first });
+        if !impact.notes.is_empty() {
+            // They are noted first.
+            let odd = state.oddities(robot);
+            // That nothing touches, the verdict says.
+            let mut others = impact.notes.iter().skip(odd.len()).filter(|_| !impact.contacts.is_empty());
+            let other = others.find(|note| !note.contains(AT_REST)).cloned();
+            let of = |what| OddStates { states: 1, first: Some(Oddity { state: place(), what }) };
+            odd.into_iter().next().into_iter().for_each(|what| block.summary.odd_states.add(of(what)));
+            other.into_iter().for_each(|what| block.summary.noted.add(of(what)));
         }
         match impact.analyzed() {
             Ok(analysis) => {

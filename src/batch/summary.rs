@@ -57,6 +57,9 @@ pub struct Summary {
     /// States with odd numbers: beyond limits, or as in other units.
     #[serde(skip_serializing_if = "OddStates::is_empty")]
     pub odd_states: OddStates,
+    /// States with other notes than on these and on contacts at rest.
+    #[serde(skip_serializing_if = "OddStates::is_empty")]
+    pub noted: OddStates,
     /// Touchdowns that were taken above the ground, of feet whose heights have no noise.
     #[serde(skip_serializing_if = "is_zero")]
     pub early: u64,
@@ -121,7 +124,7 @@ pub struct MoreFriction {
     pub greatest: Option<Needed>,
 }
 
-/// States with odd numbers (see [`State::oddities`](crate::State::oddities)).
+/// States with odd numbers (see [`State::oddities`](crate::State::oddities)), or with other notes.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct OddStates {
     /// How many there are.
@@ -242,6 +245,7 @@ impl Summary {
         self.other_modes += following.other_modes;
         self.own_friction += following.own_friction;
         self.odd_states.add(following.odd_states);
+        self.noted.add(following.noted);
         self.early += following.early;
         self.slowed += following.slowed;
         self.deep += following.deep;
@@ -361,6 +365,9 @@ impl fmt::Display for Summary {
         }
         if let OddStates { states, first: Some(Oddity { state, what }) } = &self.odd_states {
             writeln!(f, "states with odd numbers: {states}, the first {state}: {}", visible(what))?;
+        }
+        if let OddStates { states, first: Some(Oddity { state, what }) } = &self.noted {
+            writeln!(f, "states with notes: {states}, the first {state}: {}", visible(what))?;
         }
         if self.states > 1 && self.verdicts.0[Verdict::NoContact as usize] == self.states {
             writeln!(f, "no foot touches the ground in any state (see `place`, and `touchdowns` of recordings)")?;

@@ -42,6 +42,29 @@ impl Footing<'_> {
         nearest
     }
 
+    /// The feet of bodies that make none of the `contacts` and are no more than so high above the ground, each as the
+    /// contact that it would make.
+    pub fn near(&self, contacts: &[Contact], height: f64) -> Vec<Contact> {
+        let Self { placement, surface, .. } = self;
+        let body = |body: usize| self.robot.rigid_body(body);
+        let is_open = |foot: &&Foot| contacts.iter().all(|contact| body(contact.body) != body(foot.body));
+        let is_near = |foot: &&Foot| !surface.is_out_of_reach(foot, placement, height);
+        let mut near: Vec<Contact> = Vec::new();
+        for foot in self.feet.iter().filter(|foot| self.named().is_none() && is_near(foot) && is_open(foot)) {
+            let touch = surface.first_touch(foot, placement, surface.rounding(placement, self.feet.size()));
+            let Some(own) = touch.filter(|touch| touch.gap <= height).map(|touch| self.contact(foot.link, touch))
+            else {
+                continue;
+            };
+            match near.iter_mut().find(|other| body(other.body) == body(own.body)) {
+                Some(other) if own.gap < other.gap => *other = own,
+                Some(_) => {}
+                None => near.push(own),
+            }
+        }
+        near
+    }
+
     /// The link of the shape that reaches farthest below all of the `contacts` of its body, and how far \[m\].
     pub fn below_contacts(&self, contacts: &[Contact]) -> Option<(usize, f64)> {
         let Self { placement, surface, .. } = self;

@@ -38,7 +38,7 @@ pub fn too_many_contacts(contacts: usize) -> Error {
 }
 
 /// How many times harder than their motion needs contacts may push before that is noted.
-const HARD: f64 = 1e6;
+const HARD: f64 = 1e3;
 
 impl Analysis {
     /// What a reader of it should know, in sentences; `problem` is the one that was analyzed, of a robot of this `mass`
@@ -57,7 +57,8 @@ impl Analysis {
                 let rows = outcome.impulse.as_flattened().iter().enumerate();
                 let push =
                     rows.map(|(row, own)| own.abs() * problem.delassus(row, row).min(lightest)).fold(0.0, f64::max);
-                push / fastest.max(most(&outcome.velocity_after))
+                let fastest = fastest.max(most(&outcome.velocity_after));
+                if fastest > 0.0 { push / fastest } else { 0.0 }
             };
             self.outcomes.iter().filter(|outcome| outcome.decided).map(excess).fold(0.0, f64::max)
         };
@@ -65,7 +66,8 @@ impl Analysis {
         let hardest = Some(hardest(f64::INFINITY)).filter(is_hard).map(|_| hardest(1.0 / mass())).filter(is_hard)?;
         Some(format!(
             "contacts push against each other {hardest:.0e} times harder than their motion needs: the last digits of the \
-             pose or of the matrices decide, as where rounding tilts a flat sole, and what follows has fewer digits"
+             pose or of the matrices decide, and what follows has fewer digits; a sole that is meant to be flat needs a level \
+             pose or finite friction"
         ))
     }
 }

@@ -11,6 +11,12 @@ use crate::state::{Scene, State};
 /// A foot that comes down from no more than this part of the robot's size has nearly touched.
 const NEAR_MISS: f64 = 1e-2;
 
+/// A foot that does not move is taken to have nearly stood up to this part of the robot's size.
+const STANDS: f64 = 1e-4;
+
+/// A foot that leaves the ground no faster does not move \[m/s\].
+const SLOW: f64 = 1e-2;
+
 /// Named contacts that differ in height by more than this part of the robot's size cannot touch the ground together.
 const UNEVEN: f64 = 0.1;
 
@@ -33,7 +39,7 @@ impl Pipeline<'_> {
     pub(super) fn note_contacts(
         &self,
         scene: &Scene,
-        (contacts, nearest): (&[Contact], Option<NearestFoot>),
+        (contacts, nearest, near): (&[Contact], Option<NearestFoot>, &[NearestFoot]),
         (placement, footing): (&Placement, &Footing),
         notes: &mut Vec<String>,
     ) {
@@ -48,7 +54,7 @@ impl Pipeline<'_> {
             }
             None => {
                 notes.extend(beyond_size("a contact tolerance", self.tolerance(), self.feet.size()));
-                self.note_near_miss(contacts, nearest, notes);
+                self.note_near_misses(contacts, nearest, near, notes);
             }
         }
         notes.extend(self.upside_down(contacts, placement));
@@ -109,46 +115,64 @@ impl Pipeline<'_> {
         })
     }
 
-    /// Notes that nothing touches, and a foot that comes down just above the ground.
-    fn note_near_miss(&self, contacts: &[Contact], nearest: Option<NearestFoot>, notes: &mut Vec<String>) {
-        let Some(NearestFoot { link, height, velocity }) = nearest else {
-            let why =
-                if self.feet.iter().next().is_none() { "the robot has no feet" } else { "no foot is above the ground" };
-            if contacts.is_empty() {
-                notes.push(format!("{why}: name contact points by `contacts` in the state or by `feet`"));
-            }
-            return;
+    /// How far above the ground a foot that comes down has nearly touched \[m\].
+    pub(super) fn near_miss(&self) -> f64 {
+        NEAR_MISS * self.feet.size()
+    }
+
+    /// Notes that nothing touches, and feet that come down or stand just above the ground: the `nearest` one, and those
+    /// that are `near` although others of their bodies do not touch.
+    fn note_near_misses(
+        &self,
+        contacts: &[Contact],
+        nearest: Option<NearestFoot>,
+        near: &[NearestFoot],
+        notes: &mut Vec<String>,
+    ) {
+        let is_near = |NearestFoot { height, velocity, .. }: &NearestFoot| {
+            let comes = *height <= self.near_miss() && velocity[1] < 0.0;
+            let stands = *height <= STANDS * self.feet.size() && velocity[1] < SLOW;
+            *height > 0.0 && (comes || stands)
         };
-        let is_near = height > 0.0 && height <= NEAR_MISS * self.feet.size() && velocity[1] < 0.0;
-        if !is_near && !contacts.is_empty() {
-            return;
-        }
-        let name = &self.robot.links[link].name;
-        let moving = along_normal(velocity);
         // A little more than the height, in two digits, next to four of the height.
-        let enough = 1.1 * height;
-        // Only beyond the end of a profile a foot that does not touch is lower.
-        let place = if height < 0.0 { "below its end" } else { "above it" };
-        let height = rounded(height.abs());
-        let by_base = if self.assembly.plan.floating { "`place: lowest`" } else { "its joints" };
-        notes.push(match (contacts.is_empty(), is_near) {
-            (true, true) => format!(
-                "nothing touches the ground: the lowest foot, {name}, is {height} m above it and {moving}; to let \
-                 it touch, put it there by {by_base}, or by the option `contact_tolerance: {enough:.1e}`"
-            ),
-            (true, false) => format!(
-                "nothing touches the ground: the lowest foot, {name}, is {height} m {place} and {moving}; put it \
-                 there by {by_base}"
-            ),
-            (false, _) => {
+        let enough = |height: f64| 1.1 * height;
+        if !contacts.is_empty() {
+            let another = nearest.filter(|own| near.iter().all(|other| other.link != own.link));
+            for &NearestFoot { link, height, .. } in another.iter().chain(near).filter(|foot| is_near(foot)) {
                 let touches = contacts.iter().any(|contact| contact.link == link);
                 let which = if touches { "another point of " } else { "" };
-                format!(
-                    "{which}{name} nearly touches, {height} m above the ground: to let it touch, give \
-                     the option `contact_tolerance: {enough:.1e}`, or correct the pose"
-                )
+                notes.push(format!(
+                    "{which}{} nearly touches, {} m above the ground: to let it touch, give the option \
+                     `contact_tolerance: {:.1e}`, or correct the pose",
+                    self.robot.links[link].name,
+                    rounded(height),
+                    enough(height)
+                ));
             }
-        });
+            return;
+        }
+        let Some(foot) = nearest else {
+            let why =
+                if self.feet.iter().next().is_none() { "the robot has no feet" } else { "no foot is above the ground" };
+            notes.push(format!("{why}: name contact points by `contacts` in the state or by `feet`"));
+            return;
+        };
+        let NearestFoot { link, height, velocity } = foot;
+        let (name, moving) = (&self.robot.links[link].name, along_normal(velocity));
+        // Only beyond the end of a profile a foot that does not touch is lower.
+        let place = if height < 0.0 { "below its end" } else { "above it" };
+        let shown = rounded(height.abs());
+        let by_base = if self.assembly.plan.floating { "`place: lowest`" } else { "its joints" };
+        let remedy = match is_near(&foot) {
+            true => format!(
+                "to let it touch, put it there by {by_base}, or by the option `contact_tolerance: {:.1e}`",
+                enough(height)
+            ),
+            false => format!("put it there by {by_base}"),
+        };
+        notes.push(format!(
+            "nothing touches the ground: the lowest foot, {name}, is {shown} m {place} and {moving}; {remedy}"
+        ));
     }
 }
 

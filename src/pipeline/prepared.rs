@@ -135,7 +135,9 @@ impl Pipeline<'_> {
         check_matrix_size(contacts.len())?;
         *nearest = if self.options.brief { None } else { self.open_foot(&footing, contacts, velocity) };
         if !self.options.brief {
-            self.note_contacts(scene, (contacts, *nearest), (placement, &footing), notes);
+            let near = footing.near(contacts, self.near_miss()).into_iter();
+            let near: Vec<NearestFoot> = near.filter_map(|foot| self.moving(&foot, velocity)).collect();
+            self.note_contacts(scene, (contacts, *nearest, &near), (placement, &footing), notes);
             notes.extend(state.uncertainty.as_ref().and_then(Uncertainty::without_width));
         }
         *stance = foot.as_ref().and_then(|foot| place_of(foot, contacts));
@@ -354,7 +356,11 @@ impl Pipeline<'_> {
 
     /// The lowest foot that does not touch, and how it moves.
     fn open_foot(&self, footing: &Footing, contacts: &[Contact], velocity: &[f64]) -> Option<NearestFoot> {
-        let foot = footing.nearest(contacts)?;
+        footing.nearest(contacts).and_then(|foot| self.moving(&foot, velocity))
+    }
+
+    /// How a foot moves that does not touch.
+    fn moving(&self, foot: &Contact, velocity: &[f64]) -> Option<NearestFoot> {
         let point = foot.point_of();
         let (moving, [tangent, normal]) = (self.assembly.velocity_of(&point, velocity), point.axes());
         let velocity = [tangent.dot(moving), normal.dot(moving)];

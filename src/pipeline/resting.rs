@@ -25,6 +25,8 @@ use std::ops::RangeInclusive;
 
 /// Only if no more than this part of what its terms add up to is left of a velocity, digits of the state explain it.
 const CANCELED: f64 = 1e-4;
+/// A contact that moves by no more than this part of what its terms add up to may be one that stands.
+const SUSPICIOUS: f64 = 1e-3;
 /// Numbers with so many significant digits were rounded to them; with fewer they are meant, with more they are f64.
 const ROUNDED: RangeInclusive<usize> = 6..=15;
 
@@ -65,9 +67,7 @@ impl Pipeline<'_> {
         for (index, contact) in contacts.iter().enumerate() {
             let [slow, bound] =
                 [self.assembly.workspace.contact_velocity[index], self.bounds.velocity[index]].map(length);
-            // A stance is exactly at rest, and so are other contacts of its body if that does not turn.
-            let is_of_foot = self.assembly.loops.is_empty() && foot.is_some_and(|foot| foot.body == contact.body);
-            if place == Some(index) || (slow == 0.0 && is_of_foot) {
+            if place == Some(index) {
                 continue;
             }
             // Of what is known to its uncertainty no speed is taken as zero, unless that is asked for.
@@ -77,9 +77,10 @@ impl Pipeline<'_> {
             let name = &contact.1.name;
             if let Some(because) = because {
                 resting[index] = true;
-                // So small a bound has room for underflow alone.
+                // So small a bound has room for underflow alone; and what stands with a stance is not worth a word.
+                let is_of_foot = self.assembly.loops.is_empty() && foot.is_some_and(|foot| foot.body == contact.1.body);
                 let is_blurred = bound > f64::MIN_POSITIVE.sqrt() && self.options.resting_speed.is_none();
-                if !self.options.brief && (slow > 0.0 || is_blurred) {
+                if !self.options.brief && (slow > 0.0 || is_blurred && !is_of_foot) {
                     let moves =
                         if slow > 0.0 { format!(" although it moves at {slow:.1e} m/s") } else { String::new() };
                     notes.push(format!("{name}{AT_REST}{moves} ({because})"));
@@ -88,6 +89,16 @@ impl Pipeline<'_> {
                 notes.push(format!(
                     "{name} moves at {slow:.1e} m/s, which is within the rounding of its velocity: if it is at rest, \
                      say so by `stance` or the option `resting_speed`"
+                ));
+            } else if !self.options.brief
+                && self.options.resting_speed.is_none()
+                && slow > 0.0
+                && slow <= SUSPICIOUS * self.bounds.terms(index)
+            {
+                notes.push(format!(
+                    "{name} moves at {slow:.1e} m/s, far slower than the rates that add up to it: if it stands, say so by \
+                     `stance` or the option `resting_speed: {:.0e}`",
+                    2.0 * slow
                 ));
             }
         }
@@ -250,19 +261,35 @@ fn length([t, n]: Pair<f64>) -> f64 {
 }
 
 /// Half a unit in the last decimal place to which each number was rounded: its own if it has six to fifteen significant
-/// digits (in the shortest decimal that is the number), or its rounding to f32, if that is greater and the number is one
-/// of these; if it has fewer, the finest of the others, because the zeros at its end are lost; else 0.
+/// digits (in the shortest decimal that is the number). If it has fewer, because the zeros at its end are lost, the
+/// coarser of the finest place of the others and of as many digits as these have; else 0. Numbers of f32, and lists that
+/// may be the text of f32, have its rounding, if that is greater.
 fn half_units(numbers: &[f64]) -> Vec<f64> {
     let last_places: Vec<(usize, i32)> = numbers.iter().map(|&number| last_place(number)).collect();
-    let finest = last_places.iter().filter(|(digits, _)| ROUNDED.contains(digits)).map(|&(_, place)| place).min();
-    let half = |place: i32| 0.5 * libm::exp10(f64::from(place));
-    let half_unit = |(&number, &(digits, place)): (&f64, &(usize, i32))| match finest {
-        Some(_) if ROUNDED.contains(&digits) && is_single(number) => half(place).max(0.5 * ULP_OF_F32 * number.abs()),
-        Some(_) if ROUNDED.contains(&digits) => half(place),
-        Some(finest) if digits < *ROUNDED.start() => half(finest),
-        _ => 0.0,
+    let rounded = || last_places.iter().filter(|(digits, _)| ROUNDED.contains(digits));
+    let Some(finest) = rounded().map(|&(_, place)| place).min() else { return vec![0.0; numbers.len()] };
+    let most = rounded().map(|&(digits, _)| digits).max().unwrap_or_default() as i32;
+    let are_text_of_f32 = numbers.iter().all(|&number| is_text_of_single(number));
+    let are_of_f32 = numbers.iter().any(|&number| is_single(number) && !is_text_of_single(number));
+    let half_unit = |(&number, &(digits, place)): (&f64, &(usize, i32))| {
+        let of_f32 = 0.5 * ULP_OF_F32 * number.abs();
+        let place = match digits {
+            0 => finest,
+            digits if digits < *ROUNDED.start() && !is_text_of_single(number) => return of_f32,
+            digits if digits < *ROUNDED.start() => finest.max(place + digits as i32 - most),
+            digits if ROUNDED.contains(&digits) => place,
+            _ => return 0.0,
+        };
+        let half = 0.5 * libm::exp10(f64::from(place));
+        let is_of_f32 = are_text_of_f32 || are_of_f32 && is_single(number);
+        if is_of_f32 { half.max(of_f32) } else { half }
     };
     numbers.iter().zip(&last_places).map(half_unit).collect()
+}
+
+/// Whether the shortest decimal of the nearest number of f32 is the shortest one of this number.
+fn is_text_of_single(number: f64) -> bool {
+    zmij::Buffer::new().format(number as f32).parse() == Ok(number)
 }
 
 /// Whether a number is one of f32, to which it was rounded then, whatever digits it has in f64.
@@ -298,8 +325,8 @@ mod tests {
         let half = |numbers: &[f64]| half_units(numbers);
         // As `%.6f` writes them.
         assert_eq!(half(&[0.566082, -1.191566, 0.5, 0.0]), [5e-7; 4]);
-        // As `%.6g` does.
-        assert_eq!(half(&[0.00123457, -5.88049, 1234.56]), [5e-9, 5e-6, 5e-3]);
+        // As `%.6g` does, where zeros at the end are lost.
+        assert_eq!(half(&[0.00123457, -5.88049, 1234.56, -1.447, 0.0]), [5e-9, 5e-6, 5e-3, 5e-6, 5e-9]);
     }
 
     #[test]
@@ -316,13 +343,17 @@ mod tests {
     fn numbers_of_f32_were_rounded_to_it() {
         let widened = [0.339_661_72_f32, -1.191_566_f32, 0.5].map(f64::from);
         let half = f64::exp2(-24.0);
-        assert_eq!(half_units(&widened), [widened[0] * half, 5e-7, 5e-9]);
+        assert_eq!(half_units(&widened), [widened[0] * half, 5e-7, 0.5 * half]);
+        // As NumPy prints them, and one that has four digits in f32.
+        let printed = [0.123_456_79_f32, -1.234_567_8].map(|own| own.to_string().parse().unwrap());
+        assert_eq!(half_units(&printed), printed.map(|own: f64| own.abs() * half));
+        assert_eq!(half_units(&[f64::from(0.7275_f32), 0.123456])[0], f64::from(0.7275_f32) * half);
     }
 
     #[test]
     fn short_numbers_are_meant_and_long_ones_are_f64() {
         assert_eq!(half_units(&[1.0, -0.25, 12345.0, 0.0]), [0.0; 4]);
         assert_eq!(half_units(&[0.1 + 0.2, 1.0 / 3.0, 1.0]), [0.0; 3]);
-        assert_eq!(half_units(&[0.1 + 0.2, 0.123456, 1.0]), [0.0, 5e-7, 5e-7]);
+        assert_eq!(half_units(&[0.1 + 0.2, 0.123456, 1.0]), [0.0, 5e-7, 5e-6]);
     }
 }

@@ -6,9 +6,10 @@ use crate::support::mechanism::{point, turned};
 use crate::support::random::Random;
 use crate::support::scaled::near;
 use crate::support::urdf::{self, Axis, HINGE};
+use heelstrike::Robot;
 use heelstrike::impact::Mode::{Separate, SlideMinus, Stick};
 use heelstrike::impact::Verdict;
-use heelstrike::pipeline::Options;
+use heelstrike::pipeline::{Impact, Options};
 use serde_json::{Value, json};
 
 #[test]
@@ -155,4 +156,77 @@ fn what_rests_as_given_rests_next_to_a_loop() {
         assert!(is_proven(&found), "seed {seed}");
         assert_eq!(found.analysis.expect("an analysis").verdict, Verdict::NoImpact, "seed {seed}");
     }
+}
+
+/// A torso on two legs of thigh, shank and a flat foot whose sole is 0.05 m below its ankle.
+fn flat_footed() -> Robot {
+    let mut parts = vec![urdf::link("torso", 10.0, [0.0, 0.25], 0.4, "")];
+    for side in ["left", "right"] {
+        let [thigh, shank, foot] = ["thigh", "shank", "foot"].map(|part| format!("{side}_{part}"));
+        let sole = urdf::collision([0.0625, -0.03], "box size=\"0.25 0.1 0.04\"");
+        parts.extend([
+            urdf::link(&thigh, 1.5, [0.0, -0.18], 0.02, "") + &urdf::link(&shank, 0.8, [0.0, -0.2], 0.01, ""),
+            urdf::link(&foot, 0.4, [0.06, -0.03], 0.001, &sole),
+            urdf::joint(format!("{side}_hip"), HINGE, ["torso", &thigh], [0.0; 2], ""),
+            urdf::joint(format!("{side}_knee"), HINGE, [&thigh, &shank], [0.0, -0.4], ""),
+            urdf::joint(format!("{side}_ankle"), HINGE, [&shank, &foot], [0.0, -0.4], ""),
+        ]);
+    }
+    robot(&urdf::robot(&parts))
+}
+
+/// At angles of hip and knee of each leg, and as many rates, with the feet level: as many digits are kept as decimals say.
+fn level(angles: [[f64; 2]; 2], rates: [[f64; 2]; 2], decimals: i32) -> Value {
+    let rounded = |number: f64| (number * 10_f64.powi(decimals)).round() / 10_f64.powi(decimals);
+    let part = |numbers: [[f64; 2]; 2], pitch: f64| {
+        let mut joints = serde_json::Map::new();
+        for (side, [hip, knee]) in ["left", "right"].into_iter().zip(numbers) {
+            let all = [("hip", hip), ("knee", knee), ("ankle", rounded(-pitch - hip - knee))];
+            joints.extend(all.map(|(joint, own)| (format!("{side}_{joint}"), json!(own))));
+        }
+        json!({"base": {"pitch": pitch}, "joints": joints})
+    };
+    json!({"position": part(angles, 0.05), "velocity": part(rates, 1.04), "friction": 0.8})
+}
+
+/// Of rates that cancel in decimals f64 leaves some 1e-17 rad/s, of which J v of the other corner may round to 0.
+#[test]
+fn the_whole_sole_stands_with_its_stance() {
+    let robot = flat_footed();
+    let mut random = Random::new(1);
+    for _ in 0..100 {
+        let mut hundredth = || f64::from(random.whole(-199, 199) as i32) / 100.0;
+        let [own, other, rates] = [(); 3].map(|()| [hundredth(), hundredth()]);
+        let mut state = level([own, other], [rates, [0.85, 1.63]], 2);
+        state["stance"] = json!("left_foot");
+        let Ok(found) = try_impact(&robot, Options::default(), &state) else { continue };
+        assert_eq!(found.contacts.len(), 2, "{state}");
+        let analysis = found.analysis.as_ref().expect("an answer");
+        assert_eq!((analysis.verdict, analysis.proven), (Verdict::NoImpact, true), "{state}");
+        assert_eq!(modes(&found)[0], [Stick; 2], "{state}");
+    }
+}
+
+/// Both stand, but the digits of the pose lift one of them, which no rate says; and noise moves the other.
+#[test]
+fn feet_that_nearly_stand_are_noted() {
+    let robot = flat_footed();
+    let standing = level([[0.3, -0.6], [0.5, -1.0]], [[0.0; 2]; 2], 2);
+    let with = |knee: f64, rate: f64| {
+        let mut state = standing.clone();
+        // As long as the other leg, to 2e-5 m.
+        let long = 0.4 * (0.35_f64.cos() + 0.25_f64.cos());
+        let hip = (long / 0.8).acos();
+        state["position"]["joints"]["right_hip"] = json!(hip - 0.05);
+        state["position"]["joints"]["right_knee"] = json!(-2.0 * hip + knee);
+        state["position"]["joints"]["right_ankle"] = json!(hip - knee);
+        state["velocity"] = json!({"base": {"pitch": rate}, "joints": {"left_hip": 1.234_567_891_234e-9 - rate, "right_hip": 1.234_567_891_234e-9 - rate}});
+        state["place"] = json!("lowest");
+        impact(&robot, state)
+    };
+    let noted = |found: &Impact, what: &str| found.notes.iter().any(|note| note.contains(what));
+    let open = with(1e-4, 0.0);
+    assert!(noted(&open, "_foot nearly touches, "), "{:?}", open.notes);
+    let noisy = with(0.0, 0.5);
+    assert!(noted(&noisy, "_foot/0 moves at ") && noted(&noisy, "if it stands"), "{:?}", noisy.notes);
 }

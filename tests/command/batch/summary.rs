@@ -172,3 +172,16 @@ fn a_walk_of_six_decimals_has_the_same_touchdowns() {
     }
     assert!(!rounded(4).contains("at rest"));
 }
+
+#[test]
+fn states_with_notes_are_counted_and_the_first_is_named() {
+    let walk = ["batch", RAMONE, "examples/gait/ramone_walk.csv", "--friction", "0.6"];
+    let path = place("noted.json");
+    let run = heelstrike(&[&walk[..], &["-o", &place("noted.ndjson"), "--summary", &path]].concat()).well();
+    let noted = &parsed(&read(&path))["noted"];
+    let lines = read(&place("noted.ndjson"));
+    let near: Vec<&str> = lines.lines().filter(|line| line.contains("nearly touches")).collect();
+    assert_eq!(noted["states"], near.len());
+    assert_eq!(noted["first"]["line"], parsed(near[0])["line"]);
+    assert!(run.stderr.contains(&format!("states with notes: {}, the first gait/", near.len())), "{}", run.stderr);
+}
