@@ -50,7 +50,7 @@ impl Footing<'_> {
         let is_open = |foot: &&Foot| contacts.iter().all(|contact| body(contact.body) != body(foot.body));
         let is_near = |foot: &&Foot| !surface.is_out_of_reach(foot, placement, height);
         let mut near: Vec<Contact> = Vec::new();
-        for foot in self.feet.iter().filter(|foot| self.named().is_none() && is_near(foot) && is_open(foot)) {
+        for foot in self.feet.iter().filter(|foot| is_open(foot) && is_near(foot)) {
             let touch = surface.first_touch(foot, placement, surface.rounding(placement, self.feet.size()));
             let Some(own) = touch.filter(|touch| touch.gap <= height).map(|touch| self.contact(foot.link, touch))
             else {

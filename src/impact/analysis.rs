@@ -44,11 +44,14 @@ impl Analysis {
     /// What a reader of it should know, in sentences; `problem` is the one that was analyzed, of a robot of this `mass`
     /// \[kg\], or 0 of none.
     pub fn notes(&self, problem: &ContactProblem, mass: impl FnOnce() -> f64) -> impl Iterator<Item = String> {
-        [self.energy_note(), self.balance_note(problem, mass), self.unlisted_note()].into_iter().flatten()
+        self.energy_note().into_iter().chain(self.balance_note(problem, mass)).chain(self.unlisted_note())
     }
 
     /// A note if contacts push against each other far harder than they move: then the last digits of what is given decide.
     pub(crate) fn balance_note(&self, problem: &ContactProblem, mass: impl FnOnce() -> f64) -> Option<String> {
+        if self.verdict == Verdict::NoImpact {
+            return None;
+        }
         let most = |list: &[Pair<f64>]| list.as_flattened().iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
         let fastest = most(problem.velocity_before()).max(most(problem.velocity_free()));
         // What a light foot passes on moves the whole robot.

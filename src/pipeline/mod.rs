@@ -366,7 +366,9 @@ impl<'r> Pipeline<'r> {
         }
         let left_out = if brief { Vec::new() } else { self.left_out(scene, &prepared) };
         let Impact { notes, problem, .. } = &mut *prepared.impact;
-        notes.extend(analysis.iter().flat_map(|analysis| analysis.notes(problem, || self.robot.mass())));
+        if let Some(analysis) = &analysis {
+            notes.extend(analysis.notes(problem, || self.robot.mass()));
+        }
         let matrices = self.options.matrices.then(|| self.matrices());
         let followed = analysis.as_mut().filter(|_| next).map(|analysis| self.follow(state, &prepared, analysis));
         prepared.impact.notes.extend(followed.into_iter().flatten());

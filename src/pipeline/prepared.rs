@@ -135,8 +135,10 @@ impl Pipeline<'_> {
         check_matrix_size(contacts.len())?;
         *nearest = if self.options.brief { None } else { self.open_foot(&footing, contacts, velocity) };
         if !self.options.brief {
-            let near = footing.near(contacts, self.near_miss()).into_iter();
-            let near: Vec<NearestFoot> = near.filter_map(|foot| self.moving(&foot, velocity)).collect();
+            // None is lower than the nearest one.
+            let is_near = nearest.is_some_and(|foot| foot.height <= self.near_miss());
+            let near = if is_near { footing.near(contacts, self.near_miss()) } else { Vec::new() };
+            let near: Vec<NearestFoot> = near.iter().filter_map(|foot| self.moving(foot, velocity)).collect();
             self.note_contacts(scene, (contacts, *nearest, &near), (placement, &footing), notes);
             notes.extend(state.uncertainty.as_ref().and_then(Uncertainty::without_width));
         }
