@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from ._core import Answers
@@ -35,9 +36,9 @@ def to_arrow(answers: Answers, id: Any = None) -> Any:
     def named(values: Any, names: list[str]) -> Any:
         return pa.array(names).take(pa.array(values, mask=values < 0))
 
-    def texts(values: list[str | None], places: Any) -> Any:
+    def texts(values: Sequence[str | None], places: Sequence[int | None]) -> Any:
         # Not by `take`, which gives no more than 2 GiB.
-        return pa.array((None if place is None else values[place] for place in places.tolist()), pa.string())
+        return pa.array((None if place is None else values[place] for place in places), pa.string())
 
     ids = np.arange(len(answers)) if id is None else id
     ids = ids if isinstance(ids, (pa.Array, pa.ChunkedArray)) else pa.array(ids)
@@ -58,9 +59,9 @@ def to_arrow(answers: Answers, id: Any = None) -> Any:
         cells.append(named(answers.modes[:, contact], modes).take(at))
         cells += [per_outcome(vectors[:, contact, axis]) for axis in (0, 1)]
     cells += map(per_outcome, (answers.acceleration if is_forces else answers.velocity_after).T)
-    own = np.where(nothing, None, outcome)
+    own, of_state = at.to_pylist(), state.tolist()
     cells += [texts(answers.border, own), per_outcome(answers.family), texts(answers.families, own)]
-    cells += [texts(answers.error, state), texts(answers.notes, state)]
+    cells += [texts(answers.error, of_state), texts(answers.notes, of_state)]
     return pa.table(cells, names=answers.columns)
 
 
