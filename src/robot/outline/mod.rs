@@ -140,7 +140,7 @@ mod tests {
         // Thinner than what a mesh's side may bulge: the side below is the sole.
         assert_outline(&flat(0.2, 2e-8), unturned, 0.0, &rectangle(0.1, 1e-8), 0.0);
         assert_outline(&flat(0.0, 0.0), unturned, 0.0, &[CENTER], 0.0);
-        // Shorter than what f64 tells apart there.
+        // So short that both ends are the same in f64.
         assert_outline(&Geometry::Capsule { radius: 0.05, length: 1e-17 }, unturned, 0.0, &[CENTER], 0.05);
         assert_outline(&flat(1e-18, 0.4), unturned, 0.0, &line([0.1, -0.5], [0.1, -0.3 + 0.2]), 0.0);
         assert_outline(&Geometry::Sphere { radius: 0.0 }, [1.0, 2.0, 3.0], 0.0, &[CENTER], 0.0);
