@@ -282,8 +282,12 @@ impl Answerer<'_> {
             let mut others = impact.notes.iter().skip(odd.len()).filter(|_| !impact.contacts.is_empty());
             let other = others.find(|note| !note.contains(AT_REST)).cloned();
             let of = |what| OddStates { states: 1, first: Some(Oddity { state: place(), what }) };
-            odd.into_iter().next().into_iter().for_each(|what| block.summary.odd_states.add(of(what)));
-            other.into_iter().for_each(|what| block.summary.noted.add(of(what)));
+            if let Some(what) = odd.into_iter().next() {
+                block.summary.odd_states.add(of(what));
+            }
+            if let Some(what) = other {
+                block.summary.noted.add(of(what));
+            }
         }
         match impact.analyzed() {
             Ok(analysis) => {

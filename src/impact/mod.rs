@@ -1,6 +1,6 @@
 //! From a contact problem to every outcome; knows no robot.
 //!
-//! Read `problem`, then [`enumerate`] (numbers), `slack` (inequalities), and `analysis`, where they meet.
+//! Read `problem`, then `enumerate` (numbers), `slack` (inequalities), and `analysis`, where they meet.
 
 mod linear;
 mod simplex;

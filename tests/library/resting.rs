@@ -193,18 +193,21 @@ fn level(angles: [[f64; 2]; 2], rates: [[f64; 2]; 2], decimals: i32) -> Value {
 #[test]
 fn the_whole_sole_stands_with_its_stance() {
     let robot = flat_footed();
-    let mut random = Random::new(1);
-    for _ in 0..100 {
+    let (mut random, mut answered) = (Random::new(1), 0);
+    for _ in 0..200 {
         let mut hundredth = || f64::from(random.whole(-199, 199) as i32) / 100.0;
         let [own, other, rates] = [(); 3].map(|()| [hundredth(), hundredth()]);
         let mut state = level([own, other], [rates, [0.85, 1.63]], 2);
         state["stance"] = json!("left_foot");
+        // In some poses the other leg is in the ground.
         let Ok(found) = try_impact(&robot, Options::default(), &state) else { continue };
+        answered += 1;
         assert_eq!(found.contacts.len(), 2, "{state}");
         let analysis = found.analysis.as_ref().expect("an answer");
         assert_eq!((analysis.verdict, analysis.proven), (Verdict::NoImpact, true), "{state}");
         assert_eq!(modes(&found)[0], [Stick; 2], "{state}");
     }
+    assert!(answered > 50, "{answered}");
 }
 
 /// Both stand, but the digits of the pose lift one of them, which no rate says; and noise moves the other.
