@@ -14,6 +14,7 @@ use super::collected::{
 use super::enumerate::{Labels, Tableau};
 use super::explanation::explanation;
 use super::families::FamiliesPass;
+use super::kernel::Kernel;
 use super::outcome::{Analysis, Explanation, OpenCombinations, Outcome, Verdict};
 use super::passes::{F64Pass, UndecidedPass};
 use super::problem::{ContactProblem, Errors, Ladder, Precision, PrecisionTask, Remembered, escalate};
@@ -26,7 +27,6 @@ use crate::error::{Error, Reason, Result};
 use crate::law::{Impulse, Mode};
 use crate::planar::Pair;
 use crate::scalar::Rounded;
-use std::collections::BTreeMap;
 
 /// The most contacts of a problem (4^16 combinations are four billions).
 pub const CONTACT_LIMIT: usize = 16;
@@ -233,7 +233,7 @@ impl Scratch {
             let again = std::mem::take(&mut undecided);
             let (labels, collected) = (&mut self.labels, &mut collected);
             let mut pass = F64Pass { labels, shares: false, regular, undecided, collected };
-            again.iter().for_each(|pending| self.tableau.visit_one(&pending.modes, &mut pass));
+            again.iter().for_each(|own| self.tableau.visit_one(&own.pending.modes, &mut pass));
             F64Pass { regular, undecided, .. } = pass;
         }
         let is_asked = !(options.brief || self.tableau.without_slip);
@@ -245,7 +245,8 @@ impl Scratch {
         }
         if !undecided.is_empty() {
             let first = Precision::first(regular || is_searched && self.relaxation.is_regular, problem);
-            let mut pass = UndecidedPass { undecided, blunt: BTreeMap::new(), kernel, collected: &mut collected };
+            let known = Kernel::of_shared(&shared);
+            let mut pass = UndecidedPass { undecided, kernel, shared: known, collected: &mut collected };
             let is_enclosed = !shared.is_empty() && errors.delassus.is_finite() && scale.is_far_from_underflow();
             if !(is_enclosed && pass.attempt(&scale.enclosed(problem, errors, shared), Precision::Enclosed)) {
                 escalate(remembered, first, &mut pass);

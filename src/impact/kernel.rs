@@ -30,12 +30,12 @@ pub struct Relation {
 
 impl Kernel {
     /// What is known of contacts that share a tangential row, whatever else they depend on.
-    pub fn of_shared(shared: impl Iterator<Item = Option<usize>>) -> Self {
-        let relation = |(contact, with): (usize, Option<usize>)| {
+    pub fn of_shared(shared: &[Option<usize>]) -> Self {
+        let relation = |(contact, &with): (usize, &Option<usize>)| {
             let terms = vec![(2 * with?, Ordering::Greater), (2 * contact, Ordering::Less)];
             Some(Relation { terms, constant: Ordering::Equal })
         };
-        Self { relations: shared.enumerate().filter_map(relation).collect() }
+        Self { relations: shared.iter().enumerate().filter_map(relation).collect() }
     }
 
     pub fn of<T: Ordered>(problem: &ContactProblem<T>) -> Result<Self, Unsettled> {

@@ -6,7 +6,7 @@ use super::digits::{Numbers, after, f64_serves};
 use super::enumerate::{Labels, Leaf, Visitor};
 use super::kernel::Kernel;
 use super::linear::Unsettled;
-use super::outcome::{Motion, Rejection};
+use super::outcome::{Motion, Rejection, RejectionReason};
 use super::problem::{ContactProblem, Precision, PrecisionTask};
 use super::reading::{motion, read, rejects};
 use super::slack::Scale;
@@ -14,7 +14,6 @@ use crate::budget::{ROUNDS, is_spent_after};
 use crate::law::{Impulse, Law, Mode};
 use crate::planar::Pair;
 use crate::scalar::{Ordered, Rounded, Sign};
-use std::collections::BTreeMap;
 
 /// Combinations that are tried with many digits: more of many contacts take too long, and what is left is undecided.
 const PRECISE_COMBINATIONS: usize = 2_000;
@@ -27,7 +26,7 @@ pub struct F64Pass<'a, 'm> {
     /// Whether G was shown to be regular.
     pub regular: bool,
     /// What f64 does not decide, or not with all digits of an outcome.
-    pub undecided: Vec<Pending>,
+    pub undecided: Vec<Undecided>,
     /// Where it stays: it is large.
     pub collected: &'m mut Collected<'a>,
 }
@@ -65,11 +64,15 @@ impl Visitor<Rounded> for F64Pass<'_, '_> {
             let reading = read(leaf, modes, laws, scale, collected.at_zero());
             let after = |contact: usize, xi: Pair<Rounded>| after(xi.map(|own| own.value), contact, modes, problem);
             let motion = |memory| motion(leaf, after, memory);
+            let mut blunt = None;
             if reading.sign == Sign::Negative {
-                return collected
-                    .reject(number, modes, || Rejection::read(modes, reading, || motion(Motion::default())));
-            }
-            if reading.sign == Sign::Positive {
+                let is_vague = reading.is_vague();
+                let rejection = Rejection::read(modes, reading, || motion(Motion::default()));
+                if !is_vague {
+                    return collected.reject(number, modes, || rejection);
+                }
+                blunt = Some(Solved::Rejected(rejection));
+            } else if reading.sign == Sign::Positive {
                 let OutcomeLists { modes: mut own_modes, motion: memory, friction_needed } = collected.lists();
                 let motion = motion(memory);
                 if f64_serves(leaf, modes, (problem, scale), (&motion, reading.margin)) {
@@ -80,7 +83,7 @@ impl Visitor<Rounded> for F64Pass<'_, '_> {
                     return collected.add_regular(number, own_modes, reading, index, numbers);
                 }
             }
-            undecided.push(Pending { number, modes: modes.to_vec() });
+            undecided.push(Undecided { pending: Pending { number, modes: modes.to_vec() }, blunt });
         });
     }
 }
@@ -90,25 +93,40 @@ fn is_free(modes: &[Mode], laws: &[Law]) -> bool {
     modes.iter().zip(laws).all(|(&mode, law)| law.impulse(mode) == Impulse::Free)
 }
 
-/// Combinations whose signs, or whose outcomes, need more digits than f64 has.
+/// A combination whose signs, or whose numbers, need more digits.
+pub struct Undecided {
+    pub pending: Pending,
+    /// Its solution, if only its numbers need them.
+    blunt: Option<Solved>,
+}
+
+/// Combinations that need more digits than f64 has.
 pub struct UndecidedPass<'a, 'c> {
-    pub undecided: Vec<Pending>,
-    /// Solutions with outcomes that need still more digits, by the combination's number.
-    pub blunt: BTreeMap<u64, Solved>,
+    pub undecided: Vec<Undecided>,
     /// What dependent contacts cannot do, once it is known.
     pub kernel: Option<Kernel>,
+    /// What is known of it before.
+    pub shared: Kernel,
     pub collected: &'c mut Collected<'a>,
 }
 
 impl UndecidedPass<'_, '_> {
-    /// Adds what all digits have left: outcomes that lack some, and combinations whose signs are open.
+    /// Adds what all digits have left: solutions that lack some, and combinations whose signs are open.
     pub fn finish(mut self) {
-        for pending in self.undecided {
-            match self.blunt.remove(&pending.number) {
-                Some(solved) => self.collected.add(&pending, solved),
-                None => self.collected.add_undecided(pending),
+        for Undecided { pending, blunt } in std::mem::take(&mut self.undecided) {
+            if let Some(solved) = blunt {
+                self.collected.add(&pending, solved);
+            } else if let Some(because) = self.excludes(&pending) {
+                let rejection = || Rejection::of(&pending.modes, because);
+                self.collected.reject(pending.number, &pending.modes, rejection);
+            } else {
+                self.collected.add_undecided(pending);
             }
         }
+    }
+
+    fn excludes(&self, pending: &Pending) -> Option<RejectionReason> {
+        self.kernel.as_ref().unwrap_or(&self.shared).excludes(&pending.modes, self.collected.problem.laws())
     }
 }
 
@@ -116,43 +134,26 @@ impl PrecisionTask for UndecidedPass<'_, '_> {
     fn attempt<T: Ordered>(&mut self, exact: &ContactProblem<T>, precision: Precision) -> bool {
         let mut open = std::mem::take(&mut self.undecided);
         let before = open.len();
-        // What the contacts' dependence excludes is not solved for; if it cannot be shown, everything is.
         // Numbers other than those of f64 have their own magnitudes.
-        let (known, scale) = match precision {
-            Precision::Enclosed => {
-                let shared = (0..exact.contacts()).map(|contact| exact.shared_tangent(contact));
-                (Some(Kernel::of_shared(shared)), self.collected.scale.clone())
-            }
-            _ => (None, Scale::of(exact)),
-        };
-        if known.is_none() && self.kernel.is_none() {
+        let is_enclosed = precision == Precision::Enclosed;
+        let scale = if is_enclosed { self.collected.scale.clone() } else { Scale::of(exact) };
+        if !is_enclosed && self.kernel.is_none() {
             self.kernel = T::freeing(|| Kernel::of(exact)).ok();
         }
-        let kernel = known.as_ref().or(self.kernel.as_ref());
-        let excludes = |modes: &[Mode]| kernel.and_then(|kernel| kernel.excludes(modes, exact.laws()));
-        open.retain(|pending| match excludes(&pending.modes) {
-            Some(because) => {
-                let rejection = || Rejection::of(&pending.modes, because);
-                self.collected.reject(pending.number, &pending.modes, rejection);
-                false
-            }
-            None => true,
-        });
+        // What the contacts' dependence excludes is solved for only to say why.
+        let is_listed = |own: &Pending| self.collected.options.rejections.contain(&own.modes);
+        open.retain(|own| is_listed(&own.pending) || self.excludes(&own.pending).is_none());
         let is_last = precision == Precision::Interval;
         let (rounds, most) = if is_last { (ROUNDS, PRECISE_COMBINATIONS) } else { (1, usize::MAX) };
         let mut solver = CombinationSolver::new(exact, scale);
-        let Self { undecided, blunt, collected, .. } = self;
-        for (place, pending) in open.into_iter().enumerate() {
+        let Self { undecided, collected, .. } = self;
+        for (place, Undecided { pending, blunt }) in open.into_iter().enumerate() {
             let stops = place >= most || is_spent_after(rounds);
             let listed = collected.options.rejections.contain(&pending.modes);
             match if stops { Err(Unsettled) } else { solver.solve(&pending.modes) } {
-                Ok(solved) if listed && !is_last && solved.is_vague() => undecided.push(pending),
-                Ok(solved) if solved.is_sharp() => collected.add(&pending, solved),
-                Ok(solved) => {
-                    blunt.insert(pending.number, solved);
-                    undecided.push(pending);
-                }
-                Err(Unsettled) => undecided.push(pending),
+                Ok(solved) if solved.is_sharp() && !(listed && solved.is_vague()) => collected.add(&pending, solved),
+                Ok(solved) => undecided.push(Undecided { pending, blunt: Some(solved) }),
+                Err(Unsettled) => undecided.push(Undecided { pending, blunt }),
             }
         }
         *precision.share(&mut collected.found.effort) += (before - undecided.len()) as u64;

@@ -17,6 +17,15 @@ pub struct CombinationReading {
     pub margin: Option<f64>,
     /// The impulse inequalities that are exactly zero, by contact.
     pub at_zero: Vec<(usize, Inequality)>,
+    /// Whether some sign is undecided.
+    is_open: bool,
+}
+
+impl CombinationReading {
+    /// Whether it is rejected for a border, but perhaps violates an inequality.
+    pub fn is_vague(&self) -> bool {
+        self.is_open && self.because == RejectionReason::OnBorder
+    }
 }
 
 impl Rejection {
@@ -24,7 +33,7 @@ impl Rejection {
     pub(super) fn read(modes: &[Mode], reading: CombinationReading, motion: impl FnOnce() -> Motion) -> Self {
         let solved = !matches!(reading.because, RejectionReason::NothingHolds { .. });
         let motion = solved.then(motion);
-        Self { margin: reading.margin, motion, ..Self::of(modes, reading.because) }
+        Self { margin: reading.margin.filter(|_| !reading.is_vague()), motion, ..Self::of(modes, reading.because) }
     }
 }
 
@@ -47,13 +56,13 @@ pub fn read<T: Ordered>(
     scale: &Scale,
     at_zero: Vec<(usize, Inequality)>,
 ) -> CombinationReading {
-    let mut reading =
-        CombinationReading { sign: Sign::Positive, because: RejectionReason::NoSolution, margin: None, at_zero };
+    let because = RejectionReason::NoSolution;
+    let mut reading = CombinationReading { sign: Sign::Positive, because, margin: None, at_zero, is_open: false };
     for (contact, (&mode, law)) in modes.iter().zip(laws).enumerate() {
         if law.is_unheld(mode) {
             match leaf.numbers(contact)[0].sign() {
                 Sign::Zero => {}
-                Sign::Undecided => reading.sign = Sign::Undecided,
+                Sign::Undecided => (reading.sign, reading.is_open) = (Sign::Undecided, true),
                 Sign::Positive | Sign::Negative => {
                     // Two equations for one impulse: no slack measures how far they are from agreeing.
                     let because = RejectionReason::NothingHolds { contact };
@@ -70,6 +79,7 @@ pub fn read<T: Ordered>(
             Sign::Zero if inequality.is_strict() => Some(RejectionReason::OnBorder),
             _ => None,
         };
+        reading.is_open |= sign == Sign::Undecided;
         let least = reading.margin.is_none_or(|margin| scaled < margin);
         if let Some(because) = violated {
             if reading.sign != Sign::Negative || least {

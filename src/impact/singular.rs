@@ -144,16 +144,16 @@ impl<'a, T: Ordered> Equations<'a, T> {
             return Ok(SingularCase::Rejected(Rejection::of(modes, RejectionReason::NoSolution)));
         };
         let space = self.space(solutions, self.shared.len());
-        for Constraint { function, .. } in space.inequalities.iter().filter(|own| own.inequality.is_strict()) {
-            if function.is_constant()? && settled(function.constant)?.is_eq() {
-                return Ok(SingularCase::Rejected(Rejection::of(modes, RejectionReason::RedundantTwin)));
-            }
-        }
         let functions = space.functions();
         let (inside, least) = widest(&functions, space.solutions.directions.len(), T::from_f64(UNBOUNDED))?;
         let standing = settled(least)?;
         if standing.is_lt() {
             return Ok(SingularCase::Rejected(self.rejected(&space, &inside)));
+        }
+        for Constraint { function, .. } in space.inequalities.iter().filter(|own| own.inequality.is_strict()) {
+            if function.is_constant()? && settled(function.constant)?.is_eq() {
+                return Ok(SingularCase::Rejected(Rejection::of(modes, RejectionReason::RedundantTwin)));
+            }
         }
         if space.is_one_velocity()? {
             return Ok(SingularCase::Valid(self.outcome(&space, &inside, least)?));

@@ -48,7 +48,7 @@ impl<'a> Search<'a> {
         rejections: ListedRejections<'a>,
     ) -> Self {
         relaxation.load(problem, scale, remembered.source.errors());
-        relaxation.learn_from(&Kernel::of_shared(shared.iter().copied()));
+        relaxation.learn_from(&Kernel::of_shared(shared));
         let (modes, survivors, open, kernel) = (Vec::new(), Vec::new(), Vec::new(), None);
         let (laws, effort) = (problem.laws(), Effort::default());
         let listed = if let ListedRejections::Only(listed) = rejections { listed } else { &[] };

@@ -28,7 +28,7 @@ pub fn cells(problem: &Problem) -> Vec<Cell> {
 
 fn cell(problem: &Problem, modes: Vec<Mode>) -> Option<Cell> {
     let impulses = Impulses::of(problem, &modes);
-    let generators = impulses.generators(&[]);
+    let generators = impulses.generators(&[], false);
     let mut velocities: Vec<Vec<RBig>> = generators.vertices.iter().map(|l| impulses.velocity(l)).collect();
     let strict = |modes: &[Mode], velocity: &[RBig], k: usize| match modes[k] {
         Mode::Separate => gap_speed(problem, velocity, k) > RBig::ZERO,
@@ -71,10 +71,16 @@ pub fn modes_of(problem: &Problem, velocity: &[RBig]) -> Vec<Mode> {
     (0..problem.friction.len()).map(mode).collect()
 }
 
+/// Whether the equations of the modes have a solution, and whether one satisfies the closed inequalities.
+pub fn is_solvable(problem: &Problem, modes: &[Mode]) -> [bool; 2] {
+    let impulses = Impulses::of(problem, modes);
+    [true, false].map(|equations_alone| !impulses.generators(&[], equations_alone).vertices.is_empty())
+}
+
 /// Least and greatest of every impulse's entry with these modes and this velocity; `None` if it has no bound.
 pub fn impulse_range(problem: &Problem, modes: &[Mode], velocity: &[RBig]) -> Vec<[Option<RBig>; 2]> {
     let impulses = Impulses::of(problem, modes);
-    let generators = impulses.generators(velocity);
+    let generators = impulses.generators(velocity, false);
     let all = |list: &[Vec<RBig>]| list.iter().map(|unknowns| impulses.of_unknowns(unknowns)).collect::<Vec<_>>();
     let [vertices, rays, lines] = [&generators.vertices, &generators.rays, &generators.lines].map(|list| all(list));
     let entry = |row: usize| {
@@ -123,8 +129,9 @@ impl<'a> Impulses<'a> {
         self.problem.velocity_before.iter().zip(gained).map(|(before, gained)| before + gained).collect()
     }
 
-    /// All impulses that the modes allow, of this velocity if it is given; inequalities of velocities closed.
-    fn generators(&self, velocity: &[RBig]) -> Generators {
+    /// All impulses that the modes allow, of this velocity if it is given; inequalities of velocities closed, or
+    /// left out.
+    fn generators(&self, velocity: &[RBig], equations_alone: bool) -> Generators {
         let Self { problem, modes, unknowns } = self;
         // Rows on the unknowns and one: coefficients, constant.
         let row = |row: usize| -> Vec<RBig> {
@@ -138,36 +145,45 @@ impl<'a> Impulses<'a> {
         let unit = |at: usize| (0..=unknowns.len()).map(|i| if i == at { RBig::ONE } else { RBig::ZERO }).collect();
         let one: Vec<RBig> = unit(unknowns.len());
         cone.restrict(&one, false);
+        let mut require = |row: &[RBig], to_zero: bool| {
+            if to_zero || !equations_alone {
+                cone.restrict(row, to_zero);
+            }
+        };
         for (index, after) in velocity.iter().enumerate() {
             let mut row = row(index);
             *row.last_mut().expect("a constant") -= after;
-            cone.restrict(&row, true);
+            require(&row, true);
         }
         let mut unknown = 0;
         for (k, (mode, friction)) in modes.iter().zip(&problem.friction).enumerate() {
             let (c_t, mut xi) = (row(2 * k), row(2 * k + 1));
             let before = &problem.velocity_before[2 * k + 1];
             *xi.last_mut().expect("a constant") += &problem.restitution[k] * before.clone().min(RBig::ZERO);
-            cone.restrict(&xi, *mode != Mode::Separate);
+            require(&xi, *mode != Mode::Separate);
             let own: Vec<RBig> = unit(unknown);
             match mode {
                 Mode::Separate => continue,
                 Mode::Stick => {
-                    cone.restrict(&c_t, true);
+                    require(&c_t, true);
                     let normal: Vec<RBig> = unit(unknown + 1);
-                    cone.restrict(&normal, false);
+                    require(&normal, false);
+                    // Without friction L_t = 0 is an equation.
+                    if friction == &Some(RBig::ZERO) {
+                        require(&own, true);
+                    }
                     for side in friction.iter().flat_map(|_| [own.clone(), negative(&own)]) {
                         let mu = friction.clone().expect("finite");
                         let cone_edge: Vec<RBig> = normal.iter().zip(&side).map(|(n, t)| n * &mu + t).collect();
-                        cone.restrict(&cone_edge, false);
+                        require(&cone_edge, false);
                     }
                     unknown += 2;
                     continue;
                 }
-                Mode::SlidePlus => cone.restrict(&c_t, false),
-                Mode::SlideMinus => cone.restrict(&negative(&c_t), false),
+                Mode::SlidePlus => require(&c_t, false),
+                Mode::SlideMinus => require(&negative(&c_t), false),
             }
-            cone.restrict(&own, false);
+            require(&own, false);
             unknown += 1;
         }
         cone.generators()

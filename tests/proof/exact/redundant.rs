@@ -4,7 +4,7 @@
 //! HEELSTRIKE_REDUNDANT=200000 cargo test --release --test proof -- --nocapture redundant_contacts_have_every_cell
 //! ```
 
-use super::cells::{Cell, cells, impulse_range, modes_of};
+use super::cells::{Cell, cells, impulse_range, is_solvable, modes_of};
 use super::digits::exact;
 use super::enumeration::{Friction, Problem};
 use super::{numbers, rounded, solve_json};
@@ -14,7 +14,9 @@ use crate::support::random::Random;
 use crate::support::rational::{Matrix, delassus, ratio, times, to_f64};
 use crate::support::scaled::largest;
 use dashu_ratio::RBig;
-use heelstrike::impact::{self, Analysis, ContactProblem, Family, ListedRejections, Mode, Outcome, Verdict};
+use heelstrike::impact::{
+    self, Analysis, ContactProblem, Family, ListedRejections, Mode, Outcome, Rejection, RejectionReason, Verdict,
+};
 use std::collections::BTreeSet;
 
 /// A contact problem by its mass matrix, contact Jacobian and velocity, so that the crate knows its redundancy.
@@ -132,6 +134,20 @@ fn compare(problem: &Problem, cells: &[Cell], analysis: &Analysis) -> Result<Tal
     let count = 1 << (2 * problem.friction.len());
     if all != count || analysis.rejected.len() + cells.len() != count {
         return Err(format!("{} cells and {} rejected are not {count}", cells.len(), analysis.rejected.len()));
+    }
+    for Rejection { modes, because, .. } in &analysis.rejected {
+        let right = match because {
+            RejectionReason::NoSolution | RejectionReason::NothingHolds { .. } => [false, false],
+            RejectionReason::Violated { .. } => [true, false],
+            _ => [true, true],
+        };
+        let is = is_solvable(problem, modes);
+        // What is violated without the second equation of a contact that sticks without friction is named as well.
+        let frictionless = |(mode, mu): (&Mode, &Friction)| *mode == Mode::Stick && *mu == Some(RBig::ZERO);
+        let is_named = is == [false; 2] && right == [true, false];
+        if is != right && !(is_named && modes.iter().zip(&problem.friction).any(frictionless)) {
+            return Err(format!("{modes:?}: solvable, and closed: {is:?}, but {because:?}"));
+        }
     }
     // All corners are outcomes, and outcomes of many velocities are corners.
     let mut corners: BTreeSet<(Vec<Mode>, Vec<RBig>)> = BTreeSet::new();
