@@ -6,7 +6,7 @@ class Dial {
   constructor({ label, unit, path, low, high }, changed) {
     const step = round((high - low) / 400);
     Object.assign(this, { label, unit, path, step, low: Math.floor(low / step) * step, high: Math.ceil(high / step) * step });
-    const id = `dial-${path.join("-").replace(/[^\w-]/g, "_")}`;
+    const id = `dial-${path.join("-").replace(/[^\w-]/gu, (sign) => `_${sign.codePointAt(0)}`)}`;
     this.range = html("input", { type: "range", id, min: this.low, max: this.high, step });
     this.number = html("input", { type: "number", step: "any", ariaLabel: `${label}${unit && ` [${unit}]`}, as a number` });
     const name = html("label", { htmlFor: id }, label, html("small", {}, ` ${unit}`));
@@ -17,10 +17,10 @@ class Dial {
     });
   }
 
-  /** Its value in a state; 0 where there is none. */
+  /** Its value in a state; 0 where there is none, and no number where each link has its own. */
   of(state) {
     const value = this.path.reduce((part, name) => part?.[name], state) ?? 0;
-    return typeof value === "object" ? value.default ?? 0 : value;
+    return typeof value === "object" ? "by link" : value;
   }
 
   /** A copy of a state that has this value there. */
@@ -68,7 +68,7 @@ function entries({ robot, limits }, state) {
     Ground: [
       { label: "friction", unit: "", path: ["friction"], low: 0, high: 2 },
       { label: "restitution", unit: "", path: ["restitution"], low: 0, high: 1 },
-      { label: "slope", unit: "rad", path: ["ground", "slope"], low: -0.6, high: 0.6 },
+      ...(state.ground?.profile ? [] : [{ label: "slope", unit: "rad", path: ["ground", "slope"], low: -0.6, high: 0.6 }]),
     ],
   };
 }

@@ -188,7 +188,8 @@ ready.then((ask) => {
     const { dial, slider, here, swept, plots } = known;
     const value = dial.of(state);
     if (typeof value !== "number") {
-      slider.output.value = value;
+      slider.none(value);
+      plots.hide();
       return;
     }
     const region = swept.page.regions[swept.page.frames[here()].region];

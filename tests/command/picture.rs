@@ -3,6 +3,7 @@
 //!
 //! The snapshots have a line per element. Look at a changed picture itself before its snapshot is accepted.
 
+use super::support::urdf;
 use super::{RAMONE, WALKER, file, fs, heelstrike, heelstrike_reads, place, read, walker};
 use serde_json::json;
 use std::path::Path;
@@ -54,6 +55,17 @@ fn every_robot_can_be_drawn() {
         let svg = svg(&["inspect", &format!("tests/data/robots/{robot}.urdf")], &robot.replace('/', "_"));
         assert!(svg.contains("CoG, area by mass"), "{robot}");
     }
+}
+
+/// Where a sole lands level its corners push 1e12 times as hard, in a region too thin to be seen.
+#[test]
+fn a_thin_region_hides_no_panel() {
+    let robot = urdf::body(0.1, &urdf::collision([0.5, -0.5], "box size=\"0.4 0.1 0.2\""));
+    let robot = file("sole.urdf", robot);
+    let study = json!({"parameters": {"alpha": {"from": -0.5, "to": 0.7, "steps": 30}}, "state": {"place": "lowest",
+        "friction": "infinite", "position": {"base": {"pitch": "alpha"}}, "velocity": {"base": {"x": 0.3, "z": -1}}}});
+    let svg = svg(&["sweep", &robot, &file("sole.json", study.to_string())], "sole");
+    assert!(svg.matches("impulse [N s]").count() >= 2, "{svg}");
 }
 
 #[test]

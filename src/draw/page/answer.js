@@ -1,9 +1,10 @@
 // What happens: verdict, outcomes, notes, and what turns at the next borders.
 
 /** A number in as many digits as people read. */
-function digits(value) {
+function digits(value, count = 4) {
   if (value === null || value === undefined) return "–";
-  const text = Math.abs(value) >= 1e-4 && Math.abs(value) < 1e6 ? Number(value.toPrecision(4)).toString() : value.toExponential(2);
+  const isShort = Math.abs(value) >= 1e-4 && Math.abs(value) < 10 ** Math.max(6, count);
+  const text = isShort ? Number(value.toPrecision(count)).toString() : value.toExponential(count - 2);
   return value === 0 ? "0" : text.replaceAll("-", "−");
 }
 

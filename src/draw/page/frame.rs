@@ -39,6 +39,8 @@ struct PageDrawing {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     loops: Vec<Vector<f64>>,
     ground: Vec<Vector<f64>>,
+    #[serde(rename = "profile", skip_serializing_if = "std::ops::Not::not")]
+    is_profile: bool,
     contacts: Vec<PageContact>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     applied: Vec<Arrow>,
@@ -102,11 +104,34 @@ pub(super) struct PageScale {
 
 /// The view stays fixed if all states lie within this multiple of the largest robot's size.
 const FIXED: f64 = 1.5;
-/// Arrows that are no longer than the usual one make up this share of the lengths of all.
-const USUAL: f64 = 0.9;
+
+/// How values count toward the usual one, which so large a share of them does not exceed.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Weight {
+    /// Each by its size: many that are nearly zero, as of feet at rest, do not hide the others.
+    Size,
+    /// All alike: few next to a pole, where they have no bound, do not hide the others.
+    Alike,
+}
+
+impl Weight {
+    fn share(self) -> f64 {
+        match self {
+            Self::Size => 0.9,
+            Self::Alike => 0.75,
+        }
+    }
+
+    fn of(self, value: f64) -> f64 {
+        match self {
+            Self::Size => value,
+            Self::Alike => 1.0,
+        }
+    }
+}
 
 impl PageScale {
-    pub fn of(states: &[PageState]) -> Self {
+    pub fn of(states: &[PageState], weight: Weight) -> Self {
         let drawings: Vec<&Drawing> = states.iter().filter_map(|state| state.keyframe.drawing.as_ref()).collect();
         let extents: Vec<Extent> = drawings.iter().map(|drawing| drawing.extent()).collect();
         let size = extents.iter().map(|extent| extent.size()).fold(0.0, f64::max);
@@ -125,22 +150,21 @@ impl PageScale {
             high: side(1.0, whole.high),
             follows,
             mass: significant(masses.fold(0.0, f64::max), 5),
-            impulse: usual(drawings.iter().map(|drawing| drawing.greatest_impulse())),
-            velocity: usual(drawings.iter().map(|drawing| drawing.greatest_velocities()[1])),
-            before: usual(drawings.iter().map(|drawing| drawing.greatest_velocities()[0])),
+            impulse: usual(drawings.iter().map(|drawing| drawing.greatest_impulse()), weight),
+            velocity: usual(drawings.iter().map(|drawing| drawing.greatest_velocities()[1]), weight),
+            before: usual(drawings.iter().map(|drawing| drawing.greatest_velocities()[0]), weight),
         }
     }
 }
 
-/// The value that most of the positive ones do not exceed, each counted by its size: many that are nearly zero, as of
-/// feet at rest, do not hide the others.
-fn usual(values: impl Iterator<Item = f64>) -> f64 {
+/// The value that most of the positive ones do not exceed.
+fn usual(values: impl Iterator<Item = f64>, weight: Weight) -> f64 {
     let mut values: Vec<f64> = values.filter(|value| *value > 0.0).collect();
     values.sort_unstable_by(f64::total_cmp);
-    let share = USUAL * values.iter().sum::<f64>();
+    let share = weight.share() * values.iter().map(|&value| weight.of(value)).sum::<f64>();
     let mut sum = 0.0;
     let usual = values.iter().find(|value| {
-        sum += **value;
+        sum += weight.of(**value);
         sum >= share
     });
     significant(usual.copied().unwrap_or(0.0), 5)
@@ -229,6 +253,7 @@ impl PageDrawing {
             joints: drawing.joints.iter().map(at).collect(),
             loops: drawing.loops.iter().map(at).collect(),
             ground: drawing.ground.iter().map(at).collect(),
+            is_profile: drawing.is_profile,
             contacts: drawing.contacts.iter().map(contact).collect(),
             applied: drawing.applied.iter().map(arrow).collect(),
             middle: at(&((low + high) * 0.5)),
@@ -265,11 +290,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn many_values_near_zero_do_not_set_the_scale() {
+    fn few_or_tiny_values_do_not_set_the_scale() {
         let feet_at_rest = std::iter::repeat_n(5e-7, 600);
-        assert_eq!(usual(feet_at_rest.chain([4.0, 4.4, 4.2])), 4.4);
+        assert_eq!(usual(feet_at_rest.chain([4.0, 4.4, 4.2]), Weight::Size), 4.4);
         // One that is far greater does not, either, among many.
-        assert_eq!(usual(std::iter::repeat_n(2.0, 600).chain([40.0])), 2.0);
+        assert_eq!(usual(std::iter::repeat_n(2.0, 600).chain([40.0]), Weight::Size), 2.0);
+        // Nor do those beside the poles of a study.
+        assert_eq!(usual(std::iter::repeat_n(17.4, 50).chain([8e11, 3e9]), Weight::Alike), 17.4);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The states of a batch, their margins as a picture, and their page.
 
-use super::{MOST, Page, PageAxis, PageRegion, PageState};
+use super::{MOST, Page, PageAxis, PageRegion, PageState, Weight};
 use crate::draw::plot::{
     self, Band, Color, Dash, LegendEntry, LegendKey, Mark, Panel, Picture, PlotAxis, PlotShape, Rendered, Stroke,
 };
@@ -173,7 +173,7 @@ impl Gait {
         let numbers = self.runs().enumerate().flat_map(|(number, run)| vec![number; run.len()]);
         let page_state = |(state, region): (&ListedKeyframe, usize)| {
             let line = format!("line {}", state.line);
-            let name = state.id.as_ref().map_or(line.clone(), |id| format!("{}, {line}", words::id(id)));
+            let name = state.id.as_ref().map_or(line.clone(), |id| format!("{}, {line}", visible(&words::id(id))));
             PageState { keyframe: state.keyframe.clone(), region: Some(region), name: Some(name) }
         };
         let states: Vec<PageState> = self.states.iter().zip(numbers).map(page_state).collect();
@@ -181,8 +181,8 @@ impl Gait {
         let thinned = || format!("this page shows one of every {} of the {} states", 1 << self.halvings, self.count);
         let notes = (self.halvings > 0).then(thinned).into_iter().collect();
         let axes = vec![PageAxis { name: name.into(), values: order.clone() }];
-        let title = format!("{robot}, state by state");
-        Page { title, axes, regions, notes, ..Page::of(&states, rendered) }
+        let title = format!("{}, state by state", visible(robot));
+        Page { title, axes, regions, notes, ..Page::of(&states, Weight::Size, rendered) }
     }
 }
 

@@ -18,8 +18,9 @@ pub use study::Stops;
 
 use super::Keyframe;
 use super::plot::{PlotWindow, Rendered};
+use crate::error::visible;
 use crate::write::words::{DrawnNames, Wording};
-use frame::{PageFrame, PageScale};
+use frame::{PageFrame, PageScale, Weight};
 use serde::Serialize;
 use serde_json::value::RawValue;
 use std::collections::HashMap;
@@ -93,7 +94,7 @@ struct Interned {
 
 impl Interned {
     fn number(&mut self, text: impl Into<String>) -> usize {
-        *self.known.entry(text.into()).or_insert_with_key(|text| {
+        *self.known.entry(visible(&text.into()).into_owned()).or_insert_with_key(|text| {
             self.all.push(text.clone());
             self.all.len() - 1
         })
@@ -102,9 +103,9 @@ impl Interned {
 
 impl Page {
     /// The frames of a page; `svg` is its picture.
-    fn of(states: &[PageState], Rendered { svg, windows }: Rendered) -> Self {
+    fn of(states: &[PageState], weight: Weight, Rendered { svg, windows }: Rendered) -> Self {
         let (mut parts, mut texts) = (Interned::default(), Interned::default());
-        let scale = PageScale::of(states);
+        let scale = PageScale::of(states, weight);
         let frames = states.iter().map(|state| PageFrame::new(state, scale.unit, &mut parts, &mut texts)).collect();
         let parts = parts.all.into_iter().filter_map(|part| RawValue::from_string(part).ok()).collect();
         let aspect = states.iter().find_map(|state| Some(state.keyframe.answer.as_ref().ok()?.aspect));
@@ -114,7 +115,8 @@ impl Page {
 
     /// A page of one state, whose data is drawn by a page that asks for it.
     pub fn of_state(title: String, keyframe: Keyframe) -> Self {
-        Self { title, ..Self::of(&[PageState { keyframe, region: None, name: None }], Rendered::default()) }
+        let state = PageState { keyframe, region: None, name: None };
+        Self { title, ..Self::of(&[state], Weight::Size, Rendered::default()) }
     }
 
     /// Its plots.

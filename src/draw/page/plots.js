@@ -28,9 +28,15 @@ class Plots {
     return { window, lines };
   }
 
+  hide() {
+    for (const line of this.cursors.flatMap(({ lines }) => lines)) line.style.display = "none";
+  }
+
   /** Moves the cursors to these values of the axes. */
   show(values) {
-    for (const { window, lines: [upright, level, dot] } of this.cursors) {
+    for (const { window, lines } of this.cursors) {
+      for (const line of lines) line.style.display = "";
+      const [upright, level, dot] = lines;
       const { corner: [left, top], size: [width, height] } = window;
       const x = pixel(window, 0, values[0]);
       set(upright, { x1: x, x2: x, y1: top, y2: top + height });

@@ -88,14 +88,14 @@ class Robot {
     const { low, high, follows } = this.data.scale;
     const center = [0, 1].map((axis) => (low[axis] + high[axis]) / 2 + (follows[axis] ? pose.middle[axis] : 0));
     this.at = ([x, z]) => [this.middle[0] + (x - center[0]) * this.zoom, this.middle[1] - (z - center[1]) * this.zoom];
-    this.element.append(...this.ground(pose.ground), ...pose.bodies.map((body, at) => this.part(body, at)), ...this.skeleton(pose), ...this.contacts(frame, chosen));
+    this.element.append(...this.ground(pose.ground, pose.profile), ...pose.bodies.map((body, at) => this.part(body, at)), ...this.skeleton(pose), ...this.contacts(frame, chosen));
   }
 
-  /** The ground; a straight one goes on to both sides. */
-  ground(surface) {
+  /** The ground; a slope goes on to both sides. */
+  ground(surface, isProfile) {
     if (surface.length < 2) return [];
     const points = surface.map(this.at);
-    if (points.length === 2) {
+    if (!isProfile) {
       const [[x0, y0], [x1, y1]] = points;
       const slope = (y1 - y0) / (x1 - x0);
       points.splice(0, 2, ...[-1000, 4000].map((x) => [x, y0 + slope * (x - x0)]));
@@ -251,7 +251,9 @@ class Robot {
       this.legend.append(html("span", {}, sign, `${words}, ${Number(value.toPrecision(1))} ${name}${kind === "velocity" ? small : ""}`));
     }
     const isCut = (usual) => ([x, z]) => Math.hypot(x, z) * Robot.USUAL > usual * Robot.LONGEST;
-    const cut = ({ outcomes }) => outcomes.some((outcome) => outcome.impulse.some(isCut(impulse)) || outcome.after.some(isCut(velocity)));
+    const cut = ({ pose, outcomes }) => [...(pose.applied ?? []).map(({ vector }) => vector),
+      ...outcomes.flatMap((outcome) => [...outcome.impulse, ...(outcome.loops ?? []).map(([, vector]) => vector)])].some(isCut(impulse))
+      || outcomes.some((outcome) => outcome.after.some(isCut(velocity))) || pose.contacts.some((contact) => isCut(before)(contact.before));
     if (some(cut)) this.legend.append(html("span", {}, "dash-dotted: longer than drawn"));
   }
 }

@@ -5,6 +5,14 @@ function nearest(values, value) {
   return values.reduce((best, at, stop) => (Math.abs(at - value) < Math.abs(values[best] - value) ? stop : best), 0);
 }
 
+/** How many digits tell most neighbors apart. */
+function apart(values) {
+  const gaps = values.slice(1).map((value, at) => Math.abs(value - values[at])).filter((gap) => gap > 0).sort((a, b) => a - b);
+  const most = Math.max(...values.map(Math.abs));
+  const digits = gaps.length > 0 ? Math.floor(Math.log10(most)) - Math.floor(Math.log10(gaps[gaps.length >> 1])) + 2 : 0;
+  return Math.min(15, Math.max(4, digits));
+}
+
 /** The next stop on the other side of a border, or the last one; `regions` are those of the stops. */
 function border(regions, stop, way) {
   const next = (at) => at + way >= 0 && at + way < regions.length;
@@ -41,6 +49,7 @@ class Slider {
   /** `move` takes the number of a stop. */
   constructor(element, data, axis, move) {
     this.axis = data.axes[axis];
+    this.words = (value) => (Number.isInteger(value) ? String(value).replace("-", "−") : digits(value, apart(this.axis.values)));
     this.move = move;
     this.last = this.axis.values.length - 1;
     this.input = html("input", { type: "range", id: `axis${axis}`, min: 0, max: this.last, step: 1, value: 0 });
@@ -71,10 +80,19 @@ class Slider {
     return track;
   }
 
+  /** Shows that no number is the value. */
+  none(words) {
+    this.input.value = this.last;
+    this.output.value = words;
+    delete this.output.dataset.value;
+    this.name.textContent = "";
+    this.input.setAttribute("aria-valuetext", words);
+  }
+
   /** Shows a stop, and what it is called; `words` are for those who do not see it. A `value` may lie between stops. */
   show(stop, name, words, value = this.axis.values[stop]) {
     this.input.value = stop;
-    this.output.value = digits(value);
+    this.output.value = this.words(value);
     this.output.dataset.value = value;
     this.name.textContent = name;
     this.input.setAttribute("aria-valuetext", `${this.output.value}, ${words}`);

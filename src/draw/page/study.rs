@@ -4,10 +4,11 @@
 //!     a region         |.........|.........|      sides lie next to the borders, farther away than these are located
 //! ```
 
-use super::{MOST, Page, PageAxis, PageRegion, PageState};
+use super::{MOST, Page, PageAxis, PageRegion, PageState, Weight};
 use crate::draw::plot::{Color, Rendered, significant};
 use crate::draw::sweep::{fills_along, fills_of_map};
 use crate::draw::{Forward, Keyframe};
+use crate::error::visible;
 use crate::state::State;
 use crate::sweep::{Findings, Map, Parameter, RESOLUTION, Regime, Region, RobotStudy, Solver, Survey, Workers};
 use crate::write::sweep::{MapRegion, MapSweep, RegionRecord, Sweep};
@@ -110,11 +111,11 @@ impl Page {
         };
         let states: Vec<PageState> = seen.into_iter().enumerate().map(state).collect();
         let names: Vec<&str> = parameters.iter().map(|parameter| parameter.name.as_str()).collect();
-        let title = format!("{} against {}{}", model.robot.name, names.join(" and "), forward.remark());
+        let title = format!("{} against {}{}", visible(&model.robot.name), names.join(" and "), forward.remark());
         let axis = |(name, values): (&str, &Vec<f64>)| PageAxis { name: name.to_owned(), values: values.clone() };
         let axes = names.into_iter().zip(&stops.values).map(axis).collect();
         let notes = stops.note(parameters).into_iter().chain(notes).collect();
-        Self { title, axes, regions, notes, ..Self::of(&states, rendered) }
+        Self { title, axes, regions, notes, ..Self::of(&states, Weight::Alike, rendered) }
     }
 }
 

@@ -11,6 +11,7 @@
 //! ```
 
 use super::Pixel;
+use crate::error::visible;
 use std::borrow::Cow;
 use ttf_parser::{Face, GlyphId};
 
@@ -58,7 +59,10 @@ pub(super) fn readable(text: &str) -> Cow<'_, str> {
 
 /// A line as it is drawn.
 pub(super) fn drawn(text: &str) -> Cow<'_, str> {
-    shortened(text, LINE)
+    match visible(text) {
+        Cow::Borrowed(text) => shortened(text, LINE),
+        Cow::Owned(text) => shortened(&text, LINE).into_owned().into(),
+    }
 }
 
 /// The width of a line of text \[px\].

@@ -32,6 +32,7 @@ pub use panel::{Band, Panel};
 pub use shape::PlotShape;
 
 use crate::Result;
+use crate::error::visible;
 use canvas::{Anchor, Canvas, PlotLayer, TextLine};
 use legend::Legend;
 use panel::{PlacedPanel, Track};
@@ -138,7 +139,7 @@ impl Picture {
             [window.x, window.y].into_iter().all(|(low, high)| low.is_finite() && high.is_finite() && low < high)
         };
         let description = self.description(rows.iter().flatten());
-        let [title, description] = [&self.title, &description].map(|text| font::readable(text).into_owned());
+        let [title, description] = [&self.title, &description].map(|text| visible(&font::readable(text)).into_owned());
         let canvas = Canvas { title, description, size, layer };
         (canvas.layer.is_placed() && windows.iter().all(is_scaled)).then_some((canvas, windows))
     }

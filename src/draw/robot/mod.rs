@@ -34,6 +34,8 @@ pub struct Drawing {
     pub loops: Vec<Vector<f64>>,
     /// The ground's surface from left to right, as far as the drawing reaches; empty without a ground.
     pub ground: Vec<Vector<f64>>,
+    /// Whether the ground is a profile, with nothing beyond its ends.
+    pub is_profile: bool,
     /// The closed contacts.
     pub contacts: Vec<DrawnContact>,
     /// Impulses that the state applies \[N s\].
@@ -164,6 +166,7 @@ impl Drawing {
         let arrow = |by: &AppliedImpulse| Arrow { point: in_world(by.link, by.offset), vector: by.vector };
         drawing.aspect = impact.aspect();
         drawing.applied = scene.impulses.iter().map(arrow).collect();
+        drawing.is_profile = matches!(scene.ground, Ground::Profile(_));
         drawing.ground = drawing.extent().surface(&scene.ground, drawing.extent().scale());
         drawing
     }

@@ -4,6 +4,7 @@ use super::{KindLook, WIDTH, angles, different, fills_along, firsts, is_seen};
 use crate::draw::plot::{
     Band, Color, Dash, LegendEntry, LegendKey, Panel, Picture, PlotAxis, PlotPoint, PlotShape, Stroke, range,
 };
+use crate::error::visible;
 use crate::impact::Motion;
 use crate::law::Mode;
 use crate::pipeline::Aspect;
@@ -30,7 +31,7 @@ const STRIP: f64 = 30.0;
 const POLE: f64 = 4.0;
 const NEAR_POLE: f64 = 1.5;
 
-/// Values below this share of the same quantity of other contacts are zero, except for rounding.
+/// Values below this share of the same quantity of other contacts of an outcome are zero, except for rounding.
 const ZERO: f64 = 1e-12;
 
 /// The picture of a survey's regions, with these courses of their outcomes.
@@ -104,23 +105,24 @@ impl<'a> Curves<'a> {
         let mut panels: Vec<Panel> = drawn.iter().map(|quantity| self.panel(contact, quantity)).collect();
         if let Some(first) = panels.first_mut() {
             let zero = zero.iter().map(|quantity| format!("\n{} is zero in every outcome", quantity.name.0));
-            first.title = contact.to_owned() + &zero.collect::<String>();
+            first.title = visible(contact).into_owned() + &zero.collect::<String>();
         }
         panels
     }
 
-    /// Whether the quantity is not zero everywhere, compared with that of all contacts.
+    /// Whether the quantity is not zero in some visible outcome, compared with that of all its contacts.
     fn is_drawn(&self, contact: &str, quantity: &PlottedQuantity) -> bool {
-        let largest = |of: &dyn Fn(&str) -> bool| {
-            let regions = self.survey.regions.iter().zip(self.courses);
-            let pairs = regions.flat_map(|(region, course)| {
-                let motions = course.places.iter().flat_map(|place| &place.outcomes);
-                motions.flat_map(|(_, motion)| region.regime.contacts().iter().zip((quantity.of)(motion)))
-            });
-            let numbers = pairs.filter(|(name, _)| of(name)).flat_map(|(_, pair)| pair);
-            numbers.fold(0.0, |most: f64, number| most.max(number.abs()))
-        };
-        largest(&|name| name == contact) > ZERO * largest(&|_| true)
+        let largest = |pairs: &[[f64; 2]]| pairs.as_flattened().iter().fold(0.0, |most: f64, own| most.max(own.abs()));
+        let mut regions =
+            self.survey.regions.iter().zip(self.courses).filter(|(region, _)| is_seen(region, self.survey));
+        regions.any(|(region, course)| {
+            let own = region.regime.contacts().iter().position(|name| name == contact);
+            let mut motions = course.places.iter().flat_map(|place| &place.outcomes);
+            motions.any(|(_, motion)| {
+                let pairs = (quantity.of)(motion);
+                own.and_then(|own| pairs.get(own..=own)).is_some_and(|own| largest(own) > ZERO * largest(pairs))
+            })
+        })
     }
 
     /// A quantity of a contact in all regions.

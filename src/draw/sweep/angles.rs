@@ -11,6 +11,7 @@
 use super::different;
 use super::place::clear_of;
 use crate::draw::plot::{Color, LegendEntry, LegendKey, Panel, Pixel, PlotAxis, PlotPoint, PlotShape, Stroke, TextBox};
+use crate::error::visible;
 use crate::impact::{Explanation, ImpulseRegion};
 use crate::sweep::{RegionCurves, Survey};
 use std::f64::consts::PI;
@@ -102,7 +103,7 @@ fn panel(name: &str, runs: &[Vec<Angles>], (from, to): (f64, f64), borders: &[f6
         }
     }
     let y = PlotAxis { range: Some((-PI, PI)), in_pi: true, ..PlotAxis::new("angle [rad]") };
-    let title = format!("{name}\nwith infinite friction, while all other contacts stick");
+    let title = format!("{}\nwith infinite friction, while all other contacts stick", visible(name));
     Panel { title, shapes, size: SIZE, ..Panel::new(PlotAxis::default(), y) }
 }
 

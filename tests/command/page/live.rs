@@ -1,7 +1,7 @@
 //! What a page does: keys, sliders and clicks move the robot, the cursors and the answers.
 
 use super::browser::found;
-use super::{HOSTILE, RAMONE, WALK, WALKER, data, each, file, five_bar, grid, hostile, list, near_a_border};
+use super::{RAMONE, SHOWN, WALK, WALKER, data, each, file, five_bar, grid, hostile, list, near_a_border};
 use super::{page, parsed, read, swept};
 use crate::result;
 use serde_json::{Value, json};
@@ -159,9 +159,9 @@ fn hostile_names_are_shown_and_not_run() {
     let Some(found) = found(&path, WINDOW, script) else { return };
     let title = data(&page)["title"].clone();
     assert_eq!((&found["heading"], &found["title"]), (&title, &title));
-    assert_eq!(found["name"], format!("{}, line 1", HOSTILE));
-    assert_eq!(found["labels"], json!([HOSTILE]));
-    assert!(found["words"].as_str().expect("words").contains(&format!("{} sticks", HOSTILE)));
+    assert_eq!(found["name"], format!("{SHOWN}, line 1"));
+    assert_eq!(found["labels"], json!([SHOWN]));
+    assert!(found["words"].as_str().expect("words").contains(&format!("{SHOWN} sticks")));
     // Those of the page, and two of the test.
     assert_eq!(found["scripts"], 4);
 }
@@ -183,6 +183,27 @@ fn a_slide_without_an_arrow_has_its_direction() {
     let script = r##"found({ names: all("#scene text").map((name) => name.textContent) });"##;
     let Some(found) = found(&path, WINDOW, script) else { return };
     assert_eq!(found["names"], json!(["right_foot", "left_foot \u{2192}"]));
+}
+
+#[test]
+fn neighboring_times_are_told_apart() {
+    let table: String =
+        ["time,q_base_z,v_base_z", "1700000000,0.9,0", "1700000000.25,0.9,0", "1700000000.5,0.9,0"].join("\n");
+    let (_, path) = page(&["batch", RAMONE, &file("times.csv", table)], "", "times.html");
+    let script = r##"press("Home", "ArrowRight"); found({ time: text("output") });"##;
+    let Some(found) = found(&path, WINDOW, script) else { return };
+    assert_eq!(found["time"], "1700000000.25");
+}
+
+#[test]
+fn a_platform_ends() {
+    let state = json!({"place": "lowest", "ground": {"profile": [[-0.3, 0], [0.1, 0]]}}).to_string();
+    let (_, path) = page(&["batch", RAMONE, "-", "--friction", "0.6"], &state, "platform.html");
+    let script = r##"const ends = one(".surface").getAttribute("points").split(" ").map((point) => Number(point.split(",")[0]));
+        found({ ends, width: one("#scene").clientWidth });"##;
+    let Some(found) = found(&path, WINDOW, script) else { return };
+    let (ends, width) = (numbers(&found["ends"]), found["width"].as_f64().expect("a width"));
+    assert!(ends.len() == 2 && ends.iter().all(|x| (0.0..width).contains(x)), "{ends:?} within {width}");
 }
 
 #[test]

@@ -57,7 +57,9 @@ fn swept(robot: &str, study: &Value, name: &str) -> (String, PathBuf) {
 }
 
 /// A robot whose link and study whose parameter do their best to leave their places.
-const HOSTILE: &str = "</script><script>alert(1)</script><!--";
+const HOSTILE: &str = "</script><script>alert(1)</script><!--\u{202e}";
+/// The same as people read it.
+const SHOWN: &str = r"</script><script>alert(1)</script><!--\u{202e}";
 
 fn hostile() -> (String, PathBuf) {
     let escaped = HOSTILE.replace('<', "&lt;").replace('>', "&gt;");
@@ -84,6 +86,23 @@ fn the_data_of_a_small_study() {
     };
     let lines = data.as_object().expect("an object").iter().map(|(name, value)| format!("{name}:{}\n", listed(value)));
     insta::assert_snapshot!("small", lines.collect::<String>());
+}
+
+/// Beside poles impulses have no bound, and some stops lie there.
+#[test]
+fn arrows_of_a_study_are_seen_beside_poles() {
+    let (page, _) = page(&["sweep", WALKER, "examples/paper/figures_3_and_6.json"], "", "poles.html");
+    let data = data(&page);
+    let impulses = |frame: &Value| {
+        let own = list(&frame["outcomes"]).iter().flat_map(|outcome| list(&outcome["impulse"]));
+        own.flat_map(list).map(|entry| entry.as_f64().expect("a number").abs()).fold(0.0, f64::max)
+    };
+    let largest: Vec<f64> = list(&data["frames"]).iter().map(impulses).collect();
+    let usual = data["scale"]["impulse"].as_f64().expect("a number");
+    // The usual arrow is a quarter of the view long.
+    let seen = largest.iter().filter(|impulse| **impulse > 0.05 * usual).count();
+    assert!(largest.iter().any(|impulse| *impulse > 100.0 * usual), "a pole: {usual} of {largest:?}");
+    assert!(10 * seen > 9 * largest.len(), "{seen} of {} with {usual}", largest.len());
 }
 
 /// The five-bar leg at two speeds.
@@ -151,8 +170,9 @@ fn names_stay_names() {
     assert_eq!((page.matches("<script").count(), page.matches("</script>").count()), (2, 2));
     assert!(!page.contains("<!--"));
     let data = data(&page);
-    assert_eq!(data["title"], format!("{HOSTILE}, state by state"));
-    assert_eq!(data["frames"][0]["name"], format!("{HOSTILE}, line 1"));
+    assert_eq!(data["title"], format!("{SHOWN}, state by state"));
+    assert_eq!(data["frames"][0]["name"], format!("{SHOWN}, line 1"));
+    assert!(!page.contains('\u{202e}'));
     // What is put into the template is not taken for it.
     assert_eq!(data["frames"][1]["name"], "{data}, line 2");
     assert!(data["texts"].to_string().contains("{program}"));

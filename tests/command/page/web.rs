@@ -149,6 +149,8 @@ fn the_page_follows_what_its_reader_does() {
     assert_eq!((&found["slid"]["rate"], &found["typed"]["rate"]), (&json!(2), &json!(-1.25)));
     assert_ne!(found["slid"]["result"]["outcomes"], found["opened"]["result"]["outcomes"]);
     assert_eq!((&found["finite"], &found["free"]["stance"]), (&json!(0.6), &Value::Null));
+    // Friction of each link has no place among the regions along it.
+    assert_eq!(found["by_link"], json!({"shown": "by link", "told": "by link", "cursors": 0}));
     // The base stays where it was, on both feet.
     assert!(found["free"]["told"].as_str().expect("words").contains("right_foot"), "{}", found["free"]);
     // A link that is dragged turns clockwise with the pointer, which is against its joint's axis.

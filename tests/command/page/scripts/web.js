@@ -19,6 +19,15 @@ given(dial("velocity-base-pitch").nextElementSibling, "-1.25");
 const typed = seen();
 one("fieldset input[type=checkbox]").click();
 const finite = state().friction;
+await rest();
+given(one("#state"), JSON.stringify({ ...state(), friction: { left_foot: 0.2, right_foot: 0.9 } }));
+await rest();
+const by_link = {
+    shown: text(".axis output"), told: one(".axis input").getAttribute("aria-valuetext"),
+    cursors: all("line.cursor").filter((line) => line.style.display !== "none").length,
+};
+given(one("#state"), JSON.stringify({ ...state(), friction: finite }));
+await rest();
 
 const named = (name) => one(`button[aria-label="${name}"]`);
 given(one("#along"), "velocity base pitch", "change");
@@ -70,4 +79,4 @@ const file = { title: document.title, dials: all(".dial").length };
 await dropped("<robot name='none'/>");
 const refused = text(".sentence");
 await dropped('{"frition": 1}');
-found({ opened, unnamed, slid, typed, finite, swept, free, dragged, pasted, linked, reopened, dropped: file, refused, wrong_state: text(".sentence") });
+found({ opened, unnamed, slid, typed, finite, by_link, swept, free, dragged, pasted, linked, reopened, dropped: file, refused, wrong_state: text(".sentence") });
