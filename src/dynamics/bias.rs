@@ -21,37 +21,42 @@ use crate::planar::Vector;
 use crate::scalar::Real;
 
 /// Computes every body's motion while no coordinate accelerates and what it demands, from the kinematics, for `velocity`
-/// (dq/dt, braked joints included) and `gravity` along -z of the world \[m/s^2\].
-pub fn demands<T: Real>(plan: &Plan<T>, velocity: &[T], gravity: T, workspace: &mut Workspace<T>) {
-    let Workspace { rotation, arm, direction, spin, drift, demand, .. } = workspace;
+/// (dq/dt, braked joints included) and `gravity` along -z of the world \[m/s^2\]. Bodies that are `steady` do not turn:
+/// what is left of the sum of their rates is rounding; with an empty list none is.
+pub fn demands<T: Real>(plan: &Plan<T>, velocity: &[T], gravity: T, steady: &[bool], workspace: &mut Workspace<T>) {
+    let Workspace { rotation, arm, direction, spin, squared_spin, drift, demand, .. } = workspace;
     spin.clear();
+    squared_spin.clear();
     drift.clear();
+    let turns = |index: usize| steady.get(index) != Some(&true);
     for (index, body) in plan.bodies.iter().enumerate() {
-        let Some(parent) = body.parent else {
-            spin.push(if plan.floating { velocity[2] } else { T::zero() });
-            drift.push(Vector::zero());
-            continue;
-        };
-        let turning = spin[parent];
-        let (turn, slide) = match body.motion {
-            JointMotion::Revolute { rate, .. } => (turning + rate * velocity[body.coordinate], Vector::zero()),
-            JointMotion::Prismatic { .. } => {
-                let twice = turning + turning;
-                (turning, direction[index].perpendicular() * (twice * velocity[body.coordinate]))
+        let (turn, origin) = match body.parent {
+            None => (if plan.floating { velocity[2] } else { T::zero() }, Vector::zero()),
+            Some(parent) => {
+                let carried = drift[parent] - arm[index] * squared_spin[parent];
+                match body.motion {
+                    JointMotion::Revolute { rate, .. } => (spin[parent] + rate * velocity[body.coordinate], carried),
+                    JointMotion::Prismatic { .. } if turns(parent) => {
+                        let twice = spin[parent] + spin[parent];
+                        let slide = direction[index].perpendicular() * (twice * velocity[body.coordinate]);
+                        (spin[parent], carried + slide)
+                    }
+                    _ => (spin[parent], carried),
+                }
             }
-            JointMotion::Root | JointMotion::Fixed => (turning, Vector::zero()),
         };
         spin.push(turn);
-        drift.push(drift[parent] - arm[index] * (turning * turning) + slide);
+        squared_spin.push(if turns(index) { turn * turn } else { T::zero() });
+        drift.push(origin);
     }
 
     let weight = Vector { x: T::zero(), z: gravity };
     demand.clear();
-    demand.extend(plan.bodies.iter().zip(&*rotation).zip(spin.iter().zip(&*drift)).map(
-        |((body, turn), (&spin, &drift))| {
+    demand.extend(plan.bodies.iter().zip(&*rotation).zip(squared_spin.iter().zip(&*drift)).map(
+        |((body, turn), (&squared_spin, &drift))| {
             let (first, lifted) = (turn.apply(body.inertia.first), drift + weight);
             Wrench {
-                linear: lifted * body.inertia.mass - first * (spin * spin),
+                linear: lifted * body.inertia.mass - first * squared_spin,
                 moment: first.perpendicular().dot(lifted),
             }
         },
@@ -59,8 +64,8 @@ pub fn demands<T: Real>(plan: &Plan<T>, velocity: &[T], gravity: T, workspace: &
 }
 
 /// Computes b (nv, columns of the plan; N, N m), as [`demands`] what each body demands.
-pub fn bias<T: Real>(plan: &Plan<T>, velocity: &[T], gravity: T, workspace: &mut Workspace<T>) {
-    demands(plan, velocity, gravity, workspace);
+pub fn bias<T: Real>(plan: &Plan<T>, velocity: &[T], gravity: T, steady: &[bool], workspace: &mut Workspace<T>) {
+    demands(plan, velocity, gravity, steady, workspace);
     let Workspace { arm, direction, demand, bias, .. } = workspace;
     bias.clear();
     bias.resize(plan.columns(), T::zero());
@@ -85,17 +90,12 @@ pub fn bias<T: Real>(plan: &Plan<T>, velocity: &[T], gravity: T, workspace: &mut
 
 /// Acceleration of the point at `arm` from the origin of `body` while no coordinate accelerates \[m/s^2\].
 pub(super) fn point_drift<T: Real>(body: usize, arm: Vector<T>, workspace: &Workspace<T>) -> Vector<T> {
-    let spin = workspace.spin[body];
-    workspace.drift[body] - arm * (spin * spin)
+    workspace.drift[body] - arm * workspace.squared_spin[body]
 }
 
 impl<T: Real> ContactPoint<T> {
-    /// sigma, in the world's axes \[m/s^2\], after [`bias`]; of a body that does not turn that of the `still` one of all
-    /// that move with it.
-    pub fn drift(&self, still: Option<usize>, workspace: &Workspace<T>) -> Vector<T> {
-        match still {
-            Some(body) => workspace.drift[body],
-            None => point_drift(self.body, workspace.rotation[self.body].apply(self.center), workspace),
-        }
+    /// sigma, in the world's axes \[m/s^2\], after [`bias`].
+    pub fn drift(&self, workspace: &Workspace<T>) -> Vector<T> {
+        point_drift(self.body, workspace.rotation[self.body].apply(self.center), workspace)
     }
 }

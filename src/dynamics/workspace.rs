@@ -48,6 +48,8 @@ pub struct Workspace<T = f64> {
     // Computed by `demands`.
     /// Rate of turn of each body \[rad/s\]. nb
     pub spin: Vec<T>,
+    /// Its square, zero of a body that was said not to turn \[rad^2/s^2\]. nb
+    pub(super) squared_spin: Vec<T>,
     /// Acceleration of each body's origin while no coordinate accelerates, in the world's axes \[m/s^2\]. nb
     pub drift: Vec<Vector<T>>,
     /// What each body demands for that, against gravity as well, about its origin; spent by what sums it up. nb

@@ -30,9 +30,8 @@ pub struct Loads<'a> {
     pub scene: &'a Scene,
     /// q, with the base where it is placed.
     pub position: &'a [f64],
-    /// Of contacts of bodies that do not turn, because several of their points stay on the ground, the first of the bodies
-    /// that move as one.
-    pub still: &'a [Option<usize>],
+    /// Which bodies do not turn but by the rounding of their rates; with an empty list none of them.
+    pub steady: &'a [bool],
 }
 
 /// At most this part of a row of G is rounding once loops hold its contact: a thousand units in the last place of a
@@ -174,7 +173,7 @@ impl<T: Real> Assembly<T> {
     pub fn load(&mut self, velocity: &[T], loads: Loads<'_>) -> &[T] {
         self.drive(velocity, loads);
         let Self { plan, workspace, column, .. } = self;
-        bias(plan, velocity, T::from_f64(loads.scene.gravity()), workspace);
+        bias(plan, velocity, T::from_f64(loads.scene.gravity()), loads.steady, workspace);
         column.iter_mut().zip(&workspace.bias).for_each(|(entry, &bias)| *entry = *entry - bias);
         column
     }
@@ -201,7 +200,7 @@ impl<T: Real> Assembly<T> {
             Elimination::ArticulatedBodies => {
                 self.drive(velocity, loads);
                 let Self { plan, workspace, column, motions, .. } = self;
-                demands(plan, velocity, T::from_f64(loads.scene.gravity()), workspace);
+                demands(plan, velocity, T::from_f64(loads.scene.gravity()), loads.steady, workspace);
                 articulated_acceleration(plan, workspace, column, motions);
             }
         }
@@ -231,9 +230,9 @@ impl<T: Real> Assembly<T> {
     }
 
     /// The contacts' accelerations J a + sigma for an acceleration by coordinate.
-    pub fn contact_accelerations(&self, acceleration: &[T], loads: Loads<'_>) -> Vec<Pair<T>> {
-        let own = self.points.iter().zip(loads.still).map(|(point, &still)| {
-            let total = self.velocity_of(point, acceleration) + point.drift(still, &self.workspace);
+    pub fn contact_accelerations(&self, acceleration: &[T]) -> Vec<Pair<T>> {
+        let own = self.points.iter().map(|point| {
+            let total = self.velocity_of(point, acceleration) + point.drift(&self.workspace);
             point.axes().map(|axis| axis.dot(total))
         });
         own.collect()

@@ -236,7 +236,7 @@ impl<'a> ExactState<'a> {
             Asked::Forces(loads) => {
                 let (mut acceleration, drifts) = assembly.acceleration(&velocity, loads);
                 assembly.answer_to(Closed::Acceleration(&drifts), &mut acceleration);
-                let free = assembly.contact_accelerations(&acceleration, loads);
+                let free = assembly.contact_accelerations(&acceleration);
                 Contacts { delassus: assembly.workspace.delassus, before: free.clone(), free }
             }
             Asked::Impact | Asked::Shock(_) => self.collect(&mut assembly),

@@ -54,7 +54,7 @@ pub struct Sustained {
 /// A state in sustained contact without contact forces.
 struct Unforced {
     /// As in [`Loads`].
-    still: Vec<Option<usize>>,
+    steady: Vec<bool>,
     /// q, with the base where it is placed.
     position: Vec<f64>,
     driven: Driven,
@@ -71,7 +71,7 @@ struct Unforced {
 
 impl Unforced {
     fn loads<'a>(&'a self, robot: &'a Robot, scene: &'a Scene) -> Loads<'a> {
-        Loads { robot, scene, position: &self.position, still: &self.still }
+        Loads { robot, scene, position: &self.position, steady: &self.steady }
     }
 }
 
@@ -101,7 +101,7 @@ impl Pipeline<'_> {
             let notes = &mut prepared.impact.notes;
             notes.push("the uncertainty is ignored: forces are those of the given numbers".to_owned());
         }
-        let unforced = self.pose(state, &mut prepared, &slips)?;
+        let unforced = self.pose(state, &mut prepared, &slips, self.rounding_of_rates())?;
         let notes = &mut prepared.impact.notes;
         for &joint in scene.braked.iter().filter(|&&joint| unforced.driven.torque.values()[joint] != 0.0) {
             let name = &self.robot.joints[joint].name;
@@ -151,7 +151,7 @@ impl Pipeline<'_> {
     /// Everything up to the contact problem of forces.
     pub(super) fn prepare_forces(&mut self, state: &State) -> Result<Box<Prepared>> {
         let (mut prepared, slips) = self.prepare_sustained(state)?;
-        self.pose(state, &mut prepared, &slips)?;
+        self.pose(state, &mut prepared, &slips, self.rounding_of_rates())?;
         Ok(prepared)
     }
 
@@ -243,7 +243,7 @@ impl Pipeline<'_> {
         self.assembly.rounded_delassus();
         self.take_part(after, &mut prepared, &slips)?;
         let taking: Vec<Ordering> = slips.iter().copied().flatten().collect();
-        let unforced = self.pose(after, &mut prepared, &taking)?;
+        let unforced = self.pose(after, &mut prepared, &taking, STOPPED)?;
         let asked = self.asked_of_forces(taking.len(), Some(&[]));
         let of_impact = |modes: &Vec<Mode>| {
             let mut taking = modes.iter().copied();
@@ -272,13 +272,15 @@ impl Pipeline<'_> {
         velocity.iter_mut().zip(stops).filter(|(_, stops)| *stops).for_each(|(rate, _)| *rate = 0.0);
     }
 
-    /// Puts the problem of accelerations in place of that of velocities.
-    fn pose(&mut self, state: &State, prepared: &mut Prepared, slips: &[Ordering]) -> Result<Unforced> {
-        let still = self.still(state, prepared, slips)?;
+    /// Puts the problem of accelerations in place of that of velocities; so large a part of the sum of a body's rates is
+    /// `rounding`.
+    fn pose(&mut self, state: &State, prepared: &mut Prepared, slips: &[Ordering], rounding: f64) -> Result<Unforced> {
+        let steady = self.steady(prepared, slips, rounding);
+        self.refuse_turning_normals(state, prepared, slips, &steady)?;
         let mut position = state.position.clone();
         let base = position.iter_mut().take(self.robot.base_dofs());
         base.zip(prepared.impact.placement.base().components()).for_each(|(entry, placed)| *entry = placed);
-        let loads = Loads { robot: self.robot, scene: &state.scene, position: &position, still: &still };
+        let loads = Loads { robot: self.robot, scene: &state.scene, position: &position, steady: &steady };
         let driven = self.driven(&prepared.velocity, loads)?;
         let (unclosed, drifts) = self.assembly.acceleration(&prepared.velocity, loads);
         let mut free = unclosed.clone();
@@ -289,7 +291,7 @@ impl Pipeline<'_> {
                 error.hint("gravity, torques or velocities are too large for the masses: are they in SI units?")
             })?;
         }
-        let own = self.assembly.contact_accelerations(&free, loads);
+        let own = self.assembly.contact_accelerations(&free);
         let (mut likely, rounding) = self.bound_accelerations(prepared, &free, loads);
         likely.iter_mut().for_each(|error| *error *= LIKELY * self.bounds.likely[0]);
         let laws = prepared.impact.problem.laws().iter().zip(slips).map(|(law, slip)| match slip {
@@ -298,7 +300,7 @@ impl Pipeline<'_> {
         });
         let (laws, delassus) = (laws.collect(), self.assembly.workspace.delassus.clone());
         prepared.impact.problem = ContactProblem::checked(delassus, own.clone(), own, laws, vec![0.0; slips.len()])?;
-        Ok(Unforced { still, position, driven, unclosed, free, drifts, likely, rounding })
+        Ok(Unforced { steady, position, driven, unclosed, free, drifts, likely, rounding })
     }
 
     /// Bounds the rounding of the accelerations without forces, by coordinate, which are given, and of the contacts.
@@ -324,7 +326,7 @@ impl Pipeline<'_> {
             velocity[..2].iter_mut().for_each(|entry| *entry = *entry + rests);
         }
         let terms = stretched.load(&velocity, loads).to_vec();
-        let whole = stretched.contact_accelerations(&magnitudes(acceleration), loads);
+        let whole = stretched.contact_accelerations(&magnitudes(acceleration));
         let Assembly { plan, workspace, .. } = assembly;
         bounds.accelerations(plan, acceleration, workspace, (&terms, loads.scene.springs.len()), &whole)
     }
@@ -387,15 +389,20 @@ impl Pipeline<'_> {
     fn refuse_uneven(&self, prepared: &Prepared) -> Result<()> {
         let uneven = prepared.merged.iter().filter(|merged| merged.is_uneven).flat_map(|merged| &merged.outer);
         let mut uneven = uneven.map(|&at| &prepared.impact.contacts[at]);
-        let turning = uneven.find(|own| self.turns(own.body, &prepared.velocity));
+        let turning = uneven.find(|own| self.turns(own.body, &prepared.velocity, self.rounding_of_rates()));
         let Some(Contact { name, .. }) = turning else { return Ok(()) };
         let reason = format!("circles of different radii touch the ground at one place, {name}, and roll differently");
         let hint = "name the one that carries in contacts, or switch off the reduction merge";
         Err(Error::new(Reason::Inconsistent(reason)).hint(hint))
     }
 
-    /// Whether a body turns by more than the rounding of its rate.
-    fn turns(&self, body: usize, velocity: &[f64]) -> bool {
+    /// What part of the sum of a body's given rates is rounding: one of its own for each body.
+    fn rounding_of_rates(&self) -> f64 {
+        self.assembly.plan.bodies.len() as f64 * f64::EPSILON
+    }
+
+    /// Whether a body turns by more than the `rounding` of its rate.
+    fn turns(&self, body: usize, velocity: &[f64], rounding: f64) -> bool {
         let Assembly { plan, .. } = &self.assembly;
         let rates = plan.way_to_root(body).map(|(_, body)| match body.motion {
             JointMotion::Root if plan.floating => velocity[2],
@@ -403,33 +410,47 @@ impl Pipeline<'_> {
             _ => 0.0,
         });
         let (sum, size) = rates.fold((0.0, 0.0), |(sum, size), rate| (sum + rate, size + rate.abs()));
-        // A sum of as many terms as there are bodies, each with a rounding of its own.
-        sum.abs() > plan.bodies.len() as f64 * f64::EPSILON * size
+        sum.abs() > rounding * size
     }
 
-    /// The first of the bodies that move as one with that of a contact, if they do not turn because another of their
-    /// contacts on the same straight ground takes part, too. Contacts that move over a corner of the ground, where the normal turns, are refused.
-    fn still(&self, state: &State, prepared: &Prepared, slips: &[Ordering]) -> Result<Vec<Option<usize>>> {
-        let contacts = &prepared.impact.contacts;
-        let parts = self.rigid_parts(&prepared.velocity);
-        let still: Vec<Option<usize>> = contacts
-            .iter()
-            .map(|own| {
+    /// Which bodies do not turn: those whose rates add up to no more than their `rounding`, and those that move as one
+    /// with a body of which two contacts take part that stand, or are on the same straight ground.
+    fn steady(&self, prepared: &Prepared, slips: &[Ordering], rounding: f64) -> Vec<bool> {
+        let (contacts, velocity) = (&prepared.impact.contacts, &prepared.velocity);
+        let parts = self.rigid_parts(velocity);
+        let holds = |&(at, own): &(usize, &Contact)| {
+            let stops = |(other, contact): (usize, &Contact)| {
+                let apart = contact.point - own.point;
                 // At one place, up to rounding, they keep nothing from turning.
-                let is_apart = |other: &Contact| {
-                    let place = own.tangent().dot(other.point - own.point).abs();
-                    let rounding = CONTACT_TOLERANCE * (own.arm(self.robot).length + other.arm(self.robot).length);
-                    place > rounding || (place > 0.0 && !self.turns(own.body, &prepared.velocity))
+                let least = CONTACT_TOLERANCE * (own.arm(self.robot).length + contact.arm(self.robot).length);
+                let is_apart = |distance: f64| {
+                    distance > least || (distance > 0.0 && !self.turns(own.body, velocity, self.rounding_of_rates()))
                 };
-                let is_beside = |other: &Contact| other.ground == own.ground && parts.are_one(own.body, other.body);
-                contacts.iter().any(|other| is_beside(other) && is_apart(other)).then(|| parts.first(own.body))
-            })
-            .collect();
+                let on_line = contact.ground == own.ground && is_apart(own.tangent().dot(apart).abs());
+                let stand = slips[at].is_eq() && slips[other].is_eq() && is_apart(apart.length());
+                parts.are_one(own.body, contact.body) && (on_line || stand)
+            };
+            contacts.iter().enumerate().any(stops)
+        };
+        let held: Vec<usize> =
+            contacts.iter().enumerate().filter(holds).map(|(_, own)| parts.first(own.body)).collect();
+        let bodies = 0..self.assembly.plan.bodies.len();
+        bodies.map(|body| held.contains(&parts.first(body)) || !self.turns(body, velocity, rounding)).collect()
+    }
+
+    /// Refuses contacts that move over a corner of the ground, where the normal turns.
+    fn refuse_turning_normals(
+        &self,
+        state: &State,
+        prepared: &Prepared,
+        slips: &[Ordering],
+        steady: &[bool],
+    ) -> Result<()> {
         let surface = Surface::new(&state.scene.ground);
-        for ((contact, slip), still) in contacts.iter().zip(slips).zip(&still) {
+        for (contact, slip) in prepared.impact.contacts.iter().zip(slips) {
             let center = ContactPoint { radius: 0.0, ..contact.point_of() };
             let rolls = || {
-                still.is_none()
+                !steady[contact.body]
                     && contact.radius != 0.0
                     && self.assembly.velocity_of(&center, &prepared.velocity) != Vector::zero()
             };
@@ -440,7 +461,7 @@ impl Pipeline<'_> {
                 return Err(Error::new(Reason::Inconsistent(reason)).at("ground.profile").hint(hint));
             }
         }
-        Ok(still)
+        Ok(())
     }
 
     /// Every outcome with an impulse of an impact at contacts that neither approach nor leave; `None` if it is

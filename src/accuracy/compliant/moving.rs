@@ -116,7 +116,7 @@ impl<'a> Equation<'a> {
         move_to(assembly, &position, &velocity);
 
         // Gravity is all that acts besides the contacts.
-        let loads = Loads { robot, scene: &Scene::default(), position: &position, still: &[] };
+        let loads = Loads { robot, scene: &Scene::default(), position: &position, steady: &[] };
         let (mut accelerations, _) = assembly.acceleration(&velocity, loads);
         let base = if assembly.plan.floating { Vector::new(moved[0], moved[1]) } else { Vector::zero() };
         let mut touching = Vec::with_capacity(self.start.len());

@@ -155,3 +155,40 @@ fn torque_holds_a_pendulum() {
     let expected = 2.0 * GRAVITY * 0.5 / (0.1 + 2.0 * 0.25);
     assert!((accelerations(loose)[0] - expected).abs() < 1e-13);
 }
+
+/// A body of 5 kg on a thigh and a foot, which stands wherever its contacts hold it while the body turns.
+#[test]
+fn what_stands_by_rates_that_cancel_stands_in_every_digit() {
+    let leg = robot(&urdf(&[
+        link("body", 5.0, [0.0; 2], 0.05, ""),
+        joint("hip", HINGE, ["body", "thigh"], [0.0; 2], ""),
+        link("thigh", 1.0, [0.0, -0.2], 0.02, ""),
+        joint("ankle", HINGE, ["thigh", "foot"], [0.0, -0.4], ""),
+        link("foot", 0.5, [0.05, -0.03], 0.002, ""),
+    ]));
+    let on = |link: &str, [x, z]: [f64; 2]| json!({"link": link, "offset": [x, 0, z]});
+    let heel = on("foot", [-0.05, -0.05]);
+    // On level ground and a ramp; and at a point of the thigh, which does not turn either.
+    let ramp =
+        json!({"ground": {"profile": [[-9, 0], [0.1, 0], [9, 1.78]]}, "contacts": [heel, on("foot", [0.15, -0.03])]});
+    let kneeling = json!({"contacts": [heel, on("foot", [0.15, -0.05]), on("thigh", [0.2, -0.3])]});
+    for (scene, friction) in [(&ramp, 0.8), (&kneeling, 0.8), (&kneeling, 2.0)] {
+        let found = |rates: [f64; 3]| {
+            let mut state = scene.clone();
+            state["friction"] = json!(friction);
+            state["stance"] = json!("foot");
+            state["position"] = json!({"base": {"pitch": 0.3}, "joints": {"hip": -0.2, "ankle": -0.1}});
+            state["velocity"] = json!({"base": {"pitch": rates[0]}, "joints": {"hip": rates[1], "ankle": rates[2]}});
+            forces(&leg, state)
+        };
+        let exact = found([0.5, -0.5, 0.0]);
+        assert!(modes(&exact).iter().all(|own| own.iter().all(|mode| *mode == Mode::Stick)), "{exact:?}");
+        assert!(exact.analysis.as_ref().unwrap().proven);
+        let last_bit = 0.5 * (1.0 + f64::EPSILON);
+        for rates in [[0.5, -last_bit, 0.0], [0.5, -last_bit, 1e-16], [-0.5, last_bit, 0.0]] {
+            let other = found(rates);
+            assert_eq!(modes(&other), modes(&exact), "{rates:?} {scene}");
+            assert!(other.analysis.as_ref().unwrap().proven);
+        }
+    }
+}
