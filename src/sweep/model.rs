@@ -168,6 +168,11 @@ impl<'a> Solver<'a> {
         Self { model, pipeline, scratch, known: Vec::new(), recent: VecDeque::new() }
     }
 
+    /// What the study asks of each state.
+    pub fn aspect(&self) -> Aspect {
+        self.model.study.question()
+    }
+
     /// Asks about the state at a point; robot or state may be refused there, and every state is once a budget is spent.
     pub fn at<T>(
         &mut self,

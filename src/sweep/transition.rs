@@ -8,8 +8,9 @@ use super::line::Bracket;
 use super::model::Solver;
 use super::regime::Regime;
 use crate::Error;
-use crate::impact::{Analysis, Outcome, RejectionReason};
+use crate::impact::{Analysis, Outcome, Rejection, RejectionReason};
 use crate::law::{Inequality, Mode};
+use crate::pipeline::Aspect;
 use serde::Serialize;
 
 /// An inequality that is zero on a border.
@@ -79,8 +80,9 @@ impl Transition {
             return Self { opening, closing, ..Self::default() };
         }
         let names = &below.0;
-        let mut ended = ending(names, &below.1, &above.1, Side::Below);
-        ended.extend(ending(names, &above.1, &below.1, Side::Above));
+        let aspect = solver.aspect();
+        let mut ended = ending(aspect, names, [&below.1, &above.1], Side::Below);
+        ended.extend(ending(aspect, names, [&above.1, &below.1], Side::Above));
         Self { ended, ..Self::default() }
     }
 
@@ -116,22 +118,26 @@ const ZERO: f64 = 1e-4;
 const UNBOUNDED: f64 = -1e4;
 
 /// The outcomes of the `side` that is `here` which the other rejects, and for which inequality of a contact in `names`.
-fn ending(names: &[String], here: &Analysis, there: &Analysis, side: Side) -> Vec<EndedOutcome> {
+fn ending(aspect: Aspect, names: &[String], [here, there]: [&Analysis; 2], side: Side) -> Vec<EndedOutcome> {
     let cause = |outcome: &Outcome| {
         let modes = &outcome.modes;
         let rejection = there.rejected.iter().find(|rejection| rejection.modes == *modes)?;
         let RejectionReason::Violated { contact, inequality } = rejection.because else { return None };
-        let inequality = match inequality {
-            Inequality::NormalForce | Inequality::TangentialForce
-                if rejection.margin.is_some_and(|margin| margin < UNBOUNDED) =>
-            {
-                Inequality::UnboundedForce
+        let (contact, inequality) = match inequality {
+            _ if aspect == Aspect::Forces && rejection.margin.is_some_and(|margin| margin < UNBOUNDED) => {
+                (most_pushed(rejection).unwrap_or(contact), Inequality::UnboundedForce)
             }
             // An outcome far from its own borders ends where the state jumps, and no inequality is zero.
             _ if outcome.margin.is_some_and(|margin| margin > ZERO) => return None,
-            other => other,
+            other => (contact, other),
         };
         Some(EndedOutcome { contact: names.get(contact)?.clone(), inequality, modes: modes.clone(), side })
     };
     here.outcomes.iter().filter_map(cause).collect()
+}
+
+/// The contact with the greatest force.
+fn most_pushed(rejection: &Rejection) -> Option<usize> {
+    let forces = rejection.motion.as_ref()?.impulse.iter().map(|&[t, n]| libm::hypot(t, n));
+    Some(forces.enumerate().max_by(|(_, a), (_, b)| a.total_cmp(b))?.0)
 }

@@ -4,8 +4,9 @@
 //!     M(q) v' + h(q, v) = J(q)^T lambda,   delta = depth of the contact point,   lambda and s as in the frozen model
 //! ```
 //!
-//! h holds gravity, Coriolis and centrifugal forces. The impact lasts some multiple of sqrt(m / k_n), so that the
-//! difference from the frozen model falls with 1 / sqrt(k_n).
+//! h holds Coriolis and centrifugal forces, and no gravity: it exerts no impulse, and would keep feet on the ground for as
+//! long as a run may take. The impact lasts some multiple of sqrt(m / k_n), so that the difference from the frozen model
+//! falls with 1 / sqrt(k_n).
 
 use super::ground::{SoftGround, Suspension, mean_mobility};
 use super::integrate::{Limits, StiffEquations, integrate};
@@ -115,8 +116,8 @@ impl<'a> Equation<'a> {
         let position: Vec<f64> = position.iter().zip(&moved).map(|(q, moved)| q + moved).collect();
         move_to(assembly, &position, &velocity);
 
-        // Gravity is all that acts besides the contacts.
-        let loads = Loads { robot, scene: &Scene::default(), position: &position, steady: &[] };
+        let scene = Scene { gravity: Some(0.0), ..Scene::default() };
+        let loads = Loads { robot, scene: &scene, position: &position, steady: &[] };
         let (mut accelerations, _) = assembly.acceleration(&velocity, loads);
         let base = if assembly.plan.floating { Vector::new(moved[0], moved[1]) } else { Vector::zero() };
         let mut touching = Vec::with_capacity(self.start.len());

@@ -95,17 +95,24 @@ fn quickest(ways: &[Way]) -> Option<Way> {
     ways.iter().copied().min_by(|a, b| a.time.total_cmp(&b.time))
 }
 
-/// Every way to G in numbers of one kind that failed in none of its cases.
+/// Every way to G in numbers of one kind that failed in none of its cases with contacts; it keeps no more digits than the
+/// numbers have.
 fn ways(studies: &[CaseStudy], number: &str) -> Vec<Way> {
+    let most = match number {
+        "f32" => f64::from(f32::MANTISSA_DIGITS),
+        "f64" => f64::from(f64::MANTISSA_DIGITS),
+        _ => 2.0 * f64::from(f64::MANTISSA_DIGITS),
+    } * std::f64::consts::LOG10_2;
+
     let all = [Factorization::SparseLtl, Factorization::DenseCholesky, Factorization::ArticulatedBodies];
     let way = |factorization| {
-        let every = studies.iter().flat_map(|study| &study.methods);
+        let every = studies.iter().filter(|study| study.contacts > 0).flat_map(|study| &study.methods);
         let is_asked = |method: &&Method| method.number == number && method.factorization == Some(factorization);
         let measured =
             |method: &Method| Some((method.time?.median, method.error?.delassus.filter(|error| !error.is_nan())?));
         let (times, errors): (Vec<f64>, Vec<f64>) = every.filter(is_asked).map(measured).collect::<Option<_>>()?;
         let digits = -libm::log10(errors.into_iter().reduce(f64::max)?);
-        Some(Way { factorization, time: median(times)?, digits: digits.max(0.0) })
+        Some(Way { factorization, time: median(times)?, digits: digits.clamp(0.0, most) })
     };
     all.into_iter().filter_map(way).collect()
 }
@@ -194,5 +201,10 @@ mod tests {
         let found = advice(&[study(true, vec![failing, method("f64", BODIES, 1e-6, 1e-14)])]).unwrap();
         assert_eq!(found, "For G take f64 by articulated bodies (14.0 digits).");
         assert_eq!(advice(&[study(true, Vec::new())]), None);
+        // Of whole numbers no digit is lost, in whatever way; without a contact there is no G.
+        let exact = || vec![method("f64", LTL, 1e-6, 1e-97), method("f64", BODIES, 3e-6, 1e-17)];
+        let found = advice(&[study(true, exact())]).unwrap();
+        assert!(found.starts_with("For G take f64 by sparse LTL (16.0 digits), the quickest way"), "{found}");
+        assert_eq!(advice(&[CaseStudy { contacts: 0, ..study(true, exact()) }]), None);
     }
 }

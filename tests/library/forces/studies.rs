@@ -57,6 +57,25 @@ fn force_has_no_bound_where_the_paradox_begins() {
     }
 }
 
+/// The pole is one foot's, and what is violated most beyond it is the other's.
+#[test]
+fn the_foot_whose_force_has_no_bound_is_named() {
+    let leg = |link: &str| json!({"link": link, "offset": [0, 0, -1]});
+    let study = json!({
+        "question": "forces", "parameters": {"mu": {"from": 0, "to": 4, "steps": 9}},
+        "state": {
+            "position": {"base": {"pitch": 0.1}, "joints": {"hip": -0.3}}, "velocity": {"base": {"x": 1}},
+            "friction": "mu", "torque": {"hip": 5}, "contacts": [leg("left_leg"), leg("right_leg")],
+        },
+    });
+    let walker = include_str!("../../../urdf/minimalistic.urdf");
+    let found = with(walker, &study, 0, |model| Findings::of(model, WORKERS));
+    let Findings::Along(survey) = found else { panic!("one parameter") };
+    let border = survey.borders.iter().find(|border| (border.at - 0.87216649).abs() < 1e-6).expect("the pole");
+    let ended: Vec<_> = border.transition.ended.iter().map(|own| (&*own.contact, own.inequality)).collect();
+    assert!(ended.contains(&("left_leg", Inequality::UnboundedForce)), "{ended:?}");
+}
+
 #[test]
 fn force_and_acceleration_end_where_the_rod_lifts() {
     // b_n = omega^2 sin(theta) / 2 - g.
