@@ -196,7 +196,9 @@ impl Surface {
         let Self::HalfPlane(plane) = self else { return None };
         let flat = |touch: &Touch| {
             let way = plane.along(placement.world(touch.circle.body, touch.circle.center) - contact.point);
-            touch.gap > 0.0 && touch.gap < FLAT * way.abs()
+            // The way to the contact's own circle is rounding.
+            let is_own = (touch.circle.body, touch.circle.center) == (contact.body, contact.center);
+            !is_own && touch.gap > 0.0 && touch.gap < FLAT * way.abs()
         };
         let touches = points(foot).map(|point| plane.touch(placement, point)).filter(flat);
         touches.min_by(|a, b| a.gap.total_cmp(&b.gap))

@@ -365,9 +365,10 @@ impl<'r> Pipeline<'r> {
             analysis.proven &= analysis.outcomes.iter().all(|outcome| outcome.proven);
         }
         let left_out = if brief { Vec::new() } else { self.left_out(scene, &prepared) };
-        let Impact { notes, problem, .. } = &mut *prepared.impact;
+        let Impact { notes, problem, contacts, .. } = &mut *prepared.impact;
         if let Some(analysis) = &analysis {
             notes.extend(analysis.notes(problem, || self.robot.mass()));
+            notes.extend(self.nearly_one(contacts, &analysis.outcomes));
         }
         let matrices = self.options.matrices.then(|| self.matrices());
         let followed = analysis.as_mut().filter(|_| next).map(|analysis| self.follow(state, &prepared, analysis));

@@ -5,6 +5,7 @@ use super::{NearestFoot, Pipeline};
 use crate::contact::{Contact, Footing, Placement};
 use crate::dynamics::plan::PlanBody;
 use crate::error::{along_normal, rounded};
+use crate::impact::Outcome;
 use crate::planar::Vector;
 use crate::state::{Scene, State};
 
@@ -16,6 +17,10 @@ const STANDS: f64 = 1e-4;
 
 /// A foot that leaves the ground no faster does not move \[m/s\].
 const SLOW: f64 = 1e-2;
+
+/// Contacts of two bodies are at one place if they are apart by no more than this part of the robot's size, and an outcome
+/// hangs on rounding if its margin is no greater.
+const THIN: f64 = 1e-10;
 
 /// Named contacts that differ in height by more than this part of the robot's size cannot touch the ground together.
 const UNEVEN: f64 = 0.1;
@@ -58,6 +63,22 @@ impl Pipeline<'_> {
             }
         }
         notes.extend(self.upside_down(contacts, placement));
+    }
+
+    /// That an outcome hangs on what is between two contacts that are at one place but for the last digits of the robot.
+    pub(super) fn nearly_one(&self, contacts: &[Contact], outcomes: &[Outcome]) -> Option<String> {
+        let is_thin = |own: &Outcome| own.margin.is_some_and(|margin| margin > 0.0 && margin < THIN);
+        if !outcomes.iter().any(is_thin) {
+            return None;
+        }
+        let is_near =
+            |a: &Contact, b: &Contact| a.body != b.body && (a.point - b.point).length() <= THIN * self.feet.size();
+        let mut pairs = contacts.iter().enumerate().flat_map(|(at, a)| contacts[..at].iter().map(move |b| (b, a)));
+        let (a, b) = pairs.find(|(a, b)| is_near(a, b))?;
+        let names = format!("{} and {}", a.name, b.name);
+        Some(format!(
+            "{names} are at one place but for last digits of the robot or its pose, on which hangs what each does"
+        ))
     }
 
     /// That the robot's center of mass is below all contacts, as of a robot that is drawn head down.
@@ -134,8 +155,10 @@ impl Pipeline<'_> {
             let stands = *height <= STANDS * self.feet.size() && velocity[1] < SLOW;
             *height > 0.0 && (comes || stands)
         };
-        // A little more than the height, in two digits, next to four of the height.
-        let enough = |height: f64| 1.1 * height;
+        // A little more than the height, in two digits, next to four of the height; a sole that may be uneven stands on as
+        // many of its corners as with the usual tolerance.
+        let bumps = self.feet.iter().map(|foot| foot.bumps).fold(0.0, f64::max);
+        let enough = |height: f64| 1.1 * height + bumps;
         if !contacts.is_empty() {
             let another = nearest.filter(|own| near.iter().all(|other| other.link != own.link));
             for &NearestFoot { link, height, .. } in another.iter().chain(near).filter(|foot| is_near(foot)) {

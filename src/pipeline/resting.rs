@@ -65,8 +65,8 @@ impl Pipeline<'_> {
         resting.clear();
         resting.resize(contacts.len(), false);
         for (index, contact) in contacts.iter().enumerate() {
-            let [slow, bound] =
-                [self.assembly.workspace.contact_velocity[index], self.bounds.velocity[index]].map(length);
+            let [own, bounds] = [self.assembly.workspace.contact_velocity[index], self.bounds.velocity[index]];
+            let [slow, bound] = [own, bounds].map(length);
             if place == Some(index) {
                 continue;
             }
@@ -89,6 +89,12 @@ impl Pipeline<'_> {
                 notes.push(format!(
                     "{name} moves at {slow:.1e} m/s, which is within the rounding of its velocity: if it is at rest, \
                      say so by `stance` or the option `resting_speed`"
+                ));
+            } else if !self.options.brief && own[1] != 0.0 && own[1].abs() <= bounds[1] {
+                notes.push(format!(
+                    "{name} slides, and moves at {:.1e} m/s along the normal, which is within the rounding of its velocity: \
+                     whether it strikes hangs on that",
+                    own[1]
                 ));
             } else if !self.options.brief
                 && self.options.resting_speed.is_none()

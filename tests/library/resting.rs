@@ -233,3 +233,41 @@ fn feet_that_nearly_stand_are_noted() {
     let noisy = with(0.0, 0.5);
     assert!(noted(&noisy, "_foot/0 moves at ") && noted(&noisy, "if it stands"), "{:?}", noisy.notes);
 }
+
+/// Two legs that differ in the last digits of their hips, as exporters write them.
+#[test]
+fn feet_at_one_place_but_for_last_digits_are_noted() {
+    let leg = |side: &str, height: f64| {
+        let foot = urdf::collision([0.02, -0.5], urdf::POINT);
+        let hip = urdf::joint(format!("{side}_hip"), HINGE, ["torso", side], [0.0, height], "");
+        urdf::link(side, 1.0, [0.01, -0.2], 0.05, &foot) + &hip
+    };
+    let found = |height: f64| {
+        let torso = urdf::link("torso", 5.0, [0.03, 0.1], 0.2, "");
+        let robot = robot(&urdf::robot(&[torso, leg("left", -0.002_617_400_551_670_56), leg("right", height)]));
+        let state = json!({"place": "lowest", "friction": 0.5, "position": {"base": {"pitch": 0.1}},
+            "velocity": {"base": {"x": 0.3, "z": -1, "pitch": 0.2}}});
+        impact(&robot, state)
+    };
+    let is_noted = |found: &Impact| found.notes.iter().any(|note| note.contains("at one place but for last digits"));
+    let [same, other] = [-0.002_617_400_551_670_56, -0.002_617_400_551_670_58].map(found);
+    assert_eq!((same.contacts.len(), is_noted(&same)), (2, false), "{:?}", same.notes);
+    assert_eq!((other.contacts.len(), is_noted(&other)), (2, true), "{:?}", other.notes);
+}
+
+#[test]
+fn a_slide_that_strikes_by_rounding_is_noted() {
+    let block = robot(include_str!("../../urdf/block.urdf"));
+    let noted = |rate: f64| {
+        let state = json!({"friction": 0.5, "position": {"base": {"pitch": 0.3}}, "place": "lowest",
+            "velocity": {"base": {"x": 1.0, "z": rate, "pitch": 0.7}}});
+        let found = impact(&block, state);
+        let [_, normal] = found.velocity_before[0];
+        (normal, found.notes.iter().any(|note| note.contains("whether it strikes hangs on that")))
+    };
+    let (carried, _) = noted(0.0);
+    // By one unit in the last place of what the turn gives the foot.
+    let (own, is_noted) = noted(-carried * (1.0 + f64::EPSILON));
+    assert!(own != 0.0 && own.abs() < 1e-15 && is_noted, "{own}");
+    assert!(!noted(1e-3 - carried).1);
+}

@@ -72,6 +72,18 @@ fn raised_end_of_a_flat_sole_is_an_open_foot() {
 }
 
 #[test]
+fn a_round_foot_has_no_other_point() {
+    let ball = robot(&urdf::body(0.5, &collision([0.3, -0.4], "sphere radius=\"0.05\"")));
+    for step in 0..200 {
+        let angle = 0.37 * f64::from(step);
+        let state = json!({"place": "lowest", "ground": {"slope": 0.3 * angle.sin()},
+            "position": {"base": {"x": angle.cos(), "pitch": angle}}, "velocity": {"base": {"z": -1}}});
+        let found = impact(&ball, state);
+        assert_eq!((found.contacts.len(), found.nearest, &*found.notes), (1, None, &[][..]));
+    }
+}
+
+#[test]
 fn nearest_over_a_profile_is_found_at_its_edge() {
     // The stair's edge is under the middle of the sole.
     let over = state([0.0, 0.35, 0.0], FALLING, 0.5, &step(0.0, 0.2));

@@ -133,6 +133,19 @@ fn a_foot_that_just_misses_is_noted() {
     }
 }
 
+#[test]
+fn the_tolerance_of_the_note_keeps_uneven_soles_whole() {
+    let lifted = UNEVEN[0].map(|[x, z]| [x, z + 1.2e-5]);
+    let robot = biped(&lifted, &UNEVEN[1]);
+    let found = impact(&robot, falling());
+    let note = found.notes.iter().find(|note| note.starts_with("left_foot nearly touches, ")).expect("a note");
+    let (_, rest) = note.split_once("`contact_tolerance: ").expect("an option");
+    let tolerance = rest.split('`').next().and_then(|own| own.parse().ok()).expect("a number");
+    let given = Options { contact_tolerance: Some(tolerance), ..Options::default() };
+    let found = try_impact(&robot, given, falling()).expect("an answer");
+    assert_eq!(found.contacts.iter().map(|own| own.point.x).collect::<Vec<_>>(), [-0.071, 0.131, -0.071, 0.131]);
+}
+
 /// A torso, a leg and a foot with a flat sole; torso and leg are pitched by these angles \[rad\] at q = 0.
 fn one_legged([torso, leg]: [f64; 2]) -> Robot {
     let sole = urdf::collision([0.03, -0.04], "box size=\"0.21 0.1 0.03\"");
