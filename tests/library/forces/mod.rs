@@ -1,13 +1,13 @@
 //! Forces and accelerations in sustained contact: laws of mechanics that hold for every robot, and cases by hand.
 
 mod next;
-mod painleve;
 mod refusals;
 mod standing;
 mod springs;
 mod studies;
 
 use crate::support::impact::{modes, outcomes, robot};
+use crate::support::urdf;
 use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::{Defaults, Friction, Impact, Result, Robot, State};
 use std::fmt::Display;
@@ -25,5 +25,5 @@ fn forces(robot: &Robot, state: impl Display) -> Box<Impact> {
 
 /// A rigid body of mass m and moment m k^2 whose frame is at its center, without shapes.
 fn rod(mass: f64, square: f64) -> Robot {
-    robot(&crate::support::urdf::robot(&[crate::support::urdf::link("rod", mass, [0.0, 0.0], mass * square, "")]))
+    robot(&urdf::robot(&[urdf::link("rod", mass, [0.0; 2], mass * square, "")]))
 }
