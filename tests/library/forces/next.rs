@@ -1,16 +1,28 @@
 //! Forces just after an impact.
 
-use crate::support::impact::{modes, robot, try_impact};
+use crate::support::impact::{modes, ramone, robot, try_impact};
 use crate::support::random::Random;
+use crate::support::urdf::{self, HINGE, collision, joint, link};
 use heelstrike::impact::{Next, Verdict};
 use heelstrike::law::Mode::{self, Separate, SlidePlus, Stick};
-use heelstrike::{Defaults, Options, Pipeline, Robot, State};
+use heelstrike::{Defaults, Impact, Options, Pipeline, Robot, State};
 use serde_json::{Value, json};
 use std::fmt::Display;
 
-const DISC: &str = r#"<robot name="disc"><link name="disc">
-    <inertial><mass value="2"/><inertia ixx="1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="1"/></inertial>
-    <collision><geometry><sphere radius="0.5"/></geometry></collision></link></robot>"#;
+fn disc() -> Robot {
+    robot(&urdf::body(0.1, &collision([0.0; 2], "sphere radius=\"0.5\"")))
+}
+
+/// The forces of a state that is taken to rest below this speed.
+fn forces(robot: &Robot, state: &Value, resting_speed: Option<f64>) -> Box<Impact> {
+    let state = State::from_json(&state.to_string(), robot, &Defaults::default()).unwrap();
+    Pipeline::new(robot, Options { resting_speed, ..Options::default() }).forces(&state).unwrap()
+}
+
+/// The modes of the contacts that still touch.
+fn kept(next: &Next) -> Vec<Vec<Mode>> {
+    next.modes.iter().map(|own| own.iter().copied().flatten().collect()).collect()
+}
 
 fn nexts(robot: &Robot, state: impl Display) -> Vec<Next> {
     let found = try_impact(robot, Options { next: true, ..Options::default() }, &state);
@@ -21,7 +33,7 @@ fn nexts(robot: &Robot, state: impl Display) -> Vec<Next> {
 /// A disc that falls with a spin: it sticks or slides on under its weight, and with a bounce it is in the air.
 #[test]
 fn disc_rests_slides_or_bounces() {
-    let disc = robot(DISC);
+    let disc = disc();
     let after = |change: Value, impulse: Value| {
         let mut state =
             json!({"position": {"base": {"z": 0.5}}, "velocity": {"base": {"z": -1.0}}, "impulse": impulse});
@@ -34,19 +46,19 @@ fn disc_rests_slides_or_bounces() {
     assert_eq!(after(json!({"gravity": -1.0}), none.clone()), expected(Verdict::Unique, Some(Separate)));
     assert_eq!(after(json!({"restitution": 0.5}), none), expected(Verdict::NoContact, None));
     // Pushed along the ground so hard that friction does not stop it.
-    let push = json!([{"link": "disc", "offset": [0, 0, 0], "vector": [40, 0]}]);
+    let push = json!([{"link": "body", "offset": [0, 0, 0], "vector": [40, 0]}]);
     assert_eq!(after(json!({}), push), expected(Verdict::Unique, Some(SlidePlus)));
 }
 
 /// A point that slides as its body turns about it; its normal velocity is what rounding leaves of 0.1 - 0.1.
 #[test]
 fn what_rounding_leaves_does_not_bounce() {
-    let disc = robot(DISC);
+    let disc = disc();
     let turning = |restitution: f64| {
         let rate = 1.0_f64.next_up();
         json!({
             "position": {"base": {"z": 0.4}}, "velocity": {"base": {"x": -1, "z": 0.1, "pitch": rate}},
-            "contacts": [{"link": "disc", "offset": [0.1, 0, -0.4]}], "friction": 0.5, "restitution": restitution,
+            "contacts": [{"link": "body", "offset": [0.1, 0, -0.4]}], "friction": 0.5, "restitution": restitution,
         })
     };
     let found = nexts(&disc, turning(0.5));
@@ -81,7 +93,7 @@ fn next_is_forces_at_the_velocities_after() {
     let walker = robot(include_str!("../../../urdf/minimalistic.urdf"));
     let (mut random, mut verdicts) = (Random::new(11), [0; 3]);
     for case in 0..300 {
-        let mut between = |low: f64, high: f64| low + (high - low) * random.uniform();
+        let mut between = |low: f64, high: f64| random.between(low, high);
         let (pitch, both) = (between(-1.3, 1.3), case % 3 > 0);
         let hip = if both { 2.0 * pitch } else { between(-1.0, 1.0) };
         let state = json!({
@@ -102,8 +114,11 @@ fn next_is_forces_at_the_velocities_after() {
             let options = Options { resting_speed: Some(1e-9), ..Options::default() };
             let forces = Pipeline::new(&walker, options).forces(&after).unwrap();
             let analysis = forces.analysis.as_ref().unwrap();
-            let kept: Vec<Vec<Mode>> = next.modes.iter().map(|own| own.iter().copied().flatten().collect()).collect();
-            assert_eq!((next.verdict, next.proven, kept), (analysis.verdict, true, modes(&forces)), "{outcome:?}");
+            assert_eq!(
+                (next.verdict, next.proven, kept(next)),
+                (analysis.verdict, true, modes(&forces)),
+                "{outcome:?}"
+            );
             verdicts[next.modes.len().min(2)] += 1;
         }
     }
@@ -113,7 +128,7 @@ fn next_is_forces_at_the_velocities_after() {
 /// Rounding leaves the robot a rate of turn of 1e-16 rad/s, by which no foot of held legs moves against the other.
 #[test]
 fn held_legs_stand_on_both_feet_after_an_impact() {
-    let ramone = robot(include_str!("../../../urdf/ramone.urdf"));
+    let ramone = ramone();
     for (x, friction) in [0.0, 0.02, 0.05].into_iter().flat_map(|x| [(x, json!(0.8)), (x, json!("infinite"))]) {
         let state = json!({
             "position": {"joints": {"left_hip": 0.4, "left_knee": -0.3, "right_hip": -0.4, "right_knee": 0.3}},
@@ -133,15 +148,12 @@ fn held_legs_stand_on_both_feet_after_an_impact() {
 /// 1e-13 rad/s where its impulse is one of many.
 #[test]
 fn what_an_impact_stops_stands_as_it_would_without_rates() {
-    let arm = robot(
-        r#"<robot name="arm"><link name="world"/><link name="l"><inertial><origin xyz="0.15 0 -0.2"/><mass value="1"/>
-        <inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/></inertial></link>
-        <joint name="j" type="continuous"><parent link="world"/><child link="l"/><axis xyz="0 1 0"/></joint></robot>"#,
-    );
+    let links = "<link name=\"world\"/>".to_owned() + &link("l", 1.0, [0.15, -0.2], 0.01, "");
+    let arm = robot(&urdf::robot(&[links, joint("j", HINGE, ["world", "l"], [0.0; 2], "")]));
     let mut random = Random::new(3);
     let mut stands = 0;
     for case in 0..200 {
-        let mut between = |low: f64, high: f64| low + (high - low) * random.uniform();
+        let mut between = |low: f64, high: f64| random.between(low, high);
         let friction = if case % 3 == 0 { json!("infinite") } else { json!(between(0.1, 3.0)) };
         let mut state = json!({
             "position": {"joints": {"j": between(-3.0, 3.0)}}, "velocity": {"joints": {"j": between(-1.0, 1.0)}},
@@ -151,12 +163,8 @@ fn what_an_impact_stops_stands_as_it_would_without_rates() {
         let outcomes = try_impact(&arm, Options { next: true, ..Options::default() }, &state).unwrap();
         for outcome in outcomes.into_analysis().unwrap().outcomes.iter().filter(|own| own.modes == [Stick]) {
             state["velocity"] = json!({});
-            let still = State::from_json(&state.to_string(), &arm, &Defaults::default()).unwrap();
-            let still = Pipeline::new(&arm, Options::default()).forces(&still).unwrap();
             let next = outcome.next.as_ref().unwrap();
-            let modes_after: Vec<Vec<Mode>> =
-                next.modes.iter().map(|own| own.iter().copied().flatten().collect()).collect();
-            assert_eq!((next.proven, modes_after), (true, modes(&still)), "{state}");
+            assert_eq!((next.proven, kept(next)), (true, modes(&forces(&arm, &state, None))), "{state}");
             stands += usize::from(next.verdict == Verdict::Unique);
         }
     }
@@ -166,16 +174,14 @@ fn what_an_impact_stops_stands_as_it_would_without_rates() {
 /// The same of a robot on both feet of held legs whose rates are noise, below the resting speed.
 #[test]
 fn rates_below_the_resting_speed_are_zero_where_a_robot_stands() {
-    let ramone = robot(include_str!("../../../urdf/ramone.urdf"));
+    let ramone = ramone();
     let joints = json!({"left_hip": 0.4, "left_knee": -0.3, "right_hip": -0.4, "right_knee": 0.3});
     let forces = |velocity: Value, resting_speed: Option<f64>| {
         let state = json!({
             "position": {"joints": joints}, "velocity": velocity, "place": "lowest", "friction": "infinite",
             "held": ["left_hip", "left_knee", "right_hip", "right_knee"],
         });
-        let state = State::from_json(&state.to_string(), &ramone, &Defaults::default()).unwrap();
-        let options = Options { resting_speed, ..Options::default() };
-        Pipeline::new(&ramone, options).forces(&state).unwrap()
+        forces(&ramone, &state, resting_speed)
     };
     let noise = json!({"base": {"x": 1.3e-17, "z": -2.1e-17, "pitch": 5e-17}});
     let found = forces(noise, Some(1e-6));

@@ -1,7 +1,7 @@
 //! States that are in no sustained contact.
 
 use super::{rod, try_forces};
-use crate::support::impact::robot;
+use crate::support::impact::{outcomes, robot};
 use crate::support::urdf::{self, HINGE, body, collision, joint, link};
 use serde_json::json;
 
@@ -68,19 +68,17 @@ fn places_apart_by_rounding_do_not_stop_a_turn() {
 
 #[test]
 fn what_leaves_the_range_of_f64_has_a_remedy() {
-    let massless = robot(&crate::support::urdf::robot(&[
-        crate::support::urdf::link("base", 1.0, [0.0; 2], 1.0, ""),
-        crate::support::urdf::link("leaf", 1e-300, [0.0; 2], 1e-300, ""),
-        crate::support::urdf::joint("hinge", crate::support::urdf::HINGE, ["base", "leaf"], [0.0; 2], ""),
+    let massless = robot(&urdf::robot(&[
+        link("base", 1.0, [0.0; 2], 1.0, ""),
+        link("leaf", 1e-300, [0.0; 2], 1e-300, ""),
+        joint("hinge", HINGE, ["base", "leaf"], [0.0; 2], ""),
     ]));
     for (robot, state) in [
         (&rod(1.0, 1.0), json!({"gravity": 1e308, "contacts": [], "velocity": {"base": {"x": 1.0}}})),
         (&massless, json!({"torque": {"hinge": 1e30}, "contacts": []})),
     ] {
         match try_forces(robot, &state) {
-            Ok(found) => {
-                assert!(crate::support::impact::outcomes(&found)[0].velocity().all(f64::is_finite), "{found:?}")
-            }
+            Ok(found) => assert!(outcomes(&found)[0].velocity().all(f64::is_finite), "{found:?}"),
             Err(error) => assert!(error.remedy().is_some(), "{error}"),
         }
     }
