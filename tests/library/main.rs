@@ -9,7 +9,6 @@ mod compliant;
 mod constraints;
 mod courses;
 mod csv;
-mod families;
 mod forces;
 mod ground;
 mod lecture;

@@ -4,7 +4,7 @@
 use crate::support::impact::{impact, ramone, robot, try_impact};
 use crate::support::urdf::{self, HINGE, POINT, collision, joint, link};
 use heelstrike::impact::{
-    Analysis, ContactProblem, Friction, Inequality, ListedRejections, Mode, RejectionReason, Verdict, analyze,
+    Analysis, ContactProblem, Family, Friction, Inequality, ListedRejections, Mode, RejectionReason, Verdict, analyze,
 };
 use heelstrike::pipeline::Options;
 use heelstrike::robot::Base;
@@ -96,6 +96,26 @@ fn an_impulse_of_a_light_contact_keeps_its_digits() {
     let found = analysis.outcomes[0].impulse[1];
     let errors = [found[1] / expected - 1.0, found[0] / (1.6e-5 * expected) - 1.0];
     assert!(errors.iter().all(|error| error.abs() < 1e-12), "{found:?}");
+}
+
+/// A plank slides on two pairs of supports; how they share the load decides how much they brake it.
+#[test]
+fn ends_of_a_family_that_are_close_are_two() {
+    // Mass and moment 1, supports at 1 below the CoG.
+    let jacobian: Vec<Vec<f64>> =
+        [-2.0, -1.0, 1.0, 2.0].iter().flat_map(|&x| [vec![1.0, 0.0, -1.0], vec![0.0, 1.0, x]]).collect();
+    let masses = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|row| row.to_vec());
+    for apart in [0.25, 1e-9, 1e-15] {
+        let friction = [0.0, apart, apart, 0.0].map(|more| mu(0.5 + more)).to_vec();
+        let problem = ContactProblem::from_dynamics(&masses, &jacobian, &[3.0, -1.0, 0.0], friction, vec![0.0; 4]);
+        let found = analyze(&problem.expect("a problem"), ListedRejections::Nothing).expect("four contacts");
+        assert!(found.proven && found.verdict == Verdict::Ambiguous, "{found:?}");
+        let slides = vec![Mode::SlidePlus; 4];
+        assert_eq!(found.families, [Family { modes: slides.clone(), dimension: 1, corners: vec![0, 1] }], "{apart}");
+        assert!(found.outcomes.iter().all(|outcome| outcome.modes == slides && outcome.family));
+        let speeds = [0, 1].map(|end: usize| found.outcomes[end].velocity_after[0][0]);
+        assert!((speeds[0] - speeds[1]).abs() < 4.0 * apart, "{speeds:?}");
+    }
 }
 
 #[test]
