@@ -85,15 +85,6 @@ fn shapes_touch_with_their_lowest_points() {
 }
 
 #[test]
-fn corners_of_a_flat_drop_share_the_momentum() {
-    let found = impact(&sole(), at(0.1, 1.0));
-    let analysis = found.analysis.as_ref().unwrap();
-    assert_eq!((analysis.verdict, analysis.rank), (Verdict::Unique, Some(3)));
-    assert!(!analysis.outcomes[0].impulse_unique);
-    assert_close(analysis.outcomes[0].impulse.as_flattened(), &[0.0, 1.0, 0.0, 1.0]);
-}
-
-#[test]
 fn a_foot_off_the_tolerance_is_open_or_refused() {
     // The size of the box robot is sqrt(0.05), so the tolerance is 2.2e-7 m.
     assert_eq!(impact(&sole(), at(0.1 + 1e-7, 0.0)).contacts.len(), 2);
@@ -159,18 +150,6 @@ fn pendulum(mass: f64) -> Robot {
         link("leg", mass, [0.0, -0.5], 0.0, &collision([0.0, -1.0], POINT)),
         joint("hip", HINGE, ["body", "leg"], [0.0; 2], ""),
     ]))
-}
-
-#[test]
-fn a_held_joint_keeps_its_rate_and_joins_its_bodies() {
-    let state = r#"{"position": {"base": {"z": 1}}, "velocity": {"base": {"z": -1}, "joints": {"hip": 0.5}},
-        "held": ["hip"], "friction": "infinite"}"#;
-    let found = impact(&pendulum(1.0), state);
-    // The foot is 1 m below the hip: turning at 0.5 rad/s moves it back.
-    assert_eq!(found.velocity_before, [[-0.5, -1.0]]);
-    assert_eq!(velocities_after(&found)[0][3], 0.5);
-    // Two masses above each other on the contact's normal: 3 kg stop, L_n = 3 N s.
-    assert_close(&[outcomes(&found)[0].impulse[0][1]], &[3.0]);
 }
 
 #[test]
