@@ -210,70 +210,52 @@ fn deep_foot_is_refused_with_its_velocity() {
     assert!(remedy.contains("stand on other") && !remedy.contains("raise"), "{remedy}");
 }
 
+/// What is said of states of two feet and of RAMone in which something is doubtful, and of others next to them.
 #[test]
-fn tolerance_beyond_the_robot_is_noted() {
-    let notes = |tolerance: f64| {
-        let options = Options { contact_tolerance: Some(tolerance), ..Options::default() };
-        try_impact(&two_feet(0.0), options, striking(0.0, json!({"friction": 1}))).unwrap().notes
-    };
-    assert!(notes(0.9).is_empty());
-    assert_eq!(notes(5.0), ["a contact tolerance of 5 m is more than the robot's size, 1 m: is it in meters?"]);
-}
-
-#[test]
-fn ground_speed_and_pose_beyond_any_robots_are_noted() {
-    let notes = |more: Value| {
-        let contact = json!({"friction": 1, "contacts": [{"link": "body"}]});
-        let mut state = striking(0.0, contact);
+fn doubtful_scenes_are_noted_word_for_word() {
+    let (high, ramone) = (two_feet(0.5), robot(RAMONE));
+    let with = |more: Value| {
+        let mut state = striking(0.0, json!({"friction": 1, "contacts": [{"link": "body"}]}));
         state.as_object_mut().unwrap().extend(more.as_object().cloned().unwrap_or_default());
-        impact(&two_feet(0.5), state).notes
+        (&high, state)
     };
-    let steep = |slope: f64| notes(json!({"ground": {"slope": slope}}));
-    assert!(steep(-0.7).is_empty(), "{:?}", steep(-0.7));
-    assert_eq!(steep(-1.0), ["the ground's slope of -1 rad is one of -57.3 degrees: was it meant in degrees?"]);
-    let falling = |z: f64| notes(json!({"velocity": {"base": {"z": z}}}));
-    assert!(falling(-100.0).is_empty(), "{:?}", falling(-100.0));
-    assert_eq!(falling(-500.0), ["the rate of z is -500 m/s: velocities are in m/s and rad/s"]);
+    let falling = |z: f64| with(json!({"velocity": {"base": {"z": z}}}));
+    let width = |z: f64| with(json!({"uncertainty": {"velocity": {"base": {"z": z}}}}));
     let turning = |rate: f64| {
-        let joints = json!({"left_hip": rate});
-        impact(&robot(RAMONE), json!({"velocity": {"joints": joints}, "place": "lowest", "friction": 1})).notes
+        let velocity = json!({"joints": {"left_hip": rate}});
+        (&ramone, json!({"velocity": velocity, "place": "lowest", "friction": 1}))
     };
-    assert!(turning(100.0).is_empty(), "{:?}", turning(100.0));
-    assert_eq!(turning(286.0), ["the rate of left_hip is 286 rad/s; degrees per second?"]);
-    let boxed = |width: f64| notes(json!({"uncertainty": {"velocity": {"base": {"z": width}}}}));
-    assert!(boxed(0.1).is_empty(), "{:?}", boxed(0.1));
-    assert_eq!(boxed(0.0), ["every half-width of the uncertainty is 0: its box is the state alone"]);
-    let at_the_head = notes(json!({"contacts": [{"link": "body", "offset": [0, 0, 0.25]}]}));
-    let [_, upside_down] = &at_the_head[..] else { panic!("{at_the_head:?}") };
-    assert_eq!(upside_down, "the center of mass is 0.250 m below all contacts: is the pose upside down?");
-}
-
-#[test]
-fn named_contacts_that_cannot_be_meant_are_noted() {
-    let robot = robot(RAMONE);
-    let notes = |left: Value, right: Value, knee: f64| {
+    let foot = |link: &str, radius: f64| json!({"link": link, "radius": radius});
+    let named = |contacts: Value, knee: f64| {
         let joints = json!({"left_hip": 0.3, "left_knee": -0.5, "right_hip": 0.3, "right_knee": knee});
-        let contacts: Vec<Value> = [left, right]
-            .into_iter()
-            .filter(|own| !own.is_null())
-            .map(|own| {
-                let mut contact = json!({"link": "left_foot", "radius": 0.02815});
-                contact.as_object_mut().unwrap().extend(own.as_object().cloned().unwrap());
-                contact
-            })
-            .collect();
         let state = json!({"position": {"joints": joints}, "velocity": {"base": {"z": -1}}, "place": "lowest",
-                           "contacts": contacts, "friction": 1});
-        impact(&robot, state).notes
+            "contacts": contacts, "friction": 1});
+        (&ramone, state)
     };
-    let (left, right) = (json!({}), json!({"link": "right_foot"}));
-    assert!(notes(left.clone(), right.clone(), -0.5).is_empty(), "{:?}", notes(left, right, -0.5));
-    let raised = notes(json!({}), right.clone(), -1.2);
-    assert!(raised[0].ends_with("m higher above the ground than left_foot: both are taken to touch it"), "{raised:?}");
-    let twice = notes(json!({}), json!({}), -0.6);
-    assert_eq!(twice[0], "a contact of left_foot is named twice: its impulse is shared by both");
-    let point = notes(json!({"radius": 0}), Value::Null, -0.6);
-    let missing = "left_foot reaches 0.02815 m below the contact that is named on its body: is a radius or another \
-                   contact missing?";
-    assert!(point.iter().any(|note| note == missing), "{point:?}");
+    let [left, right] = ["left_foot", "right_foot"].map(|link| foot(link, 0.02815));
+    let mut notes = String::new();
+    for (what, (robot, state)) in [
+        ("a slope of -0.7", with(json!({"ground": {"slope": -0.7}}))),
+        ("a slope of -1", with(json!({"ground": {"slope": -1.0}}))),
+        ("a fall at 100 m/s", falling(-100.0)),
+        ("a fall at 500 m/s", falling(-500.0)),
+        ("a hip at 100 rad/s", turning(100.0)),
+        ("a hip at 286 rad/s", turning(286.0)),
+        ("a half-width", width(0.1)),
+        ("no half-width", width(0.0)),
+        ("a contact above the body", with(json!({"contacts": [{"link": "body", "offset": [0, 0, 0.25]}]}))),
+        ("two feet", named(json!([left, right]), -0.5)),
+        ("a foot that is higher", named(json!([left, right]), -1.2)),
+        ("a foot that is named twice", named(json!([left, left]), -0.6)),
+        ("a foot without its radius", named(json!([foot("left_foot", 0.0)]), -0.6)),
+    ] {
+        let found: String = impact(robot, state).notes.iter().map(|note| format!("    {note}\n")).collect();
+        notes += &format!("{what}\n{found}");
+    }
+    for tolerance in [0.9, 5.0] {
+        let options = Options { contact_tolerance: Some(tolerance), ..Options::default() };
+        let found = try_impact(&two_feet(0.0), options, striking(0.0, json!({"friction": 1}))).unwrap();
+        notes += &format!("a tolerance of {tolerance}: {:?}\n", found.notes);
+    }
+    insta::assert_snapshot!(notes);
 }
