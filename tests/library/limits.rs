@@ -7,6 +7,7 @@ use heelstrike::robot::{Base, Reduction};
 use heelstrike::state::{ByLink, LinkPoint, NamedContact, NamedLoop, Uncertainty};
 use heelstrike::{Friction, Pipeline, Robot, State};
 use serde_json::json;
+use std::fmt::Write;
 
 /// A body with the joint `hip`, whose limit is `limit`, and `calf`, which mimics it threefold.
 fn limited(axis: Axis, limit: &str) -> Robot {
@@ -21,51 +22,40 @@ fn limited(axis: Axis, limit: &str) -> Robot {
     robot(&urdf::robot(&parts))
 }
 
-/// The notes on the limits with the hip at `position`.
-fn notes(robot: &Robot, position: f64) -> Vec<String> {
-    let state = json!({"position": {"joints": {"hip": position}}});
-    let impact = try_impact(robot, Options::default(), state).expect("an answer");
-    impact.notes.into_iter().filter(|note| note.contains("outside")).collect()
-}
-
+/// Each state next to its notes.
 #[test]
-fn joint_outside_its_limits_is_noted() {
-    let robot = limited(HINGE, r#"lower="-2" upper="2.5""#);
-    assert_eq!(notes(&robot, -2.25), ["hip = -2.25 rad is outside [-2, 2.5]"]);
-    let degrees = "hip = -25 rad is outside [-2, 2.5]; degrees?";
-    assert_eq!(notes(&robot, -25.0), [degrees, "calf = -75 rad is outside [-9, 9]; degrees?"]);
-    let slide = limited(Axis::Prismatic([0.0, 1.0]), r#"lower="-2" upper="2.5""#);
-    assert_eq!(notes(&slide, 2.75), ["hip = 2.75 m is outside [-2, 2.5]"]);
-}
-
-#[test]
-fn rounding_and_missing_limits_are_not_noted() {
-    let robot = limited(HINGE, r#"lower="-2" upper="2.5""#);
-    // As f32 has it.
-    assert!(notes(&robot, f64::from(2.5_f32.next_up())).is_empty());
-    assert_eq!(notes(&robot, 2.5 + 1e-5).len(), 1);
-    for limit in ["", r#"lower="0" upper="0""#, r#"lower="2" upper="-2""#, r#"lower="x" upper="1""#] {
-        assert!(notes(&limited(HINGE, limit), 2.75).is_empty(), "{limit}");
+fn doubtful_angles_and_limits_are_noted() {
+    let at = |hip: f64, pitch: f64| json!({"position": {"base": {"pitch": pitch}, "joints": {"hip": hip}}});
+    let slide = Axis::Prismatic([0.0, 1.0]);
+    let within = r#"lower="-2" upper="2.5""#;
+    let mut notes = String::new();
+    for (axis, limit, hip, pitch) in [
+        (HINGE, within, -2.25, 0.0),
+        (HINGE, within, -25.0, 0.0),
+        (slide, within, 2.75, 0.0),
+        // As f32 has it, and beyond.
+        (HINGE, within, f64::from(2.5_f32.next_up()), 0.0),
+        (HINGE, within, 2.5 + 1e-5, 0.0),
+        (HINGE, r#"lower="0" upper="0""#, 2.75, 0.0),
+        (HINGE, r#"lower="2" upper="-2""#, 2.75, 0.0),
+        (HINGE, r#"lower="x" upper="1""#, 2.75, 0.0),
+        // One end that is not given is 0.
+        (HINGE, r#"upper="2""#, -0.5, 0.0),
+        (HINGE, "", 2.75, 0.0),
+        (HINGE, "", 30.0, -90.0),
+        // Wheels turn on and on, and simulators print many digits.
+        (HINGE, "", 30.01, 6.0),
+        (slide, "", 30.0, 0.0),
+        // A base with legs does not.
+        (HINGE, "", 6.0, -12.34),
+    ] {
+        let found = try_impact(&limited(axis, limit), Options::default(), at(hip, pitch)).expect("an answer").notes;
+        let found = found.iter().filter(|note| note.contains(" = "));
+        let found: String = found.map(|note| format!("    {note}\n")).collect();
+        writeln!(notes, "{axis:?} {limit}: {hip}, pitch {pitch}\n{found}").expect("a string takes all");
     }
-    // One end that is not given is 0.
-    assert_eq!(notes(&limited(HINGE, r#"upper="2""#), -0.5), ["hip = -0.5 rad is outside [0, 2]"]);
-}
-
-#[test]
-fn whole_numbers_beyond_a_turn_look_like_degrees() {
-    let free = limited(HINGE, "");
-    let notes = |robot: &Robot, hip: f64, pitch: f64| {
-        let state = json!({"position": {"base": {"pitch": pitch}, "joints": {"hip": hip}}});
-        let impact = try_impact(robot, Options::default(), state).expect("an answer");
-        impact.notes.into_iter().filter(|note| note.contains("more than a turn")).collect::<Vec<_>>()
-    };
-    let both = ["pitch = -90 rad is more than a turn; degrees?", "hip = 30 rad is more than a turn; degrees?"];
-    assert_eq!(notes(&free, 30.0, -90.0), both);
-    // Wheels turn on and on, and simulators print many digits.
-    assert!(notes(&free, 30.01, 6.0).is_empty());
-    assert!(notes(&limited(Axis::Prismatic([0.0, 1.0]), ""), 30.0, 0.0).is_empty());
-    // A base with legs does not, nor does a hip that carries a knee.
-    assert_eq!(notes(&free, 6.0, -12.34), ["pitch = -12.34 rad is more than a turn; degrees?"]);
+    insta::assert_snapshot!(notes);
+    // Nor does a hip that carries a knee.
     let joints = json!({"left_hip": -28.65, "left_knee": 57.3});
     let state = json!({"position": {"base": {"z": 2}, "joints": joints}, "friction": 1});
     let notes = try_impact(&ramone(), Options::default(), state).expect("an answer").notes;
