@@ -13,6 +13,7 @@ use serde_json::Value;
 use std::f64::consts::FRAC_PI_2;
 
 mod base;
+mod cautions;
 mod plane;
 mod untidy;
 
@@ -106,6 +107,17 @@ fn chain(masses: &[f64], joints: &[(&str, &str)]) -> String {
 /// Such a chain of massive links.
 fn massive(joints: &[(&str, &str)]) -> String {
     chain(&vec![1.0; joints.len() + 1], joints)
+}
+
+/// The last four joints of a chain of seven as two arms that hang from `a`.
+fn with_arms(chain: &str) -> String {
+    let raised = |text: &str, from: char, to: char, place: &str| {
+        let ends = |parent: char, place: &str| {
+            format!("<parent link=\"{parent}\"/><child link=\"{to}\"/><origin xyz=\"{place}\"/>")
+        };
+        text.replace(&ends(from, "0 0 -1"), &ends('a', place))
+    };
+    raised(&raised(chain, 'd', 'e', "0 1 0"), 'f', 'g', "0 -1 0")
 }
 
 fn names(robot: &Robot) -> Vec<&str> {
