@@ -3,25 +3,19 @@
 use crate::answer::{accepted, check_refusal};
 use crate::choices::{Choices, field_names};
 use crate::state::state_of;
+use crate::support::subject::Subject;
 use crate::watch::watched_for;
 use heelstrike::Robot;
-use heelstrike::description::Description;
-use heelstrike::pipeline::Options;
 use heelstrike::read::documents::utf8;
-use heelstrike::robot::Reduction;
-use heelstrike::state::Defaults;
-use heelstrike::sweep::{RobotStudy, Study, Survey, Workers};
+use heelstrike::sweep::{Study, Survey, Workers};
 use serde_json::{Value, json};
 use std::sync::LazyLock;
 use std::time::Duration;
 
 crate::target!(any_study_is_answered_or_refused, 60, 0.1, check);
 
-static BIPED: LazyLock<(Description, Robot)> = LazyLock::new(|| {
-    let description = Description::from_urdf(include_str!("../../urdf/minimalistic.urdf")).expect("a description");
-    let robot = Robot::reduce(&description, &Reduction::default()).expect("a robot");
-    (description, robot)
-});
+static BIPED: LazyLock<Subject> =
+    LazyLock::new(|| Subject::new("minimalistic", include_str!("../../urdf/minimalistic.urdf")));
 
 /// Words that mean something in a study.
 static WORDS: LazyLock<String> = LazyLock::new(|| {
@@ -74,16 +68,14 @@ const MOST_SAMPLES: usize = 20;
 fn check(bytes: &[u8]) -> bool {
     let mut choices = Choices::new(bytes);
     let studies = [include_str!("../../examples/paper/figures_3_and_6.json"), FULL];
-    let text = choices.text(&studies, &WORDS, |choices| study_of(&BIPED.1, choices));
+    let text = choices.text(&studies, &WORDS, |choices| study_of(&BIPED.robot, choices));
     let case = String::from_utf8_lossy(&text);
     let study = || accepted(utf8(&text).and_then(Study::from_json), &case);
     watched_for(SLOW, &case, || study().is_some_and(|study| survey(&study, &case)))
 }
 
 fn survey(study: &Study, case: &str) -> bool {
-    let (description, robot) = &*BIPED;
-    let (options, defaults) = (Options::default(), Defaults::default());
-    let model = RobotStudy { study, description, reduction: &Reduction::default(), robot, options, defaults };
+    let model = BIPED.model(study);
     let [parameter] = study.parameters() else { return false };
     if accepted(model.has_own_friction(), case).is_none() || parameter.steps > MOST_SAMPLES {
         return false;

@@ -14,4 +14,5 @@ pub mod random;
 pub mod robots;
 pub mod rational;
 pub mod scaled;
+pub mod subject;
 pub mod urdf;

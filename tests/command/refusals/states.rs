@@ -2,7 +2,7 @@
 
 use super::{assert_refused, lines};
 use crate::RAMONE;
-use crate::schema::ROBOT;
+use crate::schema;
 use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::read::Problem;
 use heelstrike::state::{Defaults, State};
@@ -102,7 +102,7 @@ id,q_base_x,v_base_x
 
 #[test]
 fn states_are_refused_word_for_word() {
-    let robot = &ROBOT.1;
+    let robot = &schema::RAMONE.robot;
     let feet = |count| vec![r#"{"link": "left_foot"}"#; count].join(", ");
     let cases = lines(STATES, "@").chain([
         String::new(),

@@ -3,13 +3,12 @@
 //! Inputs: a full sample is changed in every place and in every way; schema and reader must agree about each. Results:
 //! every form of result that the command writes must be valid, and not with a field more or less.
 
+use super::support::subject::Subject;
 use super::{heelstrike_reads, list, parsed, read};
-use heelstrike::description::Description;
 use heelstrike::read::Problem;
-use heelstrike::robot::Reduction;
 use heelstrike::state::{Defaults, State};
 use heelstrike::write::schema;
-use heelstrike::{Error, Reason, Robot};
+use heelstrike::{Error, Reason};
 use serde_json::{Value, json};
 use std::sync::LazyLock;
 use validator::is_valid;
@@ -17,15 +16,11 @@ use validator::is_valid;
 pub mod studies;
 mod validator;
 
-/// RAMone.
-pub static ROBOT: LazyLock<(Description, Robot)> = LazyLock::new(|| {
-    let description = Description::from_urdf(include_str!("../../../urdf/ramone.urdf")).expect("a description");
-    let robot = Robot::reduce(&description, &Reduction::default()).expect("a robot");
-    (description, robot)
-});
+pub static RAMONE: LazyLock<Subject> =
+    LazyLock::new(|| Subject::new("ramone", include_str!("../../../urdf/ramone.urdf")));
 
 fn read_state(text: &str) -> Result<State, Error> {
-    State::from_json(text, &ROBOT.1, &Defaults::default())
+    State::from_json(text, &RAMONE.robot, &Defaults::default())
 }
 
 /// What the command writes as JSON, whatever its exit status; it must be valid, but not with another field in the

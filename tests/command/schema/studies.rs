@@ -1,22 +1,15 @@
 //! Studies and what `sweep` writes of them.
 
-use super::{ROBOT, assert_agreement, assert_fields, assert_valid, is_valid};
-use heelstrike::pipeline::Options;
-use heelstrike::robot::Reduction;
-use heelstrike::state::Defaults;
-use heelstrike::sweep::{RobotStudy, Study};
+use super::{RAMONE, assert_agreement, assert_fields, assert_valid, is_valid};
+use heelstrike::sweep::Study;
 use heelstrike::write::schema;
 use heelstrike::{Error, Reason};
 use serde_json::{Value, json};
 
 /// Reads a study of RAMone whole: its state and robot as well, at the ends and in the middle.
 pub fn read(text: &str) -> Result<(), Error> {
-    let (description, robot) = &*ROBOT;
     let study = Study::from_json(text)?;
-    let (options, defaults) = (Options::default(), Defaults::default());
-    RobotStudy { study: &study, description, reduction: &Reduction::default(), robot, options, defaults }
-        .has_own_friction()
-        .map(drop)
+    RAMONE.model(&study).has_own_friction().map(drop)
 }
 
 fn sample() -> Value {

@@ -6,7 +6,8 @@
 
 use crate::support::parallel::total;
 use crate::support::random::Random;
-use crate::sweep::studies::{Subject, study, subjects};
+use crate::support::subject::Subject;
+use crate::sweep::studies::{study, subjects};
 use heelstrike::sweep::{RESOLUTION, Region, Solver, Study, Survey, Workers};
 
 const STEPS: usize = 50;

@@ -2,21 +2,10 @@
 //! every kind, robots that vary.
 
 use crate::support::random::Random;
-use heelstrike::Robot;
-use heelstrike::description::Description;
+use crate::support::subject::Subject;
 use heelstrike::pipeline::Options;
-use heelstrike::robot::Reduction;
-use heelstrike::state::Defaults;
 use heelstrike::sweep::{RobotStudy, Study};
 use serde_json::{Value, json};
-
-/// A robot and what a study may ask of it.
-pub struct Subject {
-    pub name: &'static str,
-    pub description: Description,
-    pub reduction: Reduction,
-    pub robot: Robot,
-}
 
 /// The planar robots of this repository without loops.
 pub fn subjects() -> Vec<Subject> {
@@ -32,27 +21,6 @@ pub fn subjects() -> Vec<Subject> {
         ("cartpole", include_str!("../../data/robots/cartpole/cartpole.urdf")),
     ];
     files.into_iter().map(|(name, text)| Subject::new(name, text)).collect()
-}
-
-impl Subject {
-    pub fn new(name: &'static str, urdf: &str) -> Self {
-        let description = Description::from_urdf(urdf).expect("a robot's description");
-        let reduction = Reduction::default();
-        let robot = Robot::reduce(&description, &reduction).expect("a robot");
-        Self { name, description, reduction, robot }
-    }
-
-    /// The model of a study.
-    pub fn model<'a>(&'a self, study: &'a Study<'a>) -> RobotStudy<'a> {
-        RobotStudy {
-            study,
-            description: &self.description,
-            reduction: &self.reduction,
-            robot: &self.robot,
-            options: Options::default(),
-            defaults: Defaults::default(),
-        }
-    }
 }
 
 /// Asks about the model of a study, in which combinations are explained up to so many contacts.
