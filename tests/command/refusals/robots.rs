@@ -145,6 +145,7 @@ fn robots_are_refused_word_for_word() {
             fixed("<child link=\"b\"/>", ""),
             fixed("<parent link=\"a\"/>", "<parent link=\"world\"/>"),
             fixed("<child link=\"b\"/>", &format!("<child link=\"{}\"/>", "b".repeat(1_000_000))),
+            format!("<robot><link name=\"a\"/><!-- {0} --><link nam=\"{0}\"/></robot>", "x".repeat(500_000)),
             format!("<robot>{}{}</robot>", "<a>".repeat(200_000), "</a>".repeat(200_000)),
             format!("<robot>\n<link name=\"a\">{}", "<collision>".repeat(200_000)),
             format!("<robot>{}<link name=\"a\"/>{}</robot>", "<robot>".repeat(201), "</robot>".repeat(201)),

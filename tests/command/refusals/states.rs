@@ -111,6 +111,7 @@ fn states_are_refused_word_for_word() {
         "{\"position\":".repeat(200_000),
         format!("{{\"position\": {}{}}}", "[".repeat(200), "]".repeat(200)),
         format!("{{\"{}\": 1}}", "x".repeat(1_000_000)),
+        format!("{{\"id\": \"{0}\", \"frictoin\": 1, \"more\": \"{0}\"}}", "x".repeat(500_000)),
         format!("{{\"stance\": \"{}\"}}", "é".repeat(500_000)),
         format!("{{\"friction\": 1, \"contacts\": [{}]}}", feet(200_000)),
         format!("{{\"friction\": 1, \"contacts\": [{}]}}", feet(17)),
