@@ -1,17 +1,10 @@
 //! `inspect`, and what options and cautions make of a robot.
 
 use super::support::urdf;
-use super::{RAMONE, WALKER, each, file, heelstrike, heelstrike_reads, list, parsed, place, read, result};
+use super::{RAMONE, WALKER, each, file, heelstrike, heelstrike_reads, list, place, read, result};
 use serde_json::json;
 
 const A1: &str = "tests/data/robots/a1/a1.urdf";
-
-#[test]
-fn an_ending_in_capitals_means_the_same_format() {
-    let path = place("inspected.JSON");
-    heelstrike(&["inspect", RAMONE, "-o", &path]).well();
-    assert_eq!(parsed(&read(&path))["name"], "ramone");
-}
 
 #[test]
 fn every_robot_is_shown_with_what_a_user_needs_first() {

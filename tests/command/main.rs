@@ -288,6 +288,7 @@ fn the_outputs_ending_determines_its_form() {
         (impact, "a.json", ["{\"", "}\n"]),
         (impact, "a.ndjson", ["{\"", "}\n"]),
         (impact, "a.txt", ["block", ""]),
+        (&["inspect", BLOCK], "A.JSON", ["{\"", "}\n"]),
         (solve, "b", ["{\"", "}\n"]),
         (solve, "b.dat", ["{\"", "}\n"]),
         (batch, "c", ["{\"", "}\n"]),
