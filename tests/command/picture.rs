@@ -34,7 +34,6 @@ fn robots_outcomes_and_regions_are_drawn() {
     for (name, arguments) in [
         // A slide too slow for an arrow has its number.
         ("picture_ramone", &["impact", RAMONE, "examples/ramone.json"][..]),
-        ("picture_minimalistic", &["impact", WALKER, "examples/minimalistic.json"]),
         ("picture_stairs", &["impact", RAMONE, "examples/stairs.json"]),
         // A velocity along an impulse stands aside.
         ("picture_five_bar", &["impact", "urdf/five_bar.urdf", "examples/five_bar.json"]),
