@@ -128,13 +128,9 @@ fn an_endless_range_is_refused_and_replaces_nothing() {
 #[test]
 fn a_study_with_too_many_samples_is_refused_at_once() {
     let parameter = |steps: u32| json!({"from": 0.1, "to": 1, "steps": steps});
-    for (parameters, place, reason) in [
-        (json!({"alpha": parameter(1_000_001)}), "parameters.alpha.steps", "from 2 to 1000000, not 1000001"),
-        (json!({"alpha": parameter(400_000), "b": parameter(2)}), "parameters.alpha.steps", "MB of memory"),
-    ] {
-        let refusal = ends(&["sweep", WALKER, "-"], &walker(parameters).to_string()).refusal(1);
-        assert!(refusal.contains(place) && refusal.contains(reason), "{refusal}");
-    }
+    let large = walker(json!({"alpha": parameter(400_000), "b": parameter(2)})).to_string();
+    let refusal = ends(&["sweep", WALKER, "-"], &large).refusal(1);
+    assert!(refusal.contains("parameters.alpha.steps") && refusal.contains("MB of memory"), "{refusal}");
     // As many as are accepted, and more than there is time for.
     let study = walker(json!({"alpha": parameter(1_000_000)})).to_string();
     ends(&["sweep", WALKER, "-", "--budget", "0.1"], &study)
