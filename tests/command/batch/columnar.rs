@@ -2,6 +2,7 @@
 
 use super::table::{WALK_QUESTIONS, walk};
 use super::*;
+use crate::support::random::Random;
 use arrow_array::types::Int8Type;
 use arrow_array::{
     Array, ArrayRef, BooleanArray, DictionaryArray, Float32Array, Float64Array, Int64Array, NullArray, RecordBatch,
@@ -307,13 +308,12 @@ fn columns_that_do_not_fit_are_refused_as_a_whole() {
 
 #[test]
 fn damaged_tables_are_refused() {
-    let mut state = 1_u64;
+    let mut random = Random::new(1);
     for (ending, at) in ENDINGS.into_iter().flat_map(|ending| (0..40).map(move |at| (ending, at))) {
         let mut bytes = std::fs::read(written(&format!("whole.{ending}"), &strikes())).expect("a file");
         for _ in 0..3 {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            let place = (state >> 33) as usize % bytes.len();
-            bytes[place] ^= (state >> 20) as u8;
+            let place = random.bits() as usize % bytes.len();
+            bytes[place] ^= random.bits() as u8;
         }
         bytes.truncate(if at % 4 == 0 { bytes.len() * at / 40 } else { bytes.len() });
         let run = batch(&[&file(&format!("damaged.{ending}"), bytes), "--friction", "1"], "");
