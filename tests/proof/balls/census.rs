@@ -2,15 +2,11 @@
 
 use crate::balls::oracle::{self, Answer, Index, Outcome};
 use crate::balls::states::{Model, beside_a_border};
+use crate::support::parallel::total;
 use crate::support::random::Random;
 use heelstrike::impact::{self, Analysis, Verdict};
 use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::state::State;
-use std::collections::BTreeMap;
-use std::fmt;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::thread;
 
 /// How a product's answer stands to the oracle's.
 #[derive(Debug, PartialEq, Eq)]
@@ -70,121 +66,64 @@ pub fn compare(answer: &Answer, analysis: &Analysis) -> Finding {
 
 /// What is counted: states, what became of them, those on a border, with several outcomes, and for which the oracle's
 /// first precision was not enough; then combinations, by the layer that settled them.
-const COLUMNS: [&str; 15] = [
-    "number",
-    "proven",
-    "same",
-    "undecided",
-    "wrong",
-    "different",
-    "refused",
-    "unknown",
-    "border",
-    "ambiguous",
-    "deeper",
-    "bound",
-    "ball",
-    "double",
+const COLUMNS: [&str; 13] = [
+    "number", "proven", "same", "open", "unknown", "refused", "border", "several", "deeper", "bound", "ball", "double",
     "precise",
 ];
 
 /// States are random or near a border.
-const KINDS: [&str; 2] = ["random", "near"];
+pub const KINDS: [&str; 2] = ["random", "near"];
 
-/// As many failures as a reader can take.
-const FAILURES: usize = 20;
+/// The counts by kind and column.
+pub struct Census([u64; KINDS.len() * COLUMNS.len()]);
 
-/// The counts of all robots, and the first states that something is wrong with.
-#[derive(Default)]
-pub struct Census {
-    /// By robot, kind and column.
-    counts: BTreeMap<(&'static str, &'static str, &'static str), u64>,
-    failures: Vec<Failure>,
+/// Where a count is.
+fn place(kind: &str, column: &str) -> usize {
+    let at = |list: &[&str], name: &str| list.iter().position(|own| *own == name).expect("a known name");
+    at(&KINDS, kind) * COLUMNS.len() + at(&COLUMNS, column)
 }
 
-/// A state that is answered wrongly; wrong proofs are sorted first.
-#[derive(PartialEq, Eq, PartialOrd, Ord)]
-struct Failure {
-    unproven: bool,
-    block: u64,
-    text: String,
-}
+/// Random states of a block.
+const RANDOM_IN_BLOCK: usize = 8;
 
-impl Census {
-    /// The count of all robots.
-    pub fn count(&self, kind: &str, column: &str) -> u64 {
-        let own = self.counts.iter().filter(|((_, own, name), _)| (*own, *name) == (kind, column));
-        own.map(|(_, count)| count).sum()
-    }
-
-    fn extend(&mut self, other: Self) {
-        other.counts.into_iter().for_each(|(place, count)| *self.counts.entry(place).or_default() += count);
-        self.failures.extend(other.failures);
-        self.failures.sort();
-        self.failures.truncate(FAILURES);
-    }
-}
-
-impl fmt::Display for Census {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{:14} {:6} {}", "robot", "states", COLUMNS.map(|name| format!("{name:>10}")).concat())?;
-        let mut robots: Vec<&str> = self.counts.keys().map(|&(robot, ..)| robot).collect();
-        robots.dedup();
-        for (robot, kind) in robots.into_iter().flat_map(|robot| KINDS.map(|kind| (robot, kind))) {
-            let count = |column| self.counts.get(&(robot, kind, column)).copied().unwrap_or(0);
-            writeln!(f, "{robot:14} {kind:6} {}", COLUMNS.map(|column| format!("{:>10}", count(column))).concat())?;
-        }
-        for kind in KINDS {
-            let counts = COLUMNS.map(|column| format!("{:>10}", self.count(kind, column)));
-            writeln!(f, "{:14} {kind:6} {}", "all", counts.concat())?;
-        }
-        for Failure { unproven, block, text } in &self.failures {
-            let claim = if *unproven { "not proven, and wrong" } else { "proven, but wrong" };
-            writeln!(f, "\nblock {block}, {claim}: {text}")?;
-        }
-        Ok(())
-    }
-}
-
-/// Random states for each four that lie next to one border.
-const RANDOM_IN_BLOCK: u64 = 8;
-
-/// States of a block: two in three are random.
+/// States of a block: two in three are random, four lie next to one border.
 const BLOCK: u64 = 12;
 
-/// Answers at least `states` states of all robots in turn, in `threads` threads; the same ones each time.
-pub fn census(models: &[Model], states: u64, threads: usize) -> Census {
-    let (next, census) = (AtomicU64::new(0), Mutex::<Census>::default());
-    let work = || {
-        loop {
-            let block = next.fetch_add(1, Ordering::Relaxed);
-            if block * BLOCK >= states {
-                return;
-            }
-            let own = answer_block(&models[(block % models.len() as u64) as usize], block);
-            census.lock().expect("no thread panics with it").extend(own);
+impl Census {
+    /// Answers at least `states` states of all robots in turn, the same ones each time; each must be answered rightly.
+    pub fn of(models: &[Model], states: u64) -> Self {
+        Self(total(states.div_ceil(BLOCK), |block| answer_block(&models[block as usize % models.len()], block)))
+    }
+
+    pub fn count(&self, kind: &str, column: &str) -> u64 {
+        self.0[place(kind, column)]
+    }
+
+    /// The count of both kinds.
+    pub fn all(&self, column: &str) -> u64 {
+        KINDS.iter().map(|kind| self.count(kind, column)).sum()
+    }
+
+    pub fn print(&self) {
+        println!("states {}", COLUMNS.map(|name| format!("{name:>10}")).concat());
+        for kind in KINDS {
+            println!("{kind:6} {}", COLUMNS.map(|name| format!("{:>10}", self.count(kind, name))).concat());
         }
-    };
-    thread::scope(|scope| (0..threads).for_each(|_| drop(scope.spawn(work))));
-    census.into_inner().expect("no thread panicked")
+    }
 }
 
-fn answer_block(model: &Model, block: u64) -> Census {
+fn answer_block(model: &Model, block: u64) -> [u64; KINDS.len() * COLUMNS.len()] {
     let mut random = Random::new(block);
     let mut pipeline = Pipeline::new(&model.robot, Options::default());
-    let mut census = Census::default();
+    let mut counts = [0; KINDS.len() * COLUMNS.len()];
     let states = (0..RANDOM_IN_BLOCK).map(|_| ("random", model.random(&mut random))).collect::<Vec<_>>();
     for (kind, state) in states.into_iter().chain(beside_a_border(model, &mut random).map(|state| ("near", state))) {
-        let mut add = |column, count| *census.counts.entry((model.name, kind, column)).or_default() += count;
-        let (unproven, difference) = match answer_state(model, &mut pipeline, &state, &mut add) {
-            Finding::Wrong(difference) => (false, difference),
-            Finding::Different(difference) => (true, difference),
-            _ => continue,
-        };
-        let text = format!("{}, {difference}\n{}", model.name, state.to_json(&model.robot));
-        census.failures.push(Failure { unproven, block, text });
+        let mut add = |column, count| counts[place(kind, column)] += count;
+        let finding = answer_state(model, &mut pipeline, &state, &mut add);
+        let context = || format!("block {block}, {}\n{}", model.name, state.to_json(&model.robot));
+        assert!(!matches!(finding, Finding::Wrong(_) | Finding::Different(_)), "{finding:?}, {}", context());
     }
-    census
+    counts
 }
 
 /// Answers one state and counts what becomes of it.
@@ -204,7 +143,7 @@ fn answer_state(
     };
     let border = answer.outcomes.iter().any(|outcome| outcome.index == Index::Border);
     add("border", u64::from(border));
-    add("ambiguous", u64::from(answer.outcomes.len() > 1));
+    add("several", u64::from(answer.outcomes.len() > 1));
     add("deeper", u64::from(answer.bits > 256));
     let sign = |outcome: &Outcome| match outcome.index {
         Index::Sign(sign) => Some(i32::from(sign)),
@@ -222,16 +161,14 @@ fn answer_state(
     };
     let effort = analysis.effort;
     let layers = [effort.bound, effort.ball, effort.double_double, effort.precise];
-    COLUMNS[11..].iter().zip(layers).for_each(|(layer, settled)| add(layer, settled));
+    COLUMNS[9..].iter().zip(layers).for_each(|(layer, settled)| add(layer, settled));
     let finding = compare(&answer, &analysis);
-    let column = match finding {
-        Finding::Proven => "proven",
-        Finding::Same => "same",
-        Finding::Undecided => "undecided",
-        Finding::Unknown => "unknown",
-        Finding::Wrong(_) => "wrong",
-        Finding::Different(_) => "different",
-    };
-    add(column, 1);
+    match finding {
+        Finding::Proven => add("proven", 1),
+        Finding::Same => add("same", 1),
+        Finding::Undecided => add("open", 1),
+        Finding::Unknown => add("unknown", 1),
+        Finding::Wrong(_) | Finding::Different(_) => {}
+    }
     finding
 }
