@@ -5,7 +5,7 @@
 //! (at the link's own anchor for the root), so that another root moves frames, turns joints round, and moves no matter.
 //! q and v are x, z and pitch of link 0 for the frame at its anchor, then an entry per joint.
 
-use super::urdf;
+use super::urdf::{self, Axis};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 use serde_json::{Value, json};
@@ -20,7 +20,7 @@ pub struct Link {
     pub parent: usize,
     /// Of the joint.
     pub place: Point,
-    pub kind: Kind,
+    pub kind: Axis,
     /// The joint that it follows, multiplier, offset.
     pub follows: Option<(String, f64, f64)>,
     /// Mass \[kg\]; 0 for a link without inertial.
@@ -34,19 +34,6 @@ pub struct Link {
     pub turn: f64,
     /// Collision spheres: center, radius \[m\].
     pub spheres: Vec<(Point, f64)>,
-}
-
-/// How a joint moves.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Kind {
-    /// About the plane's normal: +1 or -1.
-    Turn(f64),
-    /// Along this direction, of length one.
-    Slide(Point),
-    /// Not at all.
-    Fixed,
-    /// About the vertical axis, out of the plane: frozen at zero.
-    OffPlane,
 }
 
 #[derive(Debug, Clone)]
@@ -87,13 +74,13 @@ pub fn point(link: &str, [x, z]: Point) -> Value {
 
 impl Link {
     fn new(name: &str, parent: usize, place: Point, mass: f64, com: Point, moment: f64) -> Self {
-        let (kind, name) = (Kind::Turn(1.0), name.to_owned());
+        let (kind, name) = (Axis::Revolute(1.0), name.to_owned());
         let (anchor, turn, spheres) = ([0.0; 2], 0.0, Vec::new());
         Self { name, parent, place, kind, follows: None, mass, com, moment, anchor, turn, spheres }
     }
 
     pub fn moves(&self) -> bool {
-        matches!(self.kind, Kind::Turn(_) | Kind::Slide(_))
+        matches!(self.kind, Axis::Revolute(_) | Axis::Prismatic(_))
     }
 }
 
@@ -151,7 +138,7 @@ impl Mechanism {
 
     /// The unit of length of each coordinate, or 1 of an angle.
     pub fn units_of_coordinates(&self, length: f64) -> Vec<f64> {
-        let joints = self.links[1..].iter().map(|link| matches!(link.kind, Kind::Slide(_)));
+        let joints = self.links[1..].iter().map(|link| matches!(link.kind, Axis::Prismatic(_)));
         [true, true, false].into_iter().chain(joints).map(|slides| if slides { length } else { 1.0 }).collect()
     }
 
@@ -194,10 +181,10 @@ impl Mechanism {
             let [parent, child] = self.ends(index, root);
             let (turn, sign) = (self.links[child].turn, if child == index { 1.0 } else { -1.0 });
             let (kind, axis) = match link.kind {
-                Kind::Turn(about) => ("continuous", format!("0 {} 0", sign * about)),
-                Kind::Slide(direction) => ("prismatic", along(turned(direction, -turn).map(|entry| sign * entry))),
-                Kind::Fixed => ("fixed", along([1.0, 0.0])),
-                Kind::OffPlane => ("continuous", along(turned([0.0, sign], -turn))),
+                Axis::Revolute(about) => ("continuous", format!("0 {} 0", sign * about)),
+                Axis::Prismatic(direction) => ("prismatic", along(turned(direction, -turn).map(|entry| sign * entry))),
+                Axis::Fixed => ("fixed", along([1.0, 0.0])),
+                Axis::OffPlane => ("continuous", along(turned([0.0, sign], -turn))),
             };
             let limit = "<limit lower=\"-9\" upper=\"9\" effort=\"1\" velocity=\"1\"/>";
             let mimic = link.follows.as_ref().map_or(String::new(), |(mimicked, multiplier, offset)| {
@@ -229,14 +216,14 @@ impl Mechanism {
             let [pitch, rate] = poses.pitch[link.parent];
             let [place, speed] = poses.point(link.parent, link.place);
             let (pitch, rate, place, speed) = match link.kind {
-                Kind::Turn(about) => (pitch + about * q, rate + about * v, place, speed),
-                Kind::Slide(along) => {
+                Axis::Revolute(about) => (pitch + about * q, rate + about * v, place, speed),
+                Axis::Prismatic(along) => {
                     let along = turned(along, pitch);
                     let shift = along.map(|entry| q * entry);
                     let shifts = plus(along.map(|entry| v * entry), swept(shift, rate));
                     (pitch, rate, plus(place, shift), plus(speed, shifts))
                 }
-                Kind::Fixed | Kind::OffPlane => (pitch, rate, place, speed),
+                Axis::Fixed | Axis::OffPlane => (pitch, rate, place, speed),
             };
             let arm = turned(link.place, pitch);
             poses.pitch.push([pitch, rate]);
@@ -362,10 +349,10 @@ prop_compose! {
         link in link(),
     ) -> (prop::sample::Index, Link) {
         let kind = match what {
-            0 | 1 => Kind::Fixed,
-            2 => Kind::OffPlane,
-            3 => Kind::Slide(turned([1.0, 0.0], angle)),
-            _ => Kind::Turn(if sign { 1.0 } else { -1.0 }),
+            0 | 1 => Axis::Fixed,
+            2 => Axis::OffPlane,
+            3 => Axis::Prismatic(turned([1.0, 0.0], angle)),
+            _ => Axis::Revolute(if sign { 1.0 } else { -1.0 }),
         };
         (parent, Link { place, kind, ..link })
     }

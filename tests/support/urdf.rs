@@ -35,6 +35,8 @@ pub enum Axis {
     /// Along this direction.
     Prismatic([f64; 2]),
     Fixed,
+    /// About the vertical, out of the plane.
+    OffPlane,
 }
 
 /// About the plane's normal.
@@ -46,6 +48,7 @@ pub fn joint(name: impl Display, axis: Axis, ends: [&str; 2], [x, z]: [f64; 2], 
         Axis::Revolute(sign) => ("revolute", format!("0 {sign} 0")),
         Axis::Prismatic([x, z]) => ("prismatic", format!("{x} 0 {z}")),
         Axis::Fixed => ("fixed", "1 0 0".to_owned()),
+        Axis::OffPlane => ("revolute", "0 0 1".to_owned()),
     };
     let limit = "<limit lower=\"-9\" upper=\"9\" effort=\"9\" velocity=\"9\"/>";
     format!(

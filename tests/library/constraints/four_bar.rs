@@ -13,7 +13,8 @@
 
 use crate::constraints::{impact, matrices};
 use crate::support::impact::{loop_impulses, reduced, velocities_after};
-use crate::support::mechanism::{Kind, Mechanism, Point, point};
+use crate::support::mechanism::{Mechanism, Point, point};
+use crate::support::urdf::Axis;
 use heelstrike::impact::Mode;
 use heelstrike::pipeline::Impact;
 use heelstrike::robot::{Base, Reduction, Robot};
@@ -114,9 +115,9 @@ fn a_rod_pinned_by_a_loop_is_a_pendulum() {
     // q: l^2 d d' / (m l^2 / 3), d as above.
     let mechanism = Mechanism::of(1.0, [0.0; 2], 1.0)
         .with("along", "root", [0.0; 2], 0.0, [0.0; 2])
-        .but(|link| link.kind = Kind::Slide([1.0, 0.0]))
+        .but(|link| link.kind = Axis::Prismatic([1.0, 0.0]))
         .with("up", "along", [0.0; 2], 0.0, [0.0; 2])
-        .but(|link| link.kind = Kind::Slide([0.0, 1.0]));
+        .but(|link| link.kind = Axis::Prismatic([0.0, 1.0]));
     let mechanism = rod(mechanism, "rod", "up", [0.0; 2]);
     let (q, rate) = (0.6_f64, -2.0);
     let state = json!({"position": {"joints": {"rod": q}}, "velocity": {"joints": {"rod": rate}}, "friction": 0,

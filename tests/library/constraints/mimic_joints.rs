@@ -2,7 +2,8 @@
 
 use crate::constraints::{assert_near, assert_struck, impact, matrices, try_impact};
 use crate::support::impact::{modes, robot, velocities_after};
-use crate::support::mechanism::{Kind, Mechanism, point};
+use crate::support::mechanism::{Mechanism, point};
+use crate::support::urdf::Axis;
 use heelstrike::impact::Mode;
 use heelstrike::pipeline::Impact;
 use nalgebra::{DMatrix, DVector};
@@ -23,10 +24,10 @@ fn mechanism() -> Mechanism {
         .following("thigh", 0.25, -0.1)
         .with("pole", "root", [-0.1, -0.1], 0.5, [0.0, -0.3])
         .following("tail", 0.125, 0.2)
-        .but(|pole| pole.kind = Kind::Slide([0.6, -0.8]))
+        .but(|pole| pole.kind = Axis::Prismatic([0.6, -0.8]))
         .with("foot", "pole", [0.0, -0.5], 0.3, [0.1, 0.0])
         .with("tail", "thigh", [0.0, -0.1], 0.4, [-0.3, 0.0])
-        .but(|tail| tail.kind = Kind::Turn(-1.0))
+        .but(|tail| tail.kind = Axis::Revolute(-1.0))
 }
 
 /// The state at coordinates of the independent joints, its toe and foot on the ground.

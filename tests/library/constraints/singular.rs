@@ -4,7 +4,8 @@
 use crate::constraints::four_bar::bolted;
 use crate::constraints::{assert_near, impact, matrices};
 use crate::support::impact::{loop_impulses, outcomes};
-use crate::support::mechanism::{Kind, Mechanism, Point, point};
+use crate::support::mechanism::{Mechanism, Point, point};
+use crate::support::urdf::Axis;
 use heelstrike::pipeline::Impact;
 use nalgebra::DMatrix;
 use serde_json::{Value, json};
@@ -73,7 +74,7 @@ fn a_level_crank_does_not_hold_its_slide_sideways() {
     let mechanism = Mechanism::of(1.0, [0.0; 2], 1.0)
         .with("crank", "root", [0.0; 2], 1.0, [0.0, -0.25])
         .with("slide", "root", [0.0; 2], 1.0, [0.0; 2])
-        .but(|link| link.kind = Kind::Slide([0.0, 1.0]));
+        .but(|link| link.kind = Axis::Prismatic([0.0, 1.0]));
     let (q, v) = ([0.0, 0.0, 0.0, FRAC_PI_2, 0.0], [0.0, 0.0, 0.0, -1.0, -0.5]);
     let ends = json!({"a": point("crank", [0.0, -0.5]), "b": point("slide", [-0.5, 0.0])});
     let contact = ("slide", [0.1, -0.5]);
