@@ -83,8 +83,8 @@ fn heel_leaves_while_the_foot_turns() {
     assert!(notes.contains("body/0 leaves the ground"), "{notes}");
 }
 
-/// Painleve's rod of length 1, whose lower end slides backward: from friction 1.48 on no finite forces are consistent, and
-/// an impact without approach ends the slide.
+/// Painleve's rod of length 1, whose lower end slides backward: from friction 1.48 on no finite forces are consistent,
+/// and an impact without approach ends the slide.
 #[test]
 fn rod_without_consistent_forces_stops_at_once() {
     let (sin, cos) = 0.9_f64.sin_cos();
