@@ -2,7 +2,7 @@
 
 use super::{forces, modes, outcomes, rod};
 use crate::support::impact::robot;
-use crate::support::urdf::{POINT, body, collision};
+use crate::support::urdf::{self, HINGE, POINT, body, collision, joint, link};
 use heelstrike::Robot;
 use heelstrike::impact::{Mode, Verdict};
 use serde_json::json;
@@ -102,7 +102,7 @@ fn rod_without_consistent_forces_stops_at_once() {
 /// A body of 5 kg on a thigh and a foot, which stands wherever its contacts hold it while the body turns.
 #[test]
 fn what_stands_by_rates_that_cancel_stands_in_every_digit() {
-    let leg = robot(&urdf(&[
+    let leg = robot(&urdf::robot(&[
         link("body", 5.0, [0.0; 2], 0.05, ""),
         joint("hip", HINGE, ["body", "thigh"], [0.0; 2], ""),
         link("thigh", 1.0, [0.0, -0.2], 0.02, ""),
