@@ -1,7 +1,7 @@
 //! Traces borders through one cell of the plane of two parameters.
 
 use super::edge::{Crossing, Edge, GridLine, Segment, Sides};
-use super::line::{Along, Landscape, Probe, RESOLUTION, bisect};
+use super::line::{Along, Bracket, Landscape, Probe, RESOLUTION, bisect};
 use super::model::Solver;
 use std::sync::Arc;
 
@@ -91,7 +91,7 @@ impl<'s, 'm> Trace<'s, 'm> {
         let pairs = pairs(&entries, alike).or_else(|| pairs(&entries, |_, _| true));
         if let Some(pairs) = pairs {
             for [a, b] in pairs {
-                self.bend(entries[a].segment(entries[b].point), BENDS);
+                self.bend(entries[a].segment(entries[b].point), &cell.corners, BENDS);
             }
         } else if quarterings < QUARTERINGS && self.cells < MOST_CELLS {
             for quarter in self.quarters(&cell) {
@@ -103,52 +103,65 @@ impl<'s, 'm> Trace<'s, 'm> {
         }
     }
 
-    /// Adds a segment, with points of the border between its ends as long as it is not straight.
-    fn bend(&mut self, chord: Segment, bends: usize) {
-        match self.off_chord(&chord).filter(|_| bends > 0) {
+    /// Adds a segment of a cell with these `corners`, with points of the border between its ends as long as it is not
+    /// straight.
+    fn bend(&mut self, chord: Segment, corners: &[[f64; 2]; 2], bends: usize) {
+        match self.off_chord(&chord, corners).filter(|_| bends > 0) {
             None => self.segments.push(chord),
             Some(middle) => {
                 let first = Segment { to: middle, ..chord.clone() };
-                self.bend(first, bends - 1);
-                self.bend(Segment { from: middle, ..chord }, bends - 1);
+                self.bend(first, corners, bends - 1);
+                self.bend(Segment { from: middle, ..chord }, corners, bends - 1);
             }
         }
     }
 
-    /// The point of the border next to a chord's middle; `None` if the chord is straight enough, or the point is not
-    /// found.
-    fn off_chord(&mut self, chord: &Segment) -> Option<[f64; 2]> {
+    /// The point of the border beside a chord's middle, within the cell; `None` if the chord is straight enough, or the
+    /// point is not found.
+    fn off_chord(&mut self, chord: &Segment, corners: &[[f64; 2]; 2]) -> Option<[f64; 2]> {
         let ranges = self.resolution.map(|resolution| resolution / RESOLUTION);
         let along = [0, 1].map(|axis| (chord.to[axis] - chord.from[axis]) / ranges[axis]);
         let length = libm::hypot(along[0], along[1]);
         if length < STRAIGHT {
             return None;
         }
-        // To the chord's left, in units of the ranges.
-        let off_middle = |off: f64| {
-            let left = [-along[1] / length, along[0] / length];
-            [0, 1].map(|axis| 0.5 * (chord.from[axis] + chord.to[axis]) + off * left[axis] * ranges[axis])
+        let middle = [0, 1].map(|axis| 0.5 * (chord.from[axis] + chord.to[axis]));
+        // To the chord's left, for each unit of the ranges.
+        let left_of = [-along[1] / length * ranges[0], along[0] / length * ranges[1]];
+        let off_middle = |off: f64| [0, 1].map(|axis| middle[axis] + off * left_of[axis]);
+        // How far it is to the cell's edge on either side, and a little beyond it, where the chord may lie on it.
+        let room = |way: f64| {
+            let to_edge = |axis: usize| {
+                let [low, high] = corners.map(|corner| corner[axis]);
+                let step = way * left_of[axis];
+                let edge = if step > 0.0 { high } else { low };
+                if step == 0.0 { f64::INFINITY } else { (edge - middle[axis]) / step }
+            };
+            to_edge(0).min(to_edge(1)).max(STRAIGHT)
         };
+        let rooms = [room(-1.0), room(1.0)];
         let Sides { left, right, .. } = &chord.sides;
         let mut line = Along { solver: &mut *self.solver, place: |off: f64| off_middle(off).to_vec() };
-        let mut is_between = |reach: f64| line.regime(reach) == *left && line.regime(-reach) == *right;
         let mut reach = STRAIGHT;
-        if is_between(reach) {
-            return None;
-        }
-        while reach < 0.5 * length {
-            reach = (4.0 * reach).min(0.5 * length);
-            if is_between(reach) {
-                let [below, above] =
-                    [(-reach, right), (reach, left)].map(|(at, regime)| Probe { at, regime: Arc::clone(regime) });
-                let mut found = Vec::new();
-                bisect(&mut line, &below, &above, FOUND, &mut found);
-                // If something else lies between, these two do not meet here.
-                let [border] = found.as_slice() else { return None };
-                return Some(off_middle(border.at()));
+        loop {
+            let places = [-reach.min(rooms[0]), reach.min(rooms[1])];
+            let [below, above] = places.map(|at| Probe { at, regime: line.regime(at) });
+            if reach == STRAIGHT && below.regime == *right && above.regime == *left {
+                return None;
             }
+            let mut found = Vec::new();
+            bisect(&mut line, &below, &above, FOUND, &mut found);
+            // Other borders may be near.
+            let own = found.iter().filter(|border| border.below.regime == *right && border.above.regime == *left);
+            let off = own.map(Bracket::at).min_by(|a, b| a.abs().total_cmp(&b.abs()));
+            if let Some(off) = off {
+                return (off.abs() > STRAIGHT).then(|| off_middle(off));
+            }
+            if reach >= rooms[0].max(rooms[1]) {
+                return None;
+            }
+            reach *= 4.0;
         }
-        None
     }
 
     /// The quarters of a cell; only the lines between them are searched again.

@@ -19,8 +19,11 @@ use crate::robot::Robot;
 use crate::state::Scene;
 use std::cell::RefCell;
 
-/// The longest run, in units of sqrt(m / k_n) (1 + damping ratio).
+/// The longest run, in units of sqrt(m / k_n) (1 + damping ratio); m is the inverse of the contacts' mean mobility.
 const HORIZON: f64 = 1e2;
+
+/// So small a part of the greatest force and speed is none.
+const NOTHING: f64 = 1e-8;
 
 /// A robot just before it strikes, ready to be integrated.
 #[derive(Debug)]
@@ -63,7 +66,9 @@ struct Equation<'a> {
     suspension: Suspension,
     /// The contact points at first.
     start: Vec<Vector<f64>>,
-    /// sqrt(m / k_n), m the inverse of the contacts' mean mobility \[s\].
+    /// 1 / m \[1/kg\].
+    mean_mobility: f64,
+    /// sqrt(m / k_n) \[s\].
     period: f64,
     /// The greatest rate.
     speed: f64,
@@ -98,6 +103,7 @@ impl<'a> Equation<'a> {
         Self {
             suspension: Suspension::new(ground, stiffness, damping, moving.friction.iter().copied()),
             start: places(&assembly, Vector::zero()),
+            mean_mobility,
             period: (1.0 / (stiffness * mean_mobility)).sqrt(),
             speed: moving.velocity.iter().fold(f64::MIN_POSITIVE, |speed: f64, rate| speed.max(rate.abs())),
             assembly: RefCell::new(assembly),
@@ -142,8 +148,10 @@ impl StiffEquations for Equation<'_> {
         self.evaluate(state).0
     }
 
-    /// Whether all contacts are free.
+    /// Whether all contacts are free, or as good as at rest without a force.
     fn has_ended(&self, state: &[f64]) -> bool {
-        self.evaluate(state).1.iter().all(|&[normal, speed]| normal == 0.0 && speed >= 0.0)
+        let force = self.speed / (self.mean_mobility * self.period);
+        let touching = self.evaluate(state).1;
+        touching.iter().all(|&[normal, speed]| normal <= NOTHING * force && speed >= -NOTHING * self.speed)
     }
 }

@@ -264,6 +264,6 @@ mod tests {
         let texts = [-0.001, 2.0, 2.5, -7.126, 100.0].map(|value| Short(value).to_string());
         assert_eq!(texts, ["0", "2", "2.5", "-7.13", "100"]);
         let text = TextLine::new((0.0, 0.0), "a\u{1}<b> & \"c\" $d$\u{ffff}", 12, Anchor::Start);
-        assert!(text.to_string().ends_with(">a&lt;b&gt; &amp; \"c\" $d$</text>"), "{text}");
+        assert!(text.to_string().ends_with(r#">a\u{1}&lt;b&gt; &amp; "c" $d$</text>"#), "{text}");
     }
 }

@@ -79,7 +79,8 @@ fn a_round_foot_has_no_other_point() {
         let state = json!({"place": "lowest", "ground": {"slope": 0.3 * angle.sin()},
             "position": {"base": {"x": angle.cos(), "pitch": angle}}, "velocity": {"base": {"z": -1}}});
         let found = impact(&ball, state);
-        assert_eq!((found.contacts.len(), found.nearest, &*found.notes), (1, None, &[][..]));
+        assert_eq!((found.contacts.len(), found.nearest), (1, None));
+        assert!(!found.notes.iter().any(|note| note.contains("nearly touches")), "{:?}", found.notes);
     }
 }
 

@@ -149,7 +149,8 @@ proptest! {
                 (one.margin.into_iter().collect(), 1.0, other.margin.into_iter().collect()),
             ] {
                 let own: Vec<f64> = own.iter().map(|entry| entry * unit).collect();
-                prop_assert!(near(&found, &own, 1e-12 * largest(&own)), "{found:?} {own:?}");
+                // As many digits as are promised: which decimals a state has depends on its units.
+                prop_assert!(near(&found, &own, 1e-10 * largest(&own)), "{found:?} {own:?}");
             }
         }
     }
