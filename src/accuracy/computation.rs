@@ -5,10 +5,10 @@
 //!                                                                          └── Cholesky ──────────────> G
 //! ```
 
-use super::number::Number;
 use crate::dynamics::mass_matrix;
 use crate::pipeline::assembly::{Assembly, Elimination};
 use crate::pipeline::exact::{Contacts, ExactState};
+use crate::scalar::Trigonometry;
 use nalgebra::DMatrix;
 use serde::Serialize;
 
@@ -27,13 +27,13 @@ pub enum Factorization {
 
 /// A state compiled in numbers of kind `T`, and the memory of its computation.
 pub(super) struct Computation<'a, T> {
-    state: &'a ExactState<'a>,
+    pub state: &'a ExactState<'a>,
     pub assembly: Assembly<T>,
     /// v, by coordinate; such that the stance and the loops are kept.
     pub velocity: Vec<T>,
 }
 
-impl<'a, T: Number> Computation<'a, T> {
+impl<'a, T: Trigonometry> Computation<'a, T> {
     /// Compiles the robot; nothing that depends on the state is computed yet.
     pub fn new(state: &'a ExactState<'a>) -> Self {
         Self { state, assembly: state.assembly(state.plan()), velocity: Vec::new() }

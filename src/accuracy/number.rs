@@ -1,6 +1,6 @@
 //! The numbers that are compared.
 
-use crate::scalar::{Ball, DoubleDouble, Interval, Midpoint, Ordered, Real, Trigonometry};
+use crate::scalar::{Ball, DoubleDouble, Midpoint, Real, Trigonometry};
 
 /// A number that a state can be computed in, from its f64s on.
 pub trait Number: Trigonometry {
@@ -37,12 +37,5 @@ impl Number for f32 {
 impl<T: Midpoint + Trigonometry> Number for T {
     fn parts(self) -> [f64; 2] {
         Midpoint::parts(self)
-    }
-}
-
-impl Number for Interval {
-    fn parts(self) -> [f64; 2] {
-        let head = self.to_f64();
-        [head, (self - Self::from_f64(head)).to_f64()]
     }
 }

@@ -5,10 +5,10 @@
 
 use super::computation::{Computation, Factorization};
 use super::number::Number;
-use crate::dynamics::plan::JointMotion;
+use crate::dynamics::{Workspace, mass_matrix};
 use crate::pipeline::assembly::Elimination;
 use crate::pipeline::exact::{Contacts, ExactState};
-use crate::planar::{Inertia, Vector};
+use crate::planar::Rotation;
 use crate::robot::Robot;
 use crate::scalar::{Ball, DoubleDouble, Enclosure, Interval, Ordered, Real};
 
@@ -25,45 +25,28 @@ pub fn with_precision<R>(robot: &Robot, work: impl FnOnce() -> R) -> R {
     Interval::scope(PRECISION + PRECISION_PER_BODY * robot.bodies.len(), work)
 }
 
-/// M, G and c of a state in the reference's numbers; it must stay within one [`with_precision`].
+/// G, c and the poses of a state in the reference's numbers; it must stay within one [`with_precision`].
 pub(super) struct Reference<'a> {
     computation: Computation<'a, Interval>,
+    /// How G was found.
+    pub factorization: Factorization,
     pub contacts: Contacts<Interval>,
-    /// The joints and the base's motions of each column.
-    columns: Vec<Vec<UnitMotion<Interval>>>,
-}
-
-/// A joint's motion for a unit rate of its column, and the momentum of all that it moves; both at the root's origin.
-struct UnitMotion<T> {
-    body: usize,
-    angular_velocity: T,
-    /// Of the point at the root's origin.
-    velocity: Vector<T>,
-    angular_momentum: T,
-    momentum: Vector<T>,
-    rotor: T,
 }
 
 impl<'a> Reference<'a> {
-    /// Computes G and c, and what M follows from.
+    /// Computes poses, G and c.
     pub fn new(state: &'a ExactState<'a>) -> Self {
         let mut computation = Computation::new(state);
         computation.place();
-        if computation.assembly.has_articulated_bodies() {
+        let factorization = if computation.assembly.has_articulated_bodies() {
             computation.delassus(Elimination::ArticulatedBodies);
             computation.velocities();
+            Factorization::ArticulatedBodies
         } else {
             computation.delassus(Elimination::Ltl);
-        }
-        Self { contacts: computation.collect(), columns: columns(&computation), computation }
-    }
-
-    /// How G was found.
-    pub fn factorization(&self) -> Factorization {
-        match self.computation.assembly.elimination {
-            Elimination::Ltl => Factorization::SparseLtl,
-            Elimination::ArticulatedBodies => Factorization::ArticulatedBodies,
-        }
+            Factorization::SparseLtl
+        };
+        Self { factorization, contacts: computation.collect(), computation }
     }
 
     /// How well G itself is known.
@@ -89,116 +72,36 @@ impl<'a> Reference<'a> {
         // Pairs of f64 are faster, and show all but the least errors.
         let error = self.mass_matrix_error_by(mass, enclosed);
         let is_shown = (SHOWN_BY_PAIRS..f64::INFINITY).contains(&error);
-        // The bits of a whole chain are not needed for one entry.
+        // Poses need bits for each body, since errors grow with every turn; M adds up without turns.
         let exactly = || self.mass_matrix_error_by(mass, |exact| exact * Interval::one());
         if is_shown { error } else { Interval::scope(PRECISION, exactly) }
     }
 
-    /// The same by a reference that is `rounded`.
+    /// The same by an M of poses that are `rounded`.
     fn mass_matrix_error_by<T: Number, R: Ordered>(&self, mass: &[T], rounded: fn(Interval) -> R) -> f64 {
-        let nv = self.columns.len();
-        let plan = &self.computation.assembly.plan;
-        let round = |motions: &Vec<UnitMotion<Interval>>| motions.iter().map(|own| own.rounded(rounded)).collect();
-        let columns: Vec<Vec<UnitMotion<R>>> = self.columns.iter().map(round).collect();
-        let inertia = |i: usize, j: usize| self.inertia(&columns[i], &columns[j]);
-        let size: Vec<f64> = (0..nv).map(|i| R::freeing(|| inertia(i, i).to_f64().sqrt())).collect();
-        worst((0..nv).flat_map(|i| {
-            let (size, inertia) = (&size, &inertia);
-            plan.branch(Some(i)).map(move |j| {
-                let error = R::freeing(|| distance(mass[i * nv + j], inertia(i, j)));
-                relative(error, size[i] * size[j])
-            })
+        let (plan, poses) = (self.computation.state.plan::<R>(), &self.computation.assembly.workspace);
+        let mut workspace = Workspace::default();
+        let turns = poses.rotation.iter().map(|turn| Rotation { cos: rounded(turn.cos), sin: rounded(turn.sin) });
+        workspace.rotation.extend(turns);
+        workspace.arm.extend(poses.arm.iter().map(|arm| arm.map(rounded)));
+        workspace.direction.extend(poses.direction.iter().map(|direction| direction.map(rounded)));
+        mass_matrix(&plan, &mut workspace);
+        let (nv, exact) = (plan.columns(), &workspace.mass_matrix);
+        let size: Vec<f64> = (0..nv).map(|i| exact[i * nv + i].to_f64().sqrt()).collect();
+        let branches = (0..nv).flat_map(|i| plan.branch(Some(i)).map(move |j| (i, j)));
+        worst(branches.map(|(i, j)| {
+            let error = R::freeing(|| distance(mass[i * nv + j], exact[i * nv + j]));
+            relative(error, size[i] * size[j])
         }))
     }
-
-    /// Entry of M for two columns, the second one below the first or the same.
-    fn inertia<T: Real>(&self, upper: &[UnitMotion<T>], lower: &[UnitMotion<T>]) -> T {
-        let plan = &self.computation.assembly.plan;
-        let carries = |body: usize, outer: usize| plan.way_to_root(outer).any(|(at, _)| at == body);
-        let pairs = upper.iter().flat_map(|one| lower.iter().map(move |other| (one, other)));
-        let parts = pairs.filter_map(|(one, other)| {
-            if !plan.has_mimics || carries(other.body, one.body) {
-                Some(one.inertia(other))
-            } else {
-                carries(one.body, other.body).then(|| other.inertia(one))
-            }
-        });
-        parts.reduce(|sum, part| sum + part).unwrap_or(T::zero())
-    }
-}
-
-impl UnitMotion<Interval> {
-    fn rounded<R: Real>(&self, round: fn(Interval) -> R) -> UnitMotion<R> {
-        UnitMotion {
-            body: self.body,
-            angular_velocity: round(self.angular_velocity),
-            velocity: self.velocity.map(round),
-            angular_momentum: round(self.angular_momentum),
-            momentum: self.momentum.map(round),
-            rotor: round(self.rotor),
-        }
-    }
-}
-
-impl<T: Real> UnitMotion<T> {
-    /// What this motion and one `below` it, or itself, bring to M.
-    ///
-    /// Not by a walk to the root as [`mass_matrix`](crate::dynamics::mass_matrix) does it, but by the places of both.
-    fn inertia(&self, below: &Self) -> T {
-        let entry = self.angular_momentum * below.angular_velocity + self.momentum.dot(below.velocity);
-        if std::ptr::eq(self, below) { entry + self.rotor } else { entry }
-    }
-}
-
-fn columns(computation: &Computation<Interval>) -> Vec<Vec<UnitMotion<Interval>>> {
-    let (plan, workspace) = (&computation.assembly.plan, &computation.assembly.workspace);
-    let mut composite: Vec<Inertia<Interval>> = Vec::new();
-    let mut origins: Vec<Vector<Interval>> = Vec::new();
-    for (index, body) in plan.bodies.iter().enumerate() {
-        composite.push(Inertia { first: workspace.rotation[index].apply(body.inertia.first), ..body.inertia });
-        origins.push(body.parent.map_or(Vector::zero(), |parent| origins[parent] + workspace.arm[index]));
-    }
-    for (index, body) in plan.bodies.iter().enumerate().rev() {
-        if let Some(parent) = body.parent {
-            composite[parent] = composite[parent].with(composite[index].seen_from(workspace.arm[index]));
-        }
-    }
-    let mut columns: Vec<Vec<UnitMotion<Interval>>> = (0..plan.columns()).map(|_| Vec::new()).collect();
-    for (index, body) in plan.bodies.iter().enumerate() {
-        let Some(column) = body.column else { continue };
-        let (origin, Inertia { mass, first, second }) = (origins[index], composite[index]);
-        let mut add = |column: usize, angular_velocity, velocity, angular_momentum, momentum: Vector<Interval>| {
-            columns[column].push(UnitMotion {
-                body: index,
-                angular_velocity,
-                velocity,
-                angular_momentum: angular_momentum + origin.perpendicular().dot(momentum),
-                momentum,
-                rotor: body.rotor,
-            });
-        };
-        let mut slide = |column, rate: Vector<Interval>| {
-            add(column, Interval::zero(), rate, first.perpendicular().dot(rate), rate * mass);
-        };
-        match body.motion {
-            JointMotion::Root => Vector::axes().into_iter().enumerate().for_each(|(axis, rate)| slide(axis, rate)),
-            JointMotion::Prismatic { .. } => slide(column, workspace.direction[index]),
-            JointMotion::Revolute { .. } | JointMotion::Fixed => {}
-        }
-        let rate = match body.motion {
-            JointMotion::Root => Interval::one(),
-            JointMotion::Revolute { rate, .. } => rate,
-            JointMotion::Prismatic { .. } | JointMotion::Fixed => continue,
-        };
-        add(column, rate, -(origin.perpendicular() * rate), rate * second, first.perpendicular() * rate);
-    }
-    columns
 }
 
 /// A ball around the pair of f64s next to a number.
 fn enclosed(exact: Interval) -> Ball<DoubleDouble> {
-    let [head, tail] = exact.parts();
-    let rest = exact - Interval::from_f64(head) - Interval::from_f64(tail);
+    let head = exact.to_f64();
+    let rest = exact - Interval::from_f64(head);
+    let tail = rest.to_f64();
+    let rest = rest - Interval::from_f64(tail);
     let rest = Ball::from_f64(2.0 * rest.to_f64().abs() + rest.error());
     (Ball::from_f64(head) + Ball::from_f64(tail)).widened(rest)
 }

@@ -273,7 +273,7 @@ impl<'a> Bench<'a> {
         }
         self.method::<DoubleDouble>("double-double", ArticulatedBodies);
         let error = MethodErrors { mass_matrix: None, delassus: Some(self.reference.own_error()), outcome: None };
-        let method = Method::delassus("reference", self.reference.factorization(), Some(time));
+        let method = Method::delassus("reference", self.reference.factorization, Some(time));
         self.methods.push(Method { error: Some(error), ..method });
     }
 
@@ -349,7 +349,7 @@ impl<'a> Bench<'a> {
 }
 
 /// The problem `shape` with these numbers.
-fn filled<T: Number>(shape: &ContactProblem, contacts: &Contacts<T>) -> ContactProblem<T> {
+fn filled<T: Real>(shape: &ContactProblem, contacts: &Contacts<T>) -> ContactProblem<T> {
     let Contacts { delassus, before, free } = contacts;
     // `map` takes G by rows, the velocities without and with applied impulses, and the normal parts that approach.
     let approach = |(c, given): (&Pair<T>, &Pair<f64>)| if given[1] < 0.0 { c[1] } else { T::zero() };
