@@ -21,11 +21,7 @@ pub fn block() -> Result<Robot> {
 
 /// The passive dynamic walker with legs of the given moment of inertia \[kg m^2\].
 pub fn walker(moment: f64) -> Result<Robot> {
-    let mut robot = Robot::from_urdf(include_str!("../../urdf/pdw.urdf"))?;
-    for body in &mut robot.bodies {
-        body.moment = moment;
-    }
-    Ok(robot)
+    Ok(with_bodies(Robot::from_urdf(include_str!("../../urdf/pdw.urdf"))?, |body| body.moment = moment))
 }
 
 /// The minimalistic biped with feet that weigh nothing, each hinged to its leg's end.
@@ -94,20 +90,9 @@ pub fn resized(robot: &Robot, mass: f64, length: f64) -> Robot {
     robot
 }
 
-/// `robot` with the mass and moment of the bodies with `part` in their name times `factor`.
-pub fn with_heavier(mut robot: Robot, part: &str, factor: f64) -> Robot {
-    for body in robot.bodies.iter_mut().filter(|body| body.name.contains(part)) {
-        body.mass *= factor;
-        body.moment *= factor;
-    }
-    robot
-}
-
-/// `robot` with all moments of inertia about the CoGs times `factor`.
-pub fn with_moments(mut robot: Robot, factor: f64) -> Robot {
-    for body in &mut robot.bodies {
-        body.moment *= factor;
-    }
+/// `robot` with a change to every body.
+pub fn with_bodies(mut robot: Robot, change: impl FnMut(&mut Body)) -> Robot {
+    robot.bodies.iter_mut().for_each(change);
     robot
 }
 

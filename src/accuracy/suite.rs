@@ -80,13 +80,18 @@ impl Suite {
     fn masses(&mut self) -> Result<()> {
         for part in ["shank", "thigh", "torso"] {
             for factor in [1e-12, 1e-6, 1e6, 1e12] {
-                let robot = robots::with_heavier(robots::ramone()?, part, factor);
+                let robot = robots::with_bodies(robots::ramone()?, |body| {
+                    if body.name.contains(part) {
+                        body.mass *= factor;
+                        body.moment *= factor;
+                    }
+                });
                 let state = ramone(&robot, 0.5);
                 self.state(format!("{part} mass times {factor:e}"), robot, state);
             }
         }
         for (name, factor) in [("needle", 1e-12), ("point", 0.0)] {
-            let robot = robots::with_moments(robots::ramone()?, factor);
+            let robot = robots::with_bodies(robots::ramone()?, |body| body.moment *= factor);
             let state = ramone(&robot, 0.5);
             self.state(format!("{name} inertias"), robot, state);
         }
