@@ -132,65 +132,58 @@ const MOST_MISSPELT: usize = 100;
 /// and that is not there, and limits that cannot be.
 pub(super) fn misspelt(robot: Node<'_, '_>) -> Vec<String> {
     let (mut waiting, mut found) = (vec![robot], Vec::new());
-    while let Some(element) = waiting.pop() {
+    while let Some(element) = waiting.pop().filter(|_| found.len() < MOST_MISSPELT) {
         let tag = element.tag_name().name();
         let line = |node: Node| node.document().text_pos_at(node.range().start).row;
         if tag == "visual" {
             // Nothing in it is read, but what would be elsewhere.
-            let of_link = |child: &Node| matches!(child.tag_name().name(), "inertial" | "collision");
-            for child in xml::children(element).filter(of_link).take(MOST_MISSPELT.saturating_sub(found.len())) {
-                found.push(format!("<{}> in <visual> on line {} (in <link>?)", child.tag_name().name(), line(child)));
-            }
+            let named = xml::children(element).map(|child| (child, child.tag_name().name()));
+            let of_link = named.filter(|(_, name)| matches!(*name, "inertial" | "collision"));
+            let odd = of_link.map(|(child, name)| format!("<{name}> in <visual> on line {} (in <link>?)", line(child)));
+            found.extend(odd.take(MOST_MISSPELT - found.len()));
         }
         let Some((_, attributes, children)) = READ.iter().find(|(known, ..)| *known == tag) else { continue };
-        let first = waiting.len();
-        waiting.extend(element.children().filter(Node::is_element));
-        waiting[first..].reverse();
-        let elements = || waiting[first..].iter().rev().copied();
-        let tags = || elements().map(|child| child.tag_name().name());
+        waiting.extend(element.children().rev().filter(Node::is_element));
+        let elements = || element.children().filter(Node::is_element).map(|child| (child, child.tag_name().name()));
+        let tags = || elements().map(|(_, name)| name);
         let given = || element.attributes().filter(|own| own.namespace().is_none()).map(|own| own.name());
+        // Numbers between the tags, not in an attribute.
+        let text = element.text().filter(|text| children.is_empty() && !text.trim().is_empty());
+        let text = text.map(|_| format!("text in <{tag}> on line {} ({}?)", line(element), attributes.join(" or ")));
         // In most elements everything is read: no name to compare with others.
         let is_read = given().all(|name| attributes.contains(&name)) && tags().all(|tag| children.contains(&tag));
-        // Numbers between the tags, not in an attribute.
-        let text = element.text().map(str::trim).filter(|text| children.is_empty() && !text.is_empty());
-        if text.is_some() && found.len() < MOST_MISSPELT {
-            found.push(format!("text in <{tag}> on line {} ({}?)", line(element), attributes.join(" or ")));
-        }
         if is_read && tag != "limit" {
+            found.extend(text);
             continue;
         }
         let meant = meant(given(), attributes);
-        let misread = given().filter_map(|name| Some((name, meant(name)?)));
-        for (name, meant) in misread.take(MOST_MISSPELT.saturating_sub(found.len())) {
-            found.push(format!("{name} of <{tag}> on line {} ({meant}?)", line(element)));
-        }
+        let misread = given().filter_map(|name| {
+            meant(name).map(|meant| format!("{name} of <{tag}> on line {} ({meant}?)", line(element)))
+        });
         // Exporters write an <axis> like an <origin>.
-        let misplaced = given()
-            .filter(|&name| !attributes.contains(&name) && (tag, name) != ("axis", "rpy"))
-            .filter_map(|name| Some((name, owner(name, children)?)));
-        for (name, owner) in misplaced.take(MOST_MISSPELT.saturating_sub(found.len())) {
-            found.push(format!("{name} of <{tag}> on line {} (<{owner}>?)", line(element)));
-        }
+        let misplaced = given().filter(|&name| !attributes.contains(&name) && (tag, name) != ("axis", "rpy"));
+        let misplaced = misplaced.filter_map(|name| {
+            owner(name, children).map(|owner| format!("{name} of <{tag}> on line {} (<{owner}>?)", line(element)))
+        });
         let meant = self::meant(tags(), children);
-        let misread = elements().filter_map(|child| Some((child, meant(child.tag_name().name())?)));
-        for (child, meant) in misread.take(MOST_MISSPELT.saturating_sub(found.len())) {
-            found.push(format!("<{}> in <{tag}> on line {} (<{meant}>?)", child.tag_name().name(), line(child)));
-        }
+        let misnamed = elements().filter_map(|(child, name)| {
+            meant(name).map(|meant| format!("<{name}> in <{tag}> on line {} (<{meant}>?)", line(child)))
+        });
         let around = element.parent().map_or("", |parent| parent.tag_name().name());
         let takes = |name: &str, of: &str| READ.iter().any(|(tag, _, children)| *tag == of && children.contains(&name));
-        let named = elements().map(|child| (child, child.tag_name().name()));
-        let unread = named.filter(|(_, name)| !children.contains(name) && meant(name).is_none());
+        let unread = elements().filter(|(_, name)| !children.contains(name) && meant(name).is_none());
         let of_others = unread.filter_map(|(child, name)| {
             let near = children.iter().copied().chain([around]).find(|other| takes(name, other));
-            Some((child, near.or_else(|| Some(READ.iter().find(|(.., children)| children.contains(&name))?.0))?))
+            let owner = near.or_else(|| Some(READ.iter().find(|(.., children)| children.contains(&name))?.0))?;
+            Some(format!("<{name}> in <{tag}> on line {} (in <{owner}>?)", line(child)))
         });
-        for (child, owner) in of_others.take(MOST_MISSPELT.saturating_sub(found.len())) {
-            found.push(format!("<{}> in <{tag}> on line {} (in <{owner}>?)", child.tag_name().name(), line(child)));
-        }
-        if tag == "limit" && limits(element).is_none_or(|[lower, upper]| lower > upper) && found.len() < MOST_MISSPELT {
+        let is_no_limit = tag == "limit" && limits(element).is_none_or(|[lower, upper]| lower > upper);
+        let limit = is_no_limit.then(|| {
             let [lower, upper] = ["lower", "upper"].map(|end| element.attribute(end).unwrap_or("0"));
-            found.push(format!("<limit> on line {} (no limit from {lower} to {upper})", line(element)));
-        }
+            format!("<limit> on line {} (no limit from {lower} to {upper})", line(element))
+        });
+        let odd = text.into_iter().chain(misread).chain(misplaced).chain(misnamed).chain(of_others).chain(limit);
+        found.extend(odd.take(MOST_MISSPELT - found.len()));
     }
     found
 }
