@@ -2,6 +2,7 @@
 //!
 //! ```text
 //!     R_child = R_parent R_origin turn(a, q)          axis in the root's axes = R_parent R_origin a
+//!     p_child = p_parent + R_parent xyz + R_parent R_origin a q, of a slide
 //! ```
 
 use crate::description::{Description, JointKind, Matrix, Mimic, Pose, UrdfJoint, apply, product, turn, unit};
@@ -18,6 +19,8 @@ pub(super) struct ReferencePose {
     pub(super) axes: Vec<[f64; 3]>,
     /// Each link's axes, as columns, in those of the root link.
     pub(super) rotations: Vec<Matrix>,
+    /// Each link's origin in the root link's frame \[m\].
+    pub(super) places: Vec<[f64; 3]>,
     /// The greatest angle by which an axis may be off the plane's normal and counts as parallel to it \[rad\].
     pub(super) tolerance: f64,
 }
@@ -45,19 +48,24 @@ impl ReferencePose {
         }
         let axes = vec![[0.0; 3]; joints.len()];
         let rotations = vec![Pose::default().rotation(); description.links.len()];
-        let mut pose = Self { frozen, mimicked, axes, rotations, tolerance };
+        let places = vec![[0.0; 3]; description.links.len()];
+        let mut pose = Self { frozen, mimicked, axes, rotations, places, tolerance };
         pose.turn(description);
         Ok(pose)
     }
 
-    /// Finds axes and rotations.
+    /// Finds axes, rotations and places.
     fn turn(&mut self, description: &Description) {
-        let Self { frozen, axes, rotations, .. } = self;
+        let Self { frozen, axes, rotations, places, .. } = self;
         for index in description.outward(description.root) {
             let joint = &description.joints[index];
-            let origin = product(&rotations[joint.parent], &joint.origin.rotation());
+            let (parent, child) = (joint.parent, joint.child);
+            let origin = product(&rotations[parent], &joint.origin.rotation());
             axes[index] = unit(apply(&origin, unit(joint.axis)));
-            rotations[joint.child] = frozen[index].map_or(origin, |value| product(&origin, &frozen_turn(joint, value)));
+            rotations[child] = frozen[index].map_or(origin, |value| product(&origin, &frozen_turn(joint, value)));
+            let shift = frozen[index].map_or([0.0; 3], |value| frozen_shift(joint, value));
+            let (to_joint, to_child) = (apply(&rotations[parent], joint.origin.xyz), apply(&origin, shift));
+            places[child] = [0, 1, 2].map(|axis| places[parent][axis] + to_joint[axis] + to_child[axis]);
         }
     }
 
