@@ -11,7 +11,7 @@ use super::role::{self, Role, roles};
 use super::tree::{Place, Tree};
 use super::{Base, LeftOutPart, Link, ParentJoint, Robot, base, caution, left_out};
 use crate::description::{self, Description, Inertial, JointKind, UrdfLink, product};
-use crate::error::{Error, Reason, Result};
+use crate::error::{Error, Reason, Result, finite};
 use crate::reductions::Reductions;
 
 /// What a user may say about the reduction; plane and base are found where they are not given.
@@ -299,8 +299,6 @@ fn refuse_overflow(robot: &Robot) -> Result<()> {
 }
 
 fn refuse_infinite(what: &str, numbers: impl IntoIterator<Item = f64>, place: impl Fn() -> String) -> Result<()> {
-    match numbers.into_iter().find(|number| !number.is_finite()) {
-        Some(value) => Err(Error::from(Reason::NotFinite { what: what.into(), value }).at(place())),
-        None => Ok(()),
-    }
+    let all = numbers.into_iter().try_for_each(|number| finite(number, || what.into()).map(drop));
+    all.map_err(|error| error.at(place()))
 }
