@@ -227,22 +227,4 @@ mod tests {
         let error = of(quaternion([0.0, PI - 0.1, 0.0])).unwrap_err();
         assert!(error.to_string().contains("upside down"), "{error}");
     }
-
-    #[test]
-    fn the_heading_is_the_mean_of_a_turning_clip() {
-        let clip = |from: f64, step: f64, count: u32| -> Vec<Spatial> {
-            (0..count).map(|k| turned([from + f64::from(k) * step, 0.0, 0.0], Plane::XZ).1).collect()
-        };
-        // A quarter turn from yaw 0.2, in even steps: half way.
-        let quarter = clip(0.2, FRAC_PI_2 / 90.0, 91);
-        let heading = Heading::mean(quarter.iter()).unwrap();
-        let half = 0.2 + 0.25 * PI;
-        let [along, across] = heading.along_and_across([half.cos(), half.sin()]);
-        close(along, 1.0);
-        close(across, 0.0);
-        close(heading.yaw(&quarter[0]), -0.25 * PI);
-        // A whole turn has none.
-        assert_eq!(Heading::mean(clip(0.0, PI / 180.0, 360).iter()), None);
-        assert_eq!(Heading::mean([].iter()), None);
-    }
 }

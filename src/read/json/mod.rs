@@ -371,18 +371,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_refusal_knows_its_place_line_and_column() {
-        let text = "{\"contacts\": [\n  {\"offset\": [0, \"é\"]}]}";
-        let tree = Value::parse(text).expect("well-formed");
-        let root = Node::root(&tree, text, None);
-        let contacts = root.field("contacts").expect("an object").expect("a field");
-        let contact = contacts.entries().expect("a list").next().expect("one entry");
-        let offset = contact.field("offset").expect("an object").expect("a field");
-        let error = offset.vector().expect_err("a string is no number");
-        assert_eq!(error.to_string(), "2:18: contacts[0].offset[1]: expected a number, found a string");
-    }
-
-    #[test]
     fn of_two_equal_keys_the_second_is_refused() {
         for others in ["", &(0..30).map(|k| format!("\"k{k}\": 0, ")).collect::<String>()] {
             let text = format!("{{{others}\"a\": 1,\n\"a\": 2}}");

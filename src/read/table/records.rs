@@ -231,12 +231,4 @@ mod tests {
             [Misplaced, Open, Misplaced, Misplaced]
         );
     }
-
-    #[test]
-    fn quotes_hold_rows_if_each_of_their_lines_is_one() {
-        let swallow = |record: &[u8]| Form::Csv.quotes().swallow_rows(record, 3);
-        assert!(swallow(b"a,\"5,1\nb,6\",2\n") && swallow(b"\"a,5,1\nb\",6,2\n") && swallow(b"\"a\nb\",6\n"));
-        // Text of two lines in the first, the second and the last cell.
-        assert!(![&b"\"one\ntwo\",5,1\n"[..], b"a,\"one\ntwo\",1\n", b"a,5,\"one\ntwo\"\n"].into_iter().any(swallow));
-    }
 }
