@@ -16,7 +16,7 @@ pub struct Foot {
     pub outline: FootShape,
     /// The center of a foot that was named, in the link's own 3-D frame \[m\].
     pub offset: Option<[f64; 3]>,
-    /// Centre and radius of a circle about its outline, in the body's frame \[m\].
+    /// Center and radius of a circle about its outline, in the body's frame \[m\].
     pub bounding_circle: (Vector<f64>, f64),
     /// How far above its lowest corner the rest of an almost level sole may be \[m\]; 0 for an outline that is exact.
     pub bumps: f64,

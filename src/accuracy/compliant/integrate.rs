@@ -25,7 +25,7 @@ const MOST_STEPS: usize = 5_000;
 /// Steps before which no run has ended: all begin without forces.
 const FEWEST_STEPS: usize = 2;
 
-/// StiffEquations of an impact in units in which times and states are of order one.
+/// Equations of an impact in units in which times and states are of order one.
 pub(super) trait StiffEquations {
     /// f(y).
     fn rates(&self, state: &[f64]) -> Vec<f64>;
