@@ -8,7 +8,7 @@ use crate::robot::{LONGEST, Robot};
 use crate::scalar::Real;
 use std::collections::BTreeMap;
 
-/// Everything about a state that is not position or velocity; indices are those of the [`Robot`](crate::Robot).
+/// Everything about a state that is not position or velocity; indices are those of the [`Robot`].
 ///
 /// ```
 /// # fn main() -> heelstrike::Result<()> {
