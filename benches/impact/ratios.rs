@@ -3,7 +3,7 @@
 
 use super::closed_form;
 use divan::black_box;
-use heelstrike::batch::{Batch, Block, Chunks, Question, Sink, run};
+use heelstrike::batch::{AHEAD, Batch, Block, Chunks, Question, run};
 use heelstrike::dynamics::plan::{Configuration, Plan};
 use heelstrike::dynamics::{Workspace, contact_jacobian, delassus, factorize, kinematics, mass_matrix};
 use heelstrike::impact::{AnalysisOptions, Friction, Mode, Scratch};
@@ -177,16 +177,6 @@ struct Joints {
     right_knee: f64,
 }
 
-/// What is done with the bytes of the answers.
-struct Bytes<F>(F);
-
-impl<F: FnMut(&[u8]) + Send> Sink for Bytes<F> {
-    fn block(&mut self, block: Block) -> heelstrike::Result<()> {
-        (self.0)(&block.out);
-        Ok(())
-    }
-}
-
 fn question(robot: &Robot, brief: bool) -> Question<'_> {
     Question {
         robot,
@@ -201,12 +191,17 @@ fn question(robot: &Robot, brief: bool) -> Question<'_> {
 }
 
 /// Gives `write` the answers to `lines`.
-fn answer(question: &Question, lines: &str, threads: usize, write: impl FnMut(&[u8]) + Send) {
+fn answer(question: &Question, lines: &str, threads: usize, mut write: impl FnMut(&[u8]) + Send) {
     let answerer = || {
         let mut batch = Batch::new(question);
         move |chunk| batch.records(&chunk)
     };
-    run(Chunks::of_lines(lines.as_bytes()), threads, answerer, &mut Bytes(write)).expect("good lines");
+    let mut chunks = Chunks::of_lines(lines.as_bytes());
+    let sink = |block: Block| {
+        write(&block.out);
+        Ok(())
+    };
+    run(|| chunks.task(), threads, AHEAD, answerer, sink).expect("good lines");
 }
 
 fn of_one_line(robot: &Robot, rounds: usize) {

@@ -4,7 +4,7 @@ use crate::answers::{Answers, Table};
 use crate::robot::{Model, Robot, friction};
 use crate::values::{of_argument, refused, to_json, warn};
 use crate::watch::{Call, budget, interrupted, raised, without_python};
-use heelstrike::batch::{Sink, TaskSource, run};
+use heelstrike::batch::{AHEAD, run};
 use heelstrike::budget::TotalBudget;
 use heelstrike::cli::threads;
 use heelstrike::pipeline::Options;
@@ -325,18 +325,18 @@ impl<'py> Rows<'py> {
         let total = model.budget.filter(|_| rows > 1).map(|each| TotalBudget::new(budget(Some(each)), None));
         let arrays = without_python(py, || {
             let (numbers, total, call) = (&numbers, total.as_ref(), Call::current());
-            let mut all = All(table.arrays(rows));
+            let mut all = table.arrays(rows);
             if threads <= 1 {
                 // What it computes is written once.
                 let mut worker = Worker::new(&model, asker, &scene);
                 for row in 0..rows {
-                    worker.row(numbers, row, total, &mut all.0);
+                    worker.row(numbers, row, total, &mut all);
                     // A row that takes long looks for signals itself.
                     if raised() || row % TOGETHER == TOGETHER - 1 && interrupted() {
                         break;
                     }
                 }
-                return all.0;
+                return all;
             }
             let answerer = || {
                 call.join();
@@ -348,9 +348,14 @@ impl<'py> Rows<'py> {
                     block
                 }
             };
+            let mut ranges = (0..rows).step_by(TOGETHER).map(|start| start..rows.min(start + TOGETHER));
+            let append = |block| {
+                all.append(block);
+                if raised() { Err(Reason::BeyondBudget.into()) } else { Ok(()) }
+            };
             // Only signals end it early, which are raised then.
-            let _ = run(Ranges(0..rows), threads, answerer, &mut all);
-            all.0
+            let _ = run(|| Ok(ranges.next()), threads, AHEAD, answerer, append);
+            all
         })?;
         warn(py, beyond_budget(total.as_ref()))?;
         Ok(Answers::new(Arc::clone(table), arrays))
@@ -456,27 +461,4 @@ fn names(robot: &heelstrike::Robot, contacts: &[NamedContact]) -> Vec<String> {
         if of(contact.link) == 1 { name.clone() } else { format!("{name}/{before}") }
     });
     all.collect()
-}
-
-/// Rows as tasks.
-struct Ranges(Range<usize>);
-
-impl TaskSource for Ranges {
-    type Task = Range<usize>;
-
-    fn next(&mut self) -> heelstrike::Result<Option<Range<usize>>> {
-        let Range { start, end } = self.0;
-        self.0.start = end.min(start + TOGETHER);
-        Ok((start < end).then_some(start..self.0.start))
-    }
-}
-
-/// All answers so far, until a signal is raised.
-struct All(Box<Arrays>);
-
-impl Sink<Arrays> for All {
-    fn block(&mut self, block: Arrays) -> heelstrike::Result<()> {
-        self.0.append(block);
-        if raised() { Err(Reason::BeyondBudget.into()) } else { Ok(()) }
-    }
 }

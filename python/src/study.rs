@@ -3,7 +3,7 @@
 use crate::robot::{Robot, friction};
 use crate::values::{from_json, refused, refused_in, to_json, warn};
 use crate::watch::{budget, interrupted, raised, shared, without_python};
-use heelstrike::batch::{Batch, Question, Recording, States, Summary, TaskSource};
+use heelstrike::batch::{Batch, Question, Recording, States, Summary};
 use heelstrike::budget::TotalBudget;
 use heelstrike::cli::{RecordingOptions, Seconds, records, seconds, threads};
 use heelstrike::impact::{AnalysisOptions, Scratch};
@@ -151,7 +151,7 @@ fn found(
     let rows = recording.chosen(Box::new(rows), &header, (robot, feet), thresholds, (&dropped, &seen))?;
     let (mut source, mut batch, mut lines) = (Recording::new(rows, &pauses), Batch::new(&question), Vec::new());
     let mut summary = Summary::default();
-    while let Some(states) = source.next()? {
+    while let Some(states) = source.task()? {
         let block = batch.samples(states);
         lines.extend(block.out);
         summary.merge(block.summary);

@@ -1,10 +1,7 @@
 //! Cuts a stream into chunks of whole records.
 
-use super::run::TaskSource;
 use crate::read::documents::refuse_foreign;
 use crate::read::table::{Form, Quotes, Quoting};
-#[cfg(feature = "columnar")]
-use crate::read::table::{Part, Parts};
 use crate::{Error, Reason, Result};
 use memchr::{memchr, memchr_iter};
 use std::io::{BufRead, BufReader, ErrorKind, Read};
@@ -129,6 +126,14 @@ impl<R: Read + Send> Chunks<R> {
     /// The next record alone; `None` at the end of the input.
     pub fn record(&mut self) -> Result<Option<Chunk>> {
         self.records(1)
+    }
+
+    /// The next records, as many as a thread answers at once; `None` at the end of the input.
+    ///
+    /// # Errors
+    /// Those of reading.
+    pub fn task(&mut self) -> Result<Option<Chunk>> {
+        self.records(RECORDS)
     }
 
     /// Drops the next `count` records that are not blank.
@@ -281,26 +286,6 @@ pub(super) fn too_long() -> Error {
     Error::new(reason).hint("is a line break or a closing quote missing?")
 }
 
-impl<R: Read + Send> TaskSource for Chunks<R> {
-    type Task = Chunk;
-
-    fn next(&mut self) -> Result<Option<Chunk>> {
-        self.records(RECORDS)
-    }
-}
-
-#[cfg(feature = "columnar")]
-impl TaskSource for Parts {
-    type Task = Part;
-
-    // They are long.
-    const AHEAD: usize = 2;
-
-    fn next(&mut self) -> Result<Option<Part>> {
-        self.part()
-    }
-}
-
 impl Chunk {
     /// The records with the line breaks that end them, each with the line on which it begins, from 1.
     pub fn records(&self) -> impl Iterator<Item = (usize, &[u8])> {
@@ -324,7 +309,7 @@ mod tests {
 
     /// The records of each chunk with their lines.
     fn chunks(mut chunks: Chunks<impl Read + Send>) -> Vec<String> {
-        let chunks = std::iter::from_fn(|| chunks.next().unwrap());
+        let chunks = std::iter::from_fn(|| chunks.task().unwrap());
         let shown = |(line, record): (usize, &[u8])| format!("{line}:{}", record.escape_ascii());
         chunks.map(|chunk| chunk.records().map(shown).collect::<Vec<_>>().join(" ")).collect()
     }
@@ -370,7 +355,7 @@ mod tests {
         let count = RECORD_LIMIT / line.len() + 100_000;
         let text = line.repeat(count);
         let mut chunks = Chunks::of_table(text.as_bytes(), Form::Csv);
-        let records = std::iter::from_fn(|| chunks.next().unwrap());
+        let records = std::iter::from_fn(|| chunks.task().unwrap());
         assert_eq!(records.map(|chunk| chunk.ends.len()).sum::<usize>(), count);
     }
 
@@ -382,7 +367,7 @@ mod tests {
             Parts(std::iter::once(first).chain(long).chain([&b"\nend"[..]]).collect())
         };
         for mut chunks in [Chunks::of_lines(parts(b"a\n")), Chunks::of_table(parts(b"a\n\""), Form::Csv)] {
-            let chunks = std::iter::from_fn(move || chunks.next().unwrap());
+            let chunks = std::iter::from_fn(move || chunks.task().unwrap());
             let found: Vec<_> = chunks.map(|chunk| (chunk.bytes.len(), chunk.too_long)).collect();
             assert_eq!(found, [(2, None), (0, Some(2)), (3, None)]);
         }

@@ -16,7 +16,7 @@ mod states;
 use chunk::too_long;
 pub use chunk::{Chunk, Chunks, RECORD_LIMIT};
 pub use recording::{Recording, RowOrigin};
-pub use run::{Block, RefusedRecord, Sink, TaskSource, run};
+pub use run::{AHEAD, Block, RefusedRecord, run};
 pub use states::States;
 pub use summary::{ModeCount, MoreFriction, Nearest, Needed, OddStates, Oddity, StateRef, Summary, Verdicts};
 

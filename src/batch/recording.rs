@@ -2,7 +2,6 @@
 //! other.
 
 use super::chunk::{Chunks, too_long};
-use super::run::TaskSource;
 use crate::error::excerpt::Excerpt;
 use crate::gait::{Sample, Sampled};
 #[cfg(feature = "columnar")]
@@ -105,12 +104,12 @@ impl<'p, I: Iterator<Item = Sampled<RowOrigin>> + Send> Recording<'p, I> {
     pub fn new(samples: I, pauses: &'p AtomicBool) -> Self {
         Self { samples, pauses, broken: None }
     }
-}
 
-impl<I: Iterator<Item = Sampled<RowOrigin>> + Send> TaskSource for Recording<'_, I> {
-    type Task = Vec<Sampled<RowOrigin>>;
-
-    fn next(&mut self) -> Result<Option<Self::Task>> {
+    /// The next states, as many as a thread answers at once; `None` at the end.
+    ///
+    /// # Errors
+    /// Those of reading.
+    pub fn task(&mut self) -> Result<Option<Vec<Sampled<RowOrigin>>>> {
         let mut task = Vec::new();
         while self.broken.is_none() && task.len() < STATES && (task.is_empty() || !self.pauses.load(Relaxed)) {
             match self.samples.next() {

@@ -1,7 +1,7 @@
 //! Answers the tasks of a source in several threads, and passes the answers on in order.
 //!
 //! ```text
-//!     Source --task--> thread --block--> ReorderBuffer --next block--> Sink
+//!     source --task--> thread --block--> ReorderBuffer --next block--> sink
 //! ```
 //!
 //! Each thread takes a task from the source, answers it, and puts the block into the buffer. If all blocks before it
@@ -20,17 +20,8 @@ use std::mem;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, Builder};
 
-/// Gives tasks, one after the other.
-pub trait TaskSource: Send {
-    /// What a thread answers at once.
-    type Task: Send;
-
-    /// How many blocks per thread the buffer holds: while one thread takes long for a task, the others answer as many.
-    const AHEAD: usize = 16;
-
-    /// The next records; `None` at the end. After that, and after an error of reading, this is not called again.
-    fn next(&mut self) -> Result<Option<Self::Task>>;
-}
+/// How many blocks per thread the buffer usually holds: while one thread takes long for a task, the others answer as many.
+pub const AHEAD: usize = 16;
 
 /// The answers to a task.
 #[derive(Debug, Default)]
@@ -75,44 +66,42 @@ pub struct RefusedRecord {
     pub excerpt: Option<Excerpt>,
 }
 
-/// Takes the answers in the order of the input, on whichever thread has the next one.
-pub trait Sink<B = Block>: Send {
-    /// Takes the next answers. More may take long to arrive, so that a sink that others read keeps none back.
-    ///
-    /// # Errors
-    /// Those of writing; this is not called again then.
-    fn block(&mut self, block: B) -> Result<()>;
-}
-
 /// Answers all tasks of `source` in `threads` threads, the caller's among them, each with what `answerer` makes. If fewer
 /// can be started, these do the work.
 ///
+/// The source gives the next task, or `None` at the end; after that, and after an error of reading, it is not asked again.
+/// The buffer holds so many blocks per thread `ahead`, usually [`AHEAD`]. The sink takes the answers in the order of the
+/// tasks, on whichever thread has the next one; more may take long to arrive, so that a sink that others read keeps none
+/// back. After an error of writing it is not called again.
+///
 /// # Errors
-/// Those of the source, with all before it answered, and of the sink, once the source's current call of `next` returns.
-pub fn run<S: TaskSource, B: Send, F: FnMut(S::Task) -> B>(
-    source: S,
+/// Those of the source, with all before it answered, and of the sink, once the source's current call returns.
+pub fn run<T, B: Send, F: FnMut(T) -> B>(
+    source: impl FnMut() -> Result<Option<T>> + Send,
     threads: usize,
+    ahead: usize,
     answerer: impl Fn() -> F + Sync,
-    sink: &mut impl Sink<B>,
+    sink: impl FnMut(B) -> Result<()> + Send,
 ) -> Result<()> {
-    in_threads(source, threads, answerer, sink, |_| Builder::new())
+    in_threads(source, threads, ahead, answerer, sink, |_| Builder::new())
 }
 
 /// Starts thread `k`, from 1, by `builder(k)`.
-fn in_threads<S: TaskSource, B: Send, F: FnMut(S::Task) -> B>(
-    source: S,
+fn in_threads<T, B: Send, F: FnMut(T) -> B>(
+    source: impl FnMut() -> Result<Option<T>> + Send,
     threads: usize,
+    ahead: usize,
     answerer: impl Fn() -> F + Sync,
-    sink: &mut impl Sink<B>,
+    sink: impl FnMut(B) -> Result<()> + Send,
     builder: impl Fn(usize) -> Builder,
 ) -> Result<()> {
     // Until it ends or fails.
     let source = Mutex::new(Some(source));
-    let buffer = ReorderBuffer::new(S::AHEAD * threads.max(1), sink);
+    let buffer = ReorderBuffer::new(ahead * threads.max(1), sink);
     // The next task and its number. Here a thread waits for the others, for input and for the sink.
     let next_task = || {
         let mut source = source.lock().ok()?;
-        let next = source.as_mut().filter(|_| buffer.wait_for_room())?.next();
+        let next = source.as_mut().filter(|_| buffer.wait_for_room())?();
         if !matches!(next, Ok(Some(_))) {
             *source = None;
         }
@@ -133,19 +122,19 @@ fn in_threads<S: TaskSource, B: Send, F: FnMut(S::Task) -> B>(
 }
 
 /// The blocks that are answered before their turn, and where they go.
-struct ReorderBuffer<'s, B, K> {
-    pending: Mutex<Pending<'s, B, K>>,
+struct ReorderBuffer<B, K> {
+    pending: Mutex<Pending<B, K>>,
     has_room: Condvar,
 }
 
-struct Pending<'s, B, K> {
+struct Pending<B, K> {
     /// From the block that the sink takes next; `None` while it is answered.
     blocks: VecDeque<Option<B>>,
     capacity: usize,
     /// How many blocks the sink has taken.
     taken: usize,
     /// `None` while a thread uses it, and after its failure.
-    sink: Option<&'s mut K>,
+    sink: Option<K>,
     /// Whether a thread waits for room.
     is_waited_for: bool,
     /// Of the sink, or else of the source.
@@ -154,8 +143,8 @@ struct Pending<'s, B, K> {
     is_ending: bool,
 }
 
-impl<'s, B, K: Sink<B>> ReorderBuffer<'s, B, K> {
-    fn new(capacity: usize, sink: &'s mut K) -> Self {
+impl<B, K: FnMut(B) -> Result<()>> ReorderBuffer<B, K> {
+    fn new(capacity: usize, sink: K) -> Self {
         let pending = Pending {
             blocks: VecDeque::with_capacity(capacity),
             capacity,
@@ -169,7 +158,7 @@ impl<'s, B, K: Sink<B>> ReorderBuffer<'s, B, K> {
     }
 
     /// Nothing panics while it holds the blocks.
-    fn lock(&self) -> MutexGuard<'_, Pending<'s, B, K>> {
+    fn lock(&self) -> MutexGuard<'_, Pending<B, K>> {
         self.pending.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -198,13 +187,13 @@ impl<'s, B, K: Sink<B>> ReorderBuffer<'s, B, K> {
         let mut pending = self.lock();
         let at = number - pending.taken;
         pending.blocks[at] = Some(block);
-        let Some(sink) = pending.sink.take() else { return };
+        let Some(mut sink) = pending.sink.take() else { return };
         while let Some(block) = pending.blocks.front_mut().and_then(Option::take) {
             pending.blocks.pop_front();
             pending.taken += 1;
             self.wake(&mut pending);
             drop(pending);
-            let done = sink.block(block);
+            let done = sink(block);
             pending = self.lock();
             if let Err(error) = done {
                 pending.error = Some(error);
@@ -215,7 +204,7 @@ impl<'s, B, K: Sink<B>> ReorderBuffer<'s, B, K> {
     }
 
     /// Lets no more tasks be taken.
-    fn stop(&self, mut pending: MutexGuard<'_, Pending<'s, B, K>>) {
+    fn stop(&self, mut pending: MutexGuard<'_, Pending<B, K>>) {
         pending.is_ending = true;
         self.wake(&mut pending);
     }
@@ -234,9 +223,9 @@ impl<'s, B, K: Sink<B>> ReorderBuffer<'s, B, K> {
 }
 
 /// Lets the other threads end if one panics, for whose block they would wait.
-struct EndOnPanic<'b, 's, B, K: Sink<B>>(&'b ReorderBuffer<'s, B, K>);
+struct EndOnPanic<'b, B, K: FnMut(B) -> Result<()>>(&'b ReorderBuffer<B, K>);
 
-impl<B, K: Sink<B>> Drop for EndOnPanic<'_, '_, B, K> {
+impl<B, K: FnMut(B) -> Result<()>> Drop for EndOnPanic<'_, B, K> {
     fn drop(&mut self) {
         if thread::panicking() {
             self.0.stop(self.0.lock());
@@ -253,38 +242,25 @@ mod tests {
     use std::time::{Duration, Instant};
 
     /// The numbers below a limit, and then the end or an error.
-    struct Numbers {
-        next: u32,
-        end: u32,
-        fails: bool,
-    }
-
-    fn numbers(end: u32) -> Numbers {
-        Numbers { next: 0, end, fails: false }
-    }
-
-    impl TaskSource for Numbers {
-        type Task = u32;
-
-        fn next(&mut self) -> Result<Option<u32>> {
-            assert!(self.next <= self.end, "asked again after the end");
-            self.next += 1;
-            match self.next <= self.end {
-                true => Ok(Some(self.next - 1)),
-                false if self.fails => Err(Reason::BeyondBudget.into()),
+    fn numbers(end: u32, fails: bool) -> impl FnMut() -> Result<Option<u32>> {
+        let mut next = 0;
+        move || {
+            assert!(next <= end, "asked again after the end");
+            next += 1;
+            match next <= end {
+                true => Ok(Some(next - 1)),
+                false if fails => Err(Reason::BeyondBudget.into()),
                 false => Ok(None),
             }
         }
     }
 
-    impl Sink<u32> for Vec<u32> {
-        fn block(&mut self, number: u32) -> Result<()> {
-            self.push(number);
+    fn written(numbers: &mut Vec<u32>) -> impl FnMut(u32) -> Result<()> {
+        |number| {
+            numbers.push(number);
             Ok(())
         }
     }
-
-    const AHEAD: usize = Numbers::AHEAD;
 
     /// Until a count is reached, and then until it might have gone on.
     fn wait_until(count: &AtomicUsize, reached: usize) {
@@ -310,9 +286,9 @@ mod tests {
             // No system has room for such a stack.
             let stack = |thread| if missing.contains(&thread) { usize::MAX / 4 } else { 1 << 20 };
             let builder = |thread| Builder::new().stack_size(stack(thread));
-            let mut written = Vec::new();
-            in_threads(numbers(1000), 3, || |number| number, &mut written, builder).unwrap();
-            assert_eq!(written, Vec::from_iter(0..1000), "without {missing:?}");
+            let mut found = Vec::new();
+            in_threads(numbers(1000, false), 3, AHEAD, || |number| number, written(&mut found), builder).unwrap();
+            assert_eq!(found, Vec::from_iter(0..1000), "without {missing:?}");
         }
     }
 
@@ -327,9 +303,9 @@ mod tests {
             answered.fetch_add(1, Relaxed);
             number
         };
-        let mut written = Vec::new();
-        run(numbers(1000), 4, || answer, &mut written).unwrap();
-        assert_eq!(written, Vec::from_iter(0..1000));
+        let mut found = Vec::new();
+        run(numbers(1000, false), 4, AHEAD, || answer, written(&mut found)).unwrap();
+        assert_eq!(found, Vec::from_iter(0..1000));
     }
 
     #[test]
@@ -344,28 +320,26 @@ mod tests {
                 answered.fetch_add(1, Relaxed);
                 number
             };
-            let mut written = Vec::new();
-            let run = || run(numbers(1000), threads, || answer, &mut written);
+            let mut found = Vec::new();
+            let run = || run(numbers(1000, false), threads, AHEAD, || answer, written(&mut found));
             assert!(catch_unwind(AssertUnwindSafe(run)).is_err());
-            assert_eq!(written, Vec::from_iter(0..panics_at));
+            assert_eq!(found, Vec::from_iter(0..panics_at));
         }
     }
 
-    /// Counts the numbers; at the last one it waits until so many are answered, and fails.
-    struct Failing<'a> {
-        written: Vec<u32>,
+    /// Writes the numbers; at the last one it waits until so many are answered, and fails.
+    fn failing<'a>(
+        written: &'a mut Vec<u32>,
         last: u32,
-        until: usize,
         answered: &'a AtomicUsize,
-    }
-
-    impl Sink<u32> for Failing<'_> {
-        fn block(&mut self, number: u32) -> Result<()> {
-            self.written.push(number);
-            if number < self.last {
+        until: usize,
+    ) -> impl FnMut(u32) -> Result<()> {
+        move |number| {
+            written.push(number);
+            if number < last {
                 return Ok(());
             }
-            wait_until(self.answered, self.until);
+            wait_until(answered, until);
             Err(Error::new(Reason::Io("full".into())))
         }
     }
@@ -377,10 +351,11 @@ mod tests {
             let answer = counting(&answered);
             // The other threads answer what there is room for.
             let until = if threads == 1 { 71 } else { 71 + AHEAD * threads };
-            let mut sink = Failing { written: Vec::new(), last: 70, until, answered: &answered };
-            let error = run(numbers(u32::MAX), threads, || answer, &mut sink).unwrap_err();
+            let mut found = Vec::new();
+            let sink = failing(&mut found, 70, &answered, until);
+            let error = run(numbers(u32::MAX, false), threads, AHEAD, || answer, sink).unwrap_err();
             assert!(matches!(error.reason(), Reason::Io(_)));
-            assert_eq!((sink.written, answered.load(Relaxed)), (Vec::from_iter(0..=70), until));
+            assert_eq!((found, answered.load(Relaxed)), (Vec::from_iter(0..=70), until));
         }
     }
 
@@ -389,75 +364,49 @@ mod tests {
         for threads in 1..4 {
             let answered = AtomicUsize::new(0);
             let answer = counting(&answered);
-            let failing = || Numbers { fails: true, ..numbers(10) };
-            let mut written = Vec::new();
-            let error = run(failing(), threads, || answer, &mut written).unwrap_err();
-            assert_eq!((written, error.reason()), (Vec::from_iter(0..10), &Reason::BeyondBudget));
+            let mut found = Vec::new();
+            let error = run(numbers(10, true), threads, AHEAD, || answer, written(&mut found)).unwrap_err();
+            assert_eq!((&found, error.reason()), (&Vec::from_iter(0..10), &Reason::BeyondBudget));
             // By then the source has failed, unless one thread does all.
             answered.store(0, Relaxed);
             let until = if threads == 1 { 4 } else { 10 };
-            let mut sink = Failing { written: Vec::new(), last: 3, until, answered: &answered };
-            let error = run(failing(), threads, || answer, &mut sink).unwrap_err();
+            let sink = failing(&mut found, 3, &answered, until);
+            let error = run(numbers(10, true), threads, AHEAD, || answer, sink).unwrap_err();
             assert!(matches!(error.reason(), Reason::Io(_)), "{error}");
-            // Or it fails afterwards.
+            // Or it fails afterwards: asked for the second time, once the sink has.
             let (asked, failed) = (AtomicUsize::new(0), AtomicUsize::new(0));
+            let source = || {
+                if asked.fetch_add(1, Relaxed) == 0 {
+                    return Ok(Some(()));
+                }
+                wait_until(&failed, 1);
+                Err(Reason::BeyondBudget.into())
+            };
             let answer = |()| wait_until(&asked, threads.min(2));
-            let error = run(Late(&asked, &failed), threads, || answer, &mut Closed(&failed)).unwrap_err();
+            let closed = |()| {
+                failed.fetch_add(1, Relaxed);
+                Err(Error::new(Reason::Io("closed".into())))
+            };
+            let error = run(source, threads, AHEAD, || answer, closed).unwrap_err();
             assert!(matches!(error.reason(), Reason::Io(_)), "{error}");
-        }
-    }
-
-    /// Counts how often it is asked; the second time it fails once the sink has.
-    struct Late<'a>(&'a AtomicUsize, &'a AtomicUsize);
-
-    impl TaskSource for Late<'_> {
-        type Task = ();
-
-        fn next(&mut self) -> Result<Option<()>> {
-            if self.0.fetch_add(1, Relaxed) == 0 {
-                return Ok(Some(()));
-            }
-            wait_until(self.1, 1);
-            Err(Reason::BeyondBudget.into())
-        }
-    }
-
-    /// Fails at once.
-    struct Closed<'a>(&'a AtomicUsize);
-
-    impl Sink<()> for Closed<'_> {
-        fn block(&mut self, _: ()) -> Result<()> {
-            self.0.fetch_add(1, Relaxed);
-            Err(Error::new(Reason::Io("closed".into())))
-        }
-    }
-
-    /// Gives the next number once all before it are written.
-    struct Live<'a>(Numbers, &'a AtomicUsize);
-
-    impl TaskSource for Live<'_> {
-        type Task = u32;
-
-        fn next(&mut self) -> Result<Option<u32>> {
-            wait_until(self.1, self.0.next as usize);
-            self.0.next()
-        }
-    }
-
-    struct Counting<'a>(&'a AtomicUsize);
-
-    impl Sink<u32> for Counting<'_> {
-        fn block(&mut self, number: u32) -> Result<()> {
-            assert_eq!(number as usize, self.0.fetch_add(1, Relaxed));
-            Ok(())
         }
     }
 
     #[test]
     fn an_answer_does_not_wait_for_the_source() {
         for threads in 1..4 {
-            let written = AtomicUsize::new(0);
-            run(Live(numbers(10), &written), threads, || |number| number, &mut Counting(&written)).unwrap();
+            let (asked, written) = (AtomicUsize::new(0), AtomicUsize::new(0));
+            let mut numbers = numbers(10, false);
+            // It gives the next number once all before it are written.
+            let source = || {
+                wait_until(&written, asked.fetch_add(1, Relaxed));
+                numbers()
+            };
+            let sink = |number| {
+                assert_eq!(number as usize, written.fetch_add(1, Relaxed));
+                Ok(())
+            };
+            run(source, threads, AHEAD, || |number| number, sink).unwrap();
             assert_eq!(written.into_inner(), 10);
         }
     }

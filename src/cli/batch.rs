@@ -14,7 +14,7 @@ use super::resume::BatchOutput;
 use super::robot::RobotOptions;
 use super::sink::{OutputSink, note_part};
 use super::{Answered, Completion, Failure, input, progress};
-use crate::batch::{self, Batch, Question, Recording, RefusedRecord, States, Summary};
+use crate::batch::{self, AHEAD, Batch, Question, Recording, RefusedRecord, States, Summary};
 use crate::contact::Feet;
 use crate::draw::page::Gait;
 use crate::gait::{Dropped, Seen, Thresholds, unwrapped};
@@ -335,6 +335,7 @@ impl Args {
     ) -> crate::Result<()> {
         let threads = self.threads.count();
         let (robot, defaults) = (question.robot, &question.defaults);
+        let sink = |block| sink.block(block);
         let Some(header) = question.header.filter(|_| self.recording.is_in_order()) else {
             return match states {
                 States::Text(mut chunks, _) => {
@@ -343,15 +344,16 @@ impl Args {
                         let mut batch = Batch::new(question);
                         move |chunk| batch.records(&chunk)
                     };
-                    batch::run(chunks, threads, answerer, sink)
+                    batch::run(move || chunks.task(), threads, AHEAD, answerer, sink)
                 }
                 #[cfg(feature = "columnar")]
-                States::Columns(parts) => {
+                States::Columns(mut parts) => {
                     let answerer = || {
                         let mut batch = Batch::new(question);
                         move |part| batch.part(&part)
                     };
-                    batch::run(parts, threads, answerer, sink)
+                    // They are long.
+                    batch::run(move || parts.part(), threads, 2, answerer, sink)
                 }
             };
         };
@@ -363,7 +365,8 @@ impl Args {
             let mut batch = Batch::new(question);
             move |samples| batch.samples(samples)
         };
-        batch::run(Recording::new(samples, &pauses), threads, answerer, sink)
+        let mut recording = Recording::new(samples, &pauses);
+        batch::run(move || recording.task(), threads, AHEAD, answerer, sink)
     }
 
     /// Notes what all answers have in common, and writes the summary.

@@ -3,7 +3,7 @@
 use super::diagnostic::{note, report_with};
 use super::resume::BatchOutput;
 use super::{Failure, status};
-use crate::batch::{Block, RefusedRecord, Sink, Summary};
+use crate::batch::{Block, RefusedRecord, Summary};
 use crate::draw::page::Gait;
 #[cfg(feature = "columnar")]
 use crate::write::ColumnWriter;
@@ -98,6 +98,24 @@ impl<'a> OutputSink<'a> {
         }
     }
 
+    /// Takes the next answers.
+    ///
+    /// # Errors
+    /// Columns that their format has no room for.
+    pub fn block(&mut self, block: Block) -> crate::Result<()> {
+        #[cfg(feature = "columnar")]
+        if let (Some(writer), Some(columns)) = (&mut self.columns, block.columns) {
+            let bytes = writer.write(columns)?;
+            self.write(&bytes).unwrap_or_else(|error| self.end(error));
+        }
+        self.write(&block.out).and_then(|()| self.output.flush()).unwrap_or_else(|error| self.end(error));
+        // On a terminal the answers come before the errors.
+        block.refused.into_iter().for_each(|refused| self.report(refused));
+        self.summary.merge(block.summary);
+        block.keyframes.into_iter().for_each(|keyframe| self.gait.push(keyframe));
+        Ok(())
+    }
+
     /// Ends the process: the input may stay silent for ever, and waiting for more of it is of no use.
     fn end(&self, error: io::Error) -> ! {
         self.progress.finish_and_clear();
@@ -112,21 +130,5 @@ impl<'a> OutputSink<'a> {
 pub(super) fn note_part(output: &BatchOutput) {
     if let Some(part) = output.part() {
         note(&format!("{} holds the answers so far; --resume continues them", part.display()));
-    }
-}
-
-impl Sink for OutputSink<'_> {
-    fn block(&mut self, block: Block) -> crate::Result<()> {
-        #[cfg(feature = "columnar")]
-        if let (Some(writer), Some(columns)) = (&mut self.columns, block.columns) {
-            let bytes = writer.write(columns)?;
-            self.write(&bytes).unwrap_or_else(|error| self.end(error));
-        }
-        self.write(&block.out).and_then(|()| self.output.flush()).unwrap_or_else(|error| self.end(error));
-        // On a terminal the answers come before the errors.
-        block.refused.into_iter().for_each(|refused| self.report(refused));
-        self.summary.merge(block.summary);
-        block.keyframes.into_iter().for_each(|keyframe| self.gait.push(keyframe));
-        Ok(())
     }
 }
