@@ -1,10 +1,9 @@
 //! Results in brief.
 
-use super::Report;
 #[cfg(feature = "schema")]
-use super::id::Id;
-use super::recorded::Touchdown;
+use super::Id;
 use super::refused::ErrorObject;
+use super::{Report, Touchdown};
 use crate::Mode;
 use crate::impact::{Family, Next, OpenCombinations, Outcome, Verdict};
 use crate::read::table::CarriedValue;

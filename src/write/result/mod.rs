@@ -3,33 +3,29 @@
 //! Fields that do not apply are absent; fields that apply but have no value (the index on a border, the condition of a
 //! singular matrix) are null. Numbers are written with every digit.
 
-mod id;
-mod contact;
 mod left_out;
-mod recorded;
 mod refused;
 mod brief;
 
 pub use brief::{Brief, ContactInBrief, OutcomeInBrief};
-pub use contact::{ContactRecord, NearestRecord};
-#[cfg(feature = "schema")]
-pub(super) use id::Id;
-pub(crate) use id::short_id;
 pub use left_out::LeftOutRecord;
-pub use recorded::Touchdown;
 pub use refused::{ErrorObject, Refused};
 
 use super::Detail;
-use super::state::{CounterexampleRecord, HoldsRecord};
+#[cfg(feature = "schema")]
+use super::state::any_object;
+use super::state::{CounterexampleRecord, HoldsRecord, raw_state};
+use crate::gait::Landing;
 use crate::impact::{Analysis, Explanation, Family, OpenCombinations, Outcome, Rejection, Verdict};
 use crate::pipeline::{Aspect, Impact, NearestFoot, Sustained};
-use crate::planar::Pair;
+use crate::planar::{Pair, Vector};
 use crate::read::Problem;
 use crate::read::table::CarriedValue;
 use crate::state::{Named, State};
 use crate::{Mode, Robot};
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
+use serde_json::value::RawValue;
 use std::borrow::Cow;
 
 /// The result of a state or of a contact problem.
@@ -162,6 +158,88 @@ pub struct Rejected<'a> {
     pub velocity_after: Option<Cow<'a, [Pair<f64>]>>,
 }
 
+/// A closed contact.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename = "Contact")]
+pub struct ContactRecord<'a> {
+    /// The URDF link that carries the shape; of a robot.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub link: Option<Cow<'a, str>>,
+    /// Its name, which is its link's, or link/0, link/1 ... if a link has several.
+    pub name: Cow<'a, str>,
+    /// The contact point in the world \[m\]; of a robot.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub point: Option<Vector<f64>>,
+    /// Unit normal of the ground, toward the robot; of a robot.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub normal: Option<Vector<f64>>,
+    /// Height above the ground along the normal \[m\]; of a robot.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gap: Option<f64>,
+    /// Its velocity before the impact, [tangential, normal] \[m/s\].
+    pub velocity_before: Pair<f64>,
+}
+
+/// A foot that does not touch, or that is too deep in the ground.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename = "NearestFoot")]
+pub struct NearestRecord<'a> {
+    /// The URDF link that carries it.
+    pub name: Cow<'a, str>,
+    /// Height of its lowest point above the ground along the normal \[m\], negative below it.
+    pub height: f64,
+    /// How that point moves before the impact, [tangential, normal] \[m/s\].
+    pub velocity: Pair<f64>,
+}
+
+/// Where in a recording a foot reached the ground, and how the state was taken.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Touchdown<'a> {
+    /// The line of the state's row in the table, or of the last row before it, from 1.
+    pub row: usize,
+    /// The time of the state \[s\].
+    pub time: f64,
+    /// The contact that reached the ground; of several at once the first.
+    pub striking: Cow<'a, str>,
+    /// What was added to the base's z so that this contact is at height 0 \[m\].
+    pub shift_z: f64,
+    /// `crossing` if the state lies between two rows, `row` if it is one.
+    pub at: Cow<'a, str>,
+    /// Which other feet take part: `strike`, `slow:SPEED,HEIGHT` or `near:HEIGHT`.
+    pub touching: String,
+    /// The state before the impact, to be fed back.
+    #[cfg_attr(feature = "schema", schemars(schema_with = "any_object"))]
+    pub state: Box<RawValue>,
+    /// Its q and v, for tables.
+    #[serde(skip)]
+    pub coordinates: Vec<f64>,
+}
+
+impl<'a> Touchdown<'a> {
+    /// The touchdown of a `state` that was found behind a `row` of a recording at `time` \[s\].
+    pub fn of(robot: &Robot, state: &State, landing: &'a Landing, row: usize, time: f64) -> Option<Self> {
+        Some(Self {
+            row,
+            time,
+            striking: (&landing.striking).into(),
+            shift_z: landing.shift_z,
+            at: landing.at.name().into(),
+            touching: landing.touching.to_string(),
+            state: raw_state(robot, state)?,
+            coordinates: [&state.position[..], &state.velocity].concat(),
+        })
+    }
+}
+
+impl<'a> ContactRecord<'a> {
+    pub(super) fn of_problem(name: &'a str, velocity_before: Pair<f64>) -> Self {
+        Self { name: Cow::Borrowed(name), velocity_before, ..Self::default() }
+    }
+}
+
 impl<'a> Report<'a> {
     /// The result of a state. If the outcomes were refused it has an `error`, next to the matrices that were asked for.
     ///
@@ -261,6 +339,31 @@ impl<'a> Report<'a> {
     }
 }
 
+/// The most characters of an id that are repeated.
+const ID_LIMIT: usize = 200;
+
+/// An id as it is repeated where it only has to be recognized; of a long text the beginning and `... (cut)`.
+pub(crate) fn short_id(id: Value) -> Value {
+    let end = id.as_str().and_then(|text| text.char_indices().nth(ID_LIMIT));
+    match (&id, end) {
+        (Value::String(text), Some((end, _))) => format!("{}... (cut)", &text[..end]).into(),
+        _ => id,
+    }
+}
+
+/// What the user calls a state or a problem.
+#[cfg(feature = "schema")]
+#[derive(schemars::JsonSchema)]
+#[serde(untagged)]
+#[schemars(inline)]
+#[expect(dead_code, reason = "the schema is all that is wanted of it")]
+pub(super) enum Id {
+    /// A name.
+    Text(String),
+    /// A number.
+    Number(f64),
+}
+
 /// Beyond this condition the last digits alone decide whether a matrix is regular.
 const ILL_CONDITIONED: f64 = 1e14;
 
@@ -303,6 +406,14 @@ mod tests {
     use super::*;
     use crate::pipeline::{Options, Pipeline};
     use crate::state::Defaults;
+
+    #[test]
+    fn a_long_id_is_cut_and_a_short_one_is_not() {
+        for kept in [Value::from(17), "k17".into(), "é".repeat(ID_LIMIT).into()] {
+            assert_eq!(short_id(kept.clone()), kept);
+        }
+        assert_eq!(short_id("é".repeat(1 << 20).into()), format!("{}... (cut)", "é".repeat(ID_LIMIT)));
+    }
 
     #[test]
     fn brief_impact_has_all_of_a_brief_result() {

@@ -1,9 +1,8 @@
 //! Refusals.
 
-use super::contact::NearestRecord;
 #[cfg(feature = "schema")]
-use super::id::Id;
-use super::id::short_id;
+use super::Id;
+use super::{NearestRecord, short_id};
 use crate::{Error, Reason};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
