@@ -408,14 +408,6 @@ mod tests {
     use crate::state::Defaults;
 
     #[test]
-    fn a_long_id_is_cut_and_a_short_one_is_not() {
-        for kept in [Value::from(17), "k17".into(), "é".repeat(ID_LIMIT).into()] {
-            assert_eq!(short_id(kept.clone()), kept);
-        }
-        assert_eq!(short_id("é".repeat(1 << 20).into()), format!("{}... (cut)", "é".repeat(ID_LIMIT)));
-    }
-
-    #[test]
     fn brief_impact_has_all_of_a_brief_result() {
         let robot = Robot::from_urdf(include_str!("../../../urdf/ramone.urdf")).unwrap();
         let detail = Detail { brief: true, ..Detail::default() };
