@@ -3,7 +3,7 @@
 use crate::robot::{Robot, friction};
 use crate::values::{from_json, refused, refused_in, to_json, warn};
 use crate::watch::{budget, interrupted, raised, shared, without_python};
-use heelstrike::batch::{Batch, Question, Recording, States, Summary};
+use heelstrike::batch::{Batch, Question, States, Summary, recorded};
 use heelstrike::budget::TotalBudget;
 use heelstrike::cli::{RecordingOptions, Seconds, records, seconds, threads};
 use heelstrike::impact::{AnalysisOptions, Scratch};
@@ -149,9 +149,9 @@ fn found(
     let pauses = AtomicBool::new(false);
     let rows = states.samples(&header, robot, &defaults, &pauses).take_while(|_| !interrupted());
     let rows = recording.chosen(Box::new(rows), &header, (robot, feet), thresholds, (&dropped, &seen))?;
-    let (mut source, mut batch, mut lines) = (Recording::new(rows, &pauses), Batch::new(&question), Vec::new());
+    let (mut source, mut batch, mut lines) = (recorded(rows, &pauses), Batch::new(&question), Vec::new());
     let mut summary = Summary::default();
-    while let Some(states) = source.task()? {
+    while let Some(states) = source()? {
         let block = batch.samples(states);
         lines.extend(block.out);
         summary.merge(block.summary);

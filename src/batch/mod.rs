@@ -15,7 +15,7 @@ mod states;
 
 use chunk::too_long;
 pub use chunk::{Chunk, Chunks, RECORD_LIMIT};
-pub use recording::{Recording, RowOrigin};
+pub use recording::{RowOrigin, recorded};
 pub use run::{AHEAD, Block, RefusedRecord, run};
 pub use states::States;
 pub use summary::{ModeCount, MoreFriction, Nearest, Needed, OddStates, Oddity, StateRef, Summary, Verdicts};

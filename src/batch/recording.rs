@@ -89,36 +89,24 @@ fn sample(row: Result<Row>, robot: &Robot, defaults: &Defaults) -> Sampled<RowOr
     }
 }
 
-/// States of a recording as tasks.
-#[derive(Debug)]
-pub struct Recording<'p, I> {
-    samples: I,
-    /// Whether the next row may take long to arrive.
-    pauses: &'p AtomicBool,
-    /// Why the input ended early; reported after what came before.
-    broken: Option<Error>,
-}
-
-impl<'p, I: Iterator<Item = Sampled<RowOrigin>> + Send> Recording<'p, I> {
-    /// The samples of rows of which [`States::samples`](super::States::samples) says by `pauses` when they come later.
-    pub fn new(samples: I, pauses: &'p AtomicBool) -> Self {
-        Self { samples, pauses, broken: None }
-    }
-
-    /// The next states, as many as a thread answers at once; `None` at the end.
-    ///
-    /// # Errors
-    /// Those of reading.
-    pub fn task(&mut self) -> Result<Option<Vec<Sampled<RowOrigin>>>> {
+/// Gives the states of a recording, as many at once as a thread answers, and `None` at the end. The samples are of rows of
+/// which [`States::samples`](super::States::samples) says by `pauses` whether the next one may take long to arrive; why they
+/// ended early is reported after what came before.
+pub fn recorded(
+    mut samples: impl Iterator<Item = Sampled<RowOrigin>> + Send,
+    pauses: &AtomicBool,
+) -> impl FnMut() -> Result<Option<Vec<Sampled<RowOrigin>>>> + Send {
+    let mut broken: Option<Error> = None;
+    move || {
         let mut task = Vec::new();
-        while self.broken.is_none() && task.len() < STATES && (task.is_empty() || !self.pauses.load(Relaxed)) {
-            match self.samples.next() {
+        while broken.is_none() && task.len() < STATES && (task.is_empty() || !pauses.load(Relaxed)) {
+            match samples.next() {
                 None => break,
-                Some(Err((_, error))) if matches!(error.reason(), Reason::Io(_)) => self.broken = Some(error),
+                Some(Err((_, error))) if matches!(error.reason(), Reason::Io(_)) => broken = Some(error),
                 Some(sampled) => task.push(sampled),
             }
         }
-        match &self.broken {
+        match &broken {
             Some(error) if task.is_empty() => Err(error.clone()),
             _ => Ok((!task.is_empty()).then_some(task)),
         }

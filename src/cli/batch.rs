@@ -14,7 +14,7 @@ use super::resume::BatchOutput;
 use super::robot::RobotOptions;
 use super::sink::{OutputSink, note_part};
 use super::{Answered, Completion, Failure, input, progress};
-use crate::batch::{self, AHEAD, Batch, Question, Recording, RefusedRecord, States, Summary};
+use crate::batch::{self, AHEAD, Batch, Question, RefusedRecord, States, Summary};
 use crate::contact::Feet;
 use crate::draw::page::Gait;
 use crate::gait::{Dropped, Seen, Thresholds, unwrapped};
@@ -365,8 +365,7 @@ impl Args {
             let mut batch = Batch::new(question);
             move |samples| batch.samples(samples)
         };
-        let mut recording = Recording::new(samples, &pauses);
-        batch::run(move || recording.task(), threads, AHEAD, answerer, sink)
+        batch::run(batch::recorded(samples, &pauses), threads, AHEAD, answerer, sink)
     }
 
     /// Notes what all answers have in common, and writes the summary.
