@@ -88,7 +88,9 @@ fn neighbors(path: &Path) -> Vec<String> {
     let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
     let listed = std::fs::read_dir(folder);
     let entries = listed.into_iter().flatten().flatten().take(MOST_NEIGHBORS);
-    entries.map(|entry| entry.file_name().display().to_string()).collect()
+    // The file itself may be a link that leads nowhere.
+    let others = entries.filter(|entry| Some(&*entry.file_name()) != path.file_name());
+    others.map(|entry| entry.file_name().display().to_string()).collect()
 }
 
 /// Whether the file's name says that it holds one JSON object per line.

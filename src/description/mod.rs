@@ -210,7 +210,8 @@ impl Description {
     /// * no link; a missing or duplicate name; a joint of unknown type or with an unknown link; anything but one tree;
     /// * text in place of a number, a number that is not finite, a negative mass or size, a zero axis.
     pub fn from_urdf(text: &str) -> Result<Self> {
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        // Some programs end a file with zero bytes.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text).trim_end_matches('\0');
         let mut description = draft::read(text)?;
         let root = tree::connect(&mut description.links, &description.joints);
         // As a <Joint> that is none.
@@ -222,7 +223,16 @@ impl Description {
             }
             _ => error,
         };
-        description.root = root.map_err(misspelt)?;
+        let has_foreign_joint = description.ignored.iter().any(|own| (own.parent, &*own.tag) == ("robot", "joint"));
+        let of_other_programs = |error: Error| match error.remedy() {
+            Some(remedy) if has_foreign_joint => {
+                let hint =
+                    format!("{remedy}; joints of another namespace, as <drake:joint>, are not read: write <joint>");
+                error.hint(hint)
+            }
+            _ => error,
+        };
+        description.root = root.map_err(misspelt).map_err(of_other_programs)?;
         Ok(description)
     }
 
@@ -311,12 +321,12 @@ mod tests {
 
     #[test]
     fn untidy_files_are_read() {
-        // No name, a default namespace, CRLF, a byte order mark, a foreign tag inside, a limit without velocity.
+        // No name, a default namespace, CRLF, a byte order mark, a foreign tag, a limit without velocity, a zero byte.
         let text = "\u{feff}<?xml version=\"1.0\"?>\r\n<robot xmlns=\"http://drake.mit.edu\" xmlns:d=\"d\" version=\"1.2\">\r\n\
             <d:link name=\"not one\"/><gazebo reference=\"x\"><link name=\"nor this\"/></gazebo><gazebo/>\r\n\
             <link name=\"Rad é 1\"><collision><geometry><sphere radius=\"0\"/></geometry></collision></link>\r\n\
             <link name=\"j\"/><joint name=\"j\" type=\"revolute\"><parent link=\"Rad é 1\"/><child link=\"j\"/>\
-            <limit effort=\"x\"/></joint></robot>";
+            <limit effort=\"x\"/></joint></robot>\0";
         let robot = Description::from_urdf(text).expect("a description");
         assert_eq!((robot.name.as_str(), robot.links[0].name.as_str(), robot.links.len()), ("", "Rad é 1", 2));
         assert_eq!((robot.links[0].location, robot.joints[0].location.line), (Location { line: 4, column: 1 }, 5));

@@ -179,7 +179,10 @@ pub(super) fn named<'a, 'input: 'a, const N: usize>(
         let tag = child.tag_name().name();
         match tags.iter().position(|known| *known == tag).map(|at| &mut found[at]) {
             Some(first @ Ok(None)) => *first = Ok(Some(child)),
-            Some(known @ Ok(_)) => *known = Err(refuse(child, Reason::Duplicate { what: "element", name: tag.into() })),
+            Some(known @ Ok(_)) => {
+                let twice = Reason::Duplicate { what: "element", name: tag.into() };
+                *known = Err(refuse(child, twice).hint("delete one of them"));
+            }
             Some(Err(_)) | None => {}
         }
     }

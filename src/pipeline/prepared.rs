@@ -250,6 +250,7 @@ impl Pipeline<'_> {
                         "it needs inertia of its own, whatever the loops hold: give its links a mass or it a \
                          `rotor_inertia`, however small, or name it in `held`"
                     }
+                    (false, _) if self.robot.joints.is_empty() => "give its links a mass and moments of inertia",
                     (false, _) => {
                         "in this pose the joints can follow it without moving any mass: bend or hold (`held`) one of \
                          them, or give it a `rotor_inertia`"

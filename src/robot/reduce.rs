@@ -126,7 +126,8 @@ impl Robot {
                 let Inertial { origin, mass, inertia } = inertial;
                 let frame = place.frame(origin);
                 let part = LinkInertia::projected(*mass, frame.in_plane(), inertia.as_ref(), &frame.rotation);
-                let mut part = part.map_err(|reason| link.refuse(reason))?;
+                let negative = |reason| link.refuse(reason).hint("correct the moments and products of its <inertia>");
+                let mut part = part.map_err(negative)?;
                 robot.left_out.extend(part.without_negative_moment().map(|moment| left_out::rounded(link, moment)));
                 *moment = part.moment;
                 parts.push((place.body, part));

@@ -257,7 +257,7 @@ fn feet_at_one_place_but_for_last_digits_are_noted() {
 
 #[test]
 fn a_slide_that_strikes_by_rounding_is_noted() {
-    let block = robot(include_str!("../../urdf/block.urdf"));
+    let block = robot(&urdf::body(0.5, &urdf::collision([0.3, -0.4], urdf::POINT)));
     let noted = |rate: f64| {
         let state = json!({"friction": 0.5, "position": {"base": {"pitch": 0.3}}, "place": "lowest",
             "velocity": {"base": {"x": 1.0, "z": rate, "pitch": 0.7}}});

@@ -219,6 +219,9 @@ fn compare(out: &mut String, compliant: &Compliant, Palette { strong, plain, .. 
             .text("change", rows.iter().map(|row| row.change.map_or("-".into(), share)))
             .text("distance", rows.iter().map(|row| row.distance.map_or("-".into(), share)))
             .write(out);
+        if rows.iter().any(|row| row.change.is_none()) {
+            out.push_str("  -: the integrator takes too many steps\n");
+        }
     }
     let _ = writeln!(
         out,

@@ -68,6 +68,7 @@ time,q_base_x\n0,1
 <robot><link name="a"/>\n<xacro:property name="l" value="1"/></robot>
 <robot xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="a"><inertial>\n<xacro:mass/></inertial></link></robot>
 <robot xmlns:xacro="http://wiki.ros.org/x">\n<xacro:leg/></robot>
+<robot xmlns:drake="d"><link name="a"/>\n<link name="b"/><drake:joint name="j" type="planar"/></robot>
 <robot>\n<link name="${p}a"><inertial><mass value="1"/></inertial></link></robot>
 <robot><link name="a"/>\n<include filename="$(find x)/y.xacro"/></robot>
 <robot><link name="a">\n<collision><geometry><sphere radius="$(arg r)"/></geometry></collision></link></robot>
