@@ -4,7 +4,7 @@ use crate::support::random::Random;
 use crate::support::urdf::{body, collision};
 use crate::sweep::command::straight;
 use crate::sweep::studies::with;
-use heelstrike::sweep::{Area, Findings, Map, Regime, RobotStudy, Solver, Workers};
+use heelstrike::sweep::{Area, BorderCurve, Findings, Map, Regime, RobotStudy, Solver, Workers};
 use serde_json::{Value, json};
 use std::sync::LazyLock;
 
@@ -124,6 +124,43 @@ fn an_island_has_its_size() {
             assert!(off.fold(0.0, f64::max) < 1e-8, "{radius}");
         });
     }
+}
+
+/// Of the curves along the border p = border(q) of a study how far points and middles of chords are from it, and the
+/// greatest p.
+fn along(study: &Value, urdf: &str, border: impl Fn(f64) -> f64) -> [f64; 3] {
+    with_map(urdf, study, |_, map| {
+        let mut off = [0.0_f64, 0.0, 0.0];
+        let is_along = |curve: &&BorderCurve| (curve.points[0][0] - border(curve.points[0][1])).abs() < 1e-3;
+        for curve in map.curves.iter().filter(is_along) {
+            for &[p, q] in &curve.points {
+                off = [off[0].max((p - border(q)).abs()), off[1], off[2].max(p)];
+            }
+            for pair in curve.points.windows(2) {
+                let [dp, dq] = [0, 1].map(|axis| pair[1][axis] - pair[0][axis]);
+                let [p, q] = [0, 1].map(|axis| 0.5 * (pair[0][axis] + pair[1][axis]));
+                off[1] = off[1].max((p - border(q)).abs() * dq.abs() / dp.hypot(dq));
+            }
+        }
+        off
+    })
+}
+
+#[test]
+fn curves_follow_bulges_and_keep_beside_thin_regions() {
+    let range = json!({"from": 0, "to": 1, "steps": 2});
+    let parameters = json!({"p": range, "q": range});
+    // The block sticks from friction 1 on: a tip that is narrower than a cell, and deeper than half its width.
+    let bulge = json!({"parameters": parameters, "state": {"velocity": {"base": {"x": 1, "z": -1}},
+        "friction": "max(0, 1.32 - p - 400*(q - 0.508)^2)"}});
+    let tip = |q: f64| 0.32 - 400.0 * (q - 0.508).powi(2);
+    let [off, bent, most] = along(&bulge, include_str!("../../urdf/block.urdf"), tip);
+    assert!(off < 1e-6 && bent < 1e-4 && (most - 0.32).abs() < 1e-4, "{off:e} {bent:e} {most}");
+    // Both legs touch in a band 1e-6 wide, along the same curve of the pitch.
+    let bend = json!({"parameters": parameters, "state": {"position": {"base": {"pitch": "p - 0.5 + 0.2*sin(20*q)"},
+        "joints": {"hip": 0.6}}, "velocity": {"base": {"z": -1}}, "place": "lowest", "friction": 0.5}});
+    let [off, bent, most] = along(&bend, MINIMALISTIC, |q| 0.8 - 0.2 * (20.0 * q).sin());
+    assert!(off < 1e-5 && bent < 1e-4 && most > 0.9, "{off:e} {bent:e}");
 }
 
 /// A cube that rolls from edge to edge stands on both in a band of 1e-6 rad, which is no region of a map.
