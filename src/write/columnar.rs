@@ -46,19 +46,28 @@ enum Column {
     },
 }
 
-/// The column, whose last rows are empty, with so many `rows`.
+/// Appends the cell of a row before which there are so many `rows`, unless it is set already.
 #[inline]
-fn padded<B: ArrayBuilder>(builder: &mut B, rows: usize, nulls: fn(&mut B, usize)) -> &mut B {
+fn put<B: ArrayBuilder>(builder: &mut B, rows: usize, nulls: fn(&mut B, usize), append: impl FnOnce(&mut B)) {
+    if has_room(builder, rows, nulls) {
+        append(builder);
+    }
+}
+
+/// Whether the cell of a row is not set yet; then the column has the cells before it.
+#[inline]
+fn has_room<B: ArrayBuilder>(builder: &mut B, rows: usize, nulls: fn(&mut B, usize)) -> bool {
     let own = builder.len();
     if own < rows {
         nulls(builder, rows - own);
     }
-    builder
+    own <= rows
 }
 
 /// A column of so many rows.
 fn whole<B: ArrayBuilder>(mut builder: B, rows: usize, nulls: fn(&mut B, usize)) -> ArrayRef {
-    padded(&mut builder, rows, nulls).finish()
+    has_room(&mut builder, rows, nulls);
+    builder.finish()
 }
 
 impl ColumnBlock {
@@ -105,7 +114,7 @@ impl RowSink for ColumnBlock {
     }
 }
 
-/// What a column cannot hold stays empty.
+/// What a column cannot hold stays empty, and what is set twice is what it was first.
 impl Row for ColumnBlock {
     // Which cell it is, is known where it is set: one case is left of all.
     #[inline(always)]
@@ -113,22 +122,24 @@ impl Row for ColumnBlock {
         let rows = self.rows;
         let put_text = |texts: &mut StringBuilder, text: &str| {
             if !text.is_empty() {
-                padded(texts, rows, StringBuilder::append_nulls).append_value(text);
+                put(texts, rows, StringBuilder::append_nulls, |texts| texts.append_value(text));
             }
         };
         let put_number = |numbers: &mut Float64Builder, number| {
-            padded(numbers, rows, Float64Builder::append_nulls).append_value(number);
+            put(numbers, rows, Float64Builder::append_nulls, |numbers| numbers.append_value(number));
         };
         match (&mut self.columns[at], cell) {
             (Column::Text(texts), Cell::Text(text)) => put_text(texts, text),
             (Column::Number(numbers), Cell::Number(number)) => put_number(numbers, number),
             (Column::Integer(numbers), Cell::Integer(number)) => {
-                padded(numbers, rows, Int64Builder::append_nulls).append_value(number);
+                put(numbers, rows, Int64Builder::append_nulls, |numbers| numbers.append_value(number));
             }
             (Column::Boolean(values), Cell::Boolean(holds)) => {
-                padded(values, rows, BooleanBuilder::append_nulls).append_value(holds);
+                put(values, rows, BooleanBuilder::append_nulls, |values| values.append_value(holds));
             }
-            (Column::Carried { sources, at, .. }, Cell::Carried(Carried::Columns(source, row), _)) => {
+            (Column::Carried { sources, at, .. }, Cell::Carried(Carried::Columns(source, row), _))
+                if at.len() <= rows =>
+            {
                 if sources.last().is_none_or(|last| !Arc::ptr_eq(last, source)) {
                     sources.push(Arc::clone(source));
                 }
@@ -262,5 +273,29 @@ impl ColumnWriter {
         finished.map_err(unwritable)?;
         bytes.append(&mut self.taken());
         Ok(bytes)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Robot;
+    use crate::write::Layout;
+    use arrow_array::cast::AsArray;
+
+    #[test]
+    fn every_column_has_a_cell_of_each_row() -> Result<()> {
+        let robot = Robot::from_urdf(include_str!("../../urdf/block.urdf"))?;
+        let columns = Columns::without_lines(&robot, &[], &[], &[], Layout::default());
+        let mut block = ColumnBlock::new(&columns, 1);
+        for verdicts in [&["unique", "none"][..], &[], &["ambiguous"]] {
+            block.row(&columns, |row| verdicts.iter().for_each(|verdict| row.set(1, Cell::Text(verdict))));
+        }
+        let schema = ColumnWriter::new(&columns, Form::Arrow)?.schema;
+        let batch = block.finish(&schema)?;
+        assert_eq!((batch.num_rows(), batch.num_columns()), (3, columns.names().len()));
+        let texts: Vec<_> = batch.column(1).as_string::<i32>().iter().collect();
+        assert_eq!(texts, [Some("unique"), None, Some("ambiguous")]);
+        Ok(())
     }
 }
