@@ -171,7 +171,7 @@ ready.then((ask) => {
     const go = (stop) => move(dial.in(state, swept.page.axes[0].values[stop]));
     const slider = new Slider(control, swept.page, 0, go);
     const [{ values }] = swept.page.axes;
-    const here = () => nearest(values, dial.of(state));
+    const here = () => (typeof dial.of(state) === "number" ? nearest(values, dial.of(state)) : values.length - 1);
     control.append(buttons({
       step: (way) => go(Math.min(values.length - 1, Math.max(0, here() + way))),
       border: (way) => go(border(swept.page.frames.map((frame) => frame.region), here(), way)),

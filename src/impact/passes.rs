@@ -132,7 +132,7 @@ impl UndecidedPass<'_, '_> {
 
 impl PrecisionTask for UndecidedPass<'_, '_> {
     fn attempt<T: Ordered>(&mut self, exact: &ContactProblem<T>, precision: Precision) -> bool {
-        let mut open = std::mem::take(&mut self.undecided);
+        let open = std::mem::take(&mut self.undecided);
         let before = open.len();
         // Numbers other than those of f64 have their own magnitudes.
         let is_enclosed = precision == Precision::Enclosed;
@@ -140,23 +140,32 @@ impl PrecisionTask for UndecidedPass<'_, '_> {
         if !is_enclosed && self.kernel.is_none() {
             self.kernel = T::freeing(|| Kernel::of(exact)).ok();
         }
-        // What the contacts' dependence excludes is solved for only to say why.
-        let is_listed = |own: &Pending| self.collected.options.rejections.contain(&own.modes);
-        open.retain(|own| is_listed(&own.pending) || self.excludes(&own.pending).is_none());
+        // What the contacts' dependence excludes is solved for only to say why, if it is listed, and last.
+        let (mut excluded, open): (Vec<_>, Vec<_>) =
+            open.into_iter().partition(|own| self.excludes(&own.pending).is_some());
+        excluded.retain(|own| self.collected.options.rejections.contain(&own.pending.modes));
         let is_last = precision == Precision::Interval;
         let (rounds, most) = if is_last { (ROUNDS, PRECISE_COMBINATIONS) } else { (1, usize::MAX) };
         let mut solver = CombinationSolver::new(exact, scale);
+        let decisive = open.len();
+        let mut left = 0;
         let Self { undecided, collected, .. } = self;
-        for (place, Undecided { pending, blunt }) in open.into_iter().enumerate() {
-            let stops = place >= most || is_spent_after(rounds);
+        for (place, Undecided { pending, blunt }) in open.into_iter().chain(excluded).enumerate() {
+            let stops = place >= most || is_last && place >= decisive || is_spent_after(rounds);
             let listed = collected.options.rejections.contain(&pending.modes);
-            match if stops { Err(Unsettled) } else { solver.solve(&pending.modes) } {
-                Ok(solved) if solved.is_sharp() && !(listed && solved.is_vague()) => collected.add(&pending, solved),
-                Ok(solved) => undecided.push(Undecided { pending, blunt: Some(solved) }),
-                Err(Unsettled) => undecided.push(Undecided { pending, blunt }),
-            }
+            let blunt = match if stops { Err(Unsettled) } else { solver.solve(&pending.modes) } {
+                Ok(solved) if solved.is_sharp() && !(listed && solved.is_vague()) => {
+                    collected.add(&pending, solved);
+                    continue;
+                }
+                Ok(solved) => Some(solved),
+                Err(Unsettled) => blunt,
+            };
+            undecided.push(Undecided { pending, blunt });
+            left += usize::from(place < decisive);
         }
         *precision.share(&mut collected.found.effort) += (before - undecided.len()) as u64;
-        undecided.is_empty()
+        // Reasons alone are not worth the most digits.
+        left == 0 && (undecided.is_empty() || precision >= Precision::DoubleDouble)
     }
 }

@@ -144,17 +144,21 @@ impl<'a, T: Ordered> Equations<'a, T> {
             return Ok(SingularCase::Rejected(Rejection::of(modes, RejectionReason::NoSolution)));
         };
         let space = self.space(solutions, self.shared.len());
-        let functions = space.functions();
-        let (inside, least) = widest(&functions, space.solutions.directions.len(), T::from_f64(UNBOUNDED))?;
-        let standing = settled(least)?;
-        if standing.is_lt() {
-            return Ok(SingularCase::Rejected(self.rejected(&space, &inside)));
-        }
+        // A velocity that is zero throughout belongs to other modes.
+        let mut is_of_others = false;
         for Constraint { function, .. } in space.inequalities.iter().filter(|own| own.inequality.is_strict()) {
-            if function.is_constant()? && settled(function.constant)?.is_eq() {
+            is_of_others |= function.is_constant()? && settled(function.constant)?.is_eq();
+        }
+        let functions = space.functions();
+        let found = widest(&functions, space.solutions.directions.len(), T::from_f64(UNBOUNDED));
+        let found = found.and_then(|(inside, least)| Ok((inside, least, settled(least)?)));
+        let (inside, least, standing) = match found {
+            Ok((inside, .., Ordering::Less)) => return Ok(SingularCase::Rejected(self.rejected(&space, &inside))),
+            _ if is_of_others => {
                 return Ok(SingularCase::Rejected(Rejection::of(modes, RejectionReason::RedundantTwin)));
             }
-        }
+            found => found?,
+        };
         if space.is_one_velocity()? {
             return Ok(SingularCase::Valid(self.outcome(&space, &inside, least)?));
         }
@@ -164,7 +168,6 @@ impl<'a, T: Ordered> Equations<'a, T> {
         }
         let from_inside: Vec<LinearFunction<T>> = functions.iter().map(|each| each.seen_from(&inside)).collect();
         let (equalities, inner) = vanishing(&from_inside)?;
-        // A velocity that is zero throughout belongs to other modes.
         if equalities.iter().any(|&place| space.inequalities[place].inequality.is_strict()) {
             return Ok(SingularCase::Rejected(Rejection::of(modes, RejectionReason::RedundantTwin)));
         }

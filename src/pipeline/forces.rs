@@ -413,8 +413,8 @@ impl Pipeline<'_> {
         sum.abs() > rounding * size
     }
 
-    /// Which bodies do not turn: those whose rates add up to no more than their `rounding`, and those that move as one
-    /// with a body of which two contacts take part that stand, or are on the same straight ground.
+    /// Which bodies do not turn: those whose rates add up to no more than their `rounding`, and those that turn as one with
+    /// a body of which two contacts take part that stand, or are on the same straight ground.
     fn steady(&self, prepared: &Prepared, slips: &[Ordering], rounding: f64) -> Vec<bool> {
         let (contacts, velocity) = (&prepared.impact.contacts, &prepared.velocity);
         let parts = self.rigid_parts(velocity);
@@ -432,10 +432,15 @@ impl Pipeline<'_> {
             };
             contacts.iter().enumerate().any(stops)
         };
-        let held: Vec<usize> =
-            contacts.iter().enumerate().filter(holds).map(|(_, own)| parts.first(own.body)).collect();
-        let bodies = 0..self.assembly.plan.bodies.len();
-        bodies.map(|body| held.contains(&parts.first(body)) || !self.turns(body, velocity, rounding)).collect()
+        // Of each body the first of those that have the same rate of turn.
+        let mut first: Vec<usize> = Vec::new();
+        for (index, body) in self.assembly.plan.bodies.iter().enumerate() {
+            let turns = matches!(body.motion, JointMotion::Revolute { .. }) && velocity[body.coordinate] != 0.0;
+            first.push(body.parent.filter(|_| !turns).map_or(index, |parent| first[parent]));
+        }
+        let held: Vec<usize> = contacts.iter().enumerate().filter(holds).map(|(_, own)| first[own.body]).collect();
+        let is_steady = |&first: &usize| held.contains(&first) || !self.turns(first, velocity, rounding);
+        first.iter().map(is_steady).collect()
     }
 
     /// Refuses contacts that move over a corner of the ground, where the normal turns.

@@ -18,8 +18,8 @@ const STANDS: f64 = 1e-4;
 /// A foot that leaves the ground no faster does not move \[m/s\].
 const SLOW: f64 = 1e-2;
 
-/// Contacts of two bodies are at one place if they are apart by no more than this part of the robot's size, and an outcome
-/// hangs on rounding if its margin is no greater.
+/// Contacts of two bodies are at the same place if their distance is at most this part of the robot's size, and an outcome
+/// depends on rounding if its margin is no greater.
 const THIN: f64 = 1e-10;
 
 /// Named contacts that differ in height by more than this part of the robot's size cannot touch the ground together.
@@ -65,7 +65,7 @@ impl Pipeline<'_> {
         notes.extend(self.upside_down(contacts, placement));
     }
 
-    /// That an outcome hangs on what is between two contacts that are at one place but for the last digits of the robot.
+    /// That an outcome depends on how two contacts differ that are at the same place except for the robot's last digits.
     pub(super) fn nearly_one(&self, contacts: &[Contact], outcomes: &[Outcome]) -> Option<String> {
         let is_thin = |own: &Outcome| own.margin.is_some_and(|margin| margin > 0.0 && margin < THIN);
         if !outcomes.iter().any(is_thin) {
@@ -77,7 +77,8 @@ impl Pipeline<'_> {
         let (a, b) = pairs.find(|(a, b)| is_near(a, b))?;
         let names = format!("{} and {}", a.name, b.name);
         Some(format!(
-            "{names} are at one place but for last digits of the robot or its pose, on which hangs what each does"
+            "{names} are at the same place except for the last digits of the robot or its pose; the outcome depends on those \
+             digits"
         ))
     }
 

@@ -92,8 +92,8 @@ impl Pipeline<'_> {
                 ));
             } else if !self.options.brief && own[1] != 0.0 && own[1].abs() <= bounds[1] {
                 notes.push(format!(
-                    "{name} slides, and moves at {:.1e} m/s along the normal, which is within the rounding of its velocity: \
-                     whether it strikes hangs on that",
+                    "{name} slides, and moves at {:.1e} m/s along the normal, which is within the rounding of its velocity, so \
+                     rounding decides whether it strikes",
                     own[1]
                 ));
             } else if !self.options.brief

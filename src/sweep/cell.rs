@@ -116,7 +116,7 @@ impl<'s, 'm> Trace<'s, 'm> {
         }
     }
 
-    /// The point of the border beside a chord's middle, within the cell; `None` if the chord is straight enough, or the
+    /// The point of the border next to a chord's middle, within the cell; `None` if the chord is straight enough, or the
     /// point is not found.
     fn off_chord(&mut self, chord: &Segment, corners: &[[f64; 2]; 2]) -> Option<[f64; 2]> {
         let ranges = self.resolution.map(|resolution| resolution / RESOLUTION);
@@ -156,6 +156,10 @@ impl<'s, 'm> Trace<'s, 'm> {
             let off = own.map(Bracket::at).min_by(|a, b| a.abs().total_cmp(&b.abs()));
             if let Some(off) = off {
                 return (off.abs() > STRAIGHT).then(|| off_middle(off));
+            }
+            // A third region lies between both here.
+            if below.regime == *right && above.regime == *left {
+                return None;
             }
             if reach >= rooms[0].max(rooms[1]) {
                 return None;

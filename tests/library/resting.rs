@@ -236,7 +236,7 @@ fn feet_that_nearly_stand_are_noted() {
 
 /// Two legs that differ in the last digits of their hips, as exporters write them.
 #[test]
-fn feet_at_one_place_but_for_last_digits_are_noted() {
+fn feet_at_the_same_place_except_for_last_digits_are_noted() {
     let leg = |side: &str, height: f64| {
         let foot = urdf::collision([0.02, -0.5], urdf::POINT);
         let hip = urdf::joint(format!("{side}_hip"), HINGE, ["torso", side], [0.0, height], "");
@@ -249,7 +249,8 @@ fn feet_at_one_place_but_for_last_digits_are_noted() {
             "velocity": {"base": {"x": 0.3, "z": -1, "pitch": 0.2}}});
         impact(&robot, state)
     };
-    let is_noted = |found: &Impact| found.notes.iter().any(|note| note.contains("at one place but for last digits"));
+    let is_noted =
+        |found: &Impact| found.notes.iter().any(|note| note.contains("at the same place except for the last digits"));
     let [same, other] = [-0.002_617_400_551_670_56, -0.002_617_400_551_670_58].map(found);
     assert_eq!((same.contacts.len(), is_noted(&same)), (2, false), "{:?}", same.notes);
     assert_eq!((other.contacts.len(), is_noted(&other)), (2, true), "{:?}", other.notes);
@@ -263,7 +264,7 @@ fn a_slide_that_strikes_by_rounding_is_noted() {
             "velocity": {"base": {"x": 1.0, "z": rate, "pitch": 0.7}}});
         let found = impact(&block, state);
         let [_, normal] = found.velocity_before[0];
-        (normal, found.notes.iter().any(|note| note.contains("whether it strikes hangs on that")))
+        (normal, found.notes.iter().any(|note| note.contains("rounding decides whether it strikes")))
     };
     let (carried, _) = noted(0.0);
     // By units in the last place of what the turn gives the foot.

@@ -22,7 +22,7 @@ use std::cell::RefCell;
 /// The longest run, in units of sqrt(m / k_n) (1 + damping ratio); m is the inverse of the contacts' mean mobility.
 const HORIZON: f64 = 1e2;
 
-/// So small a part of the greatest force and speed is none.
+/// So small a part of the force and the speed with which contacts close is none.
 const NOTHING: f64 = 1e-8;
 
 /// A robot just before it strikes, ready to be integrated.
@@ -72,6 +72,8 @@ struct Equation<'a> {
     period: f64,
     /// The greatest rate.
     speed: f64,
+    /// The greatest speed of a contact toward the ground at first \[m/s\].
+    closing: f64,
     /// Where the robot was last.
     assembly: RefCell<Assembly>,
 }
@@ -106,6 +108,7 @@ impl<'a> Equation<'a> {
             mean_mobility,
             period: (1.0 / (stiffness * mean_mobility)).sqrt(),
             speed: moving.velocity.iter().fold(f64::MIN_POSITIVE, |speed: f64, rate| speed.max(rate.abs())),
+            closing: assembly.workspace.contact_velocity.iter().fold(0.0, |most: f64, c| most.max(-c[1])),
             assembly: RefCell::new(assembly),
             moving,
         }
@@ -150,8 +153,8 @@ impl StiffEquations for Equation<'_> {
 
     /// Whether all contacts are free, or as good as at rest without a force.
     fn has_ended(&self, state: &[f64]) -> bool {
-        let force = self.speed / (self.mean_mobility * self.period);
+        let force = self.closing / (self.mean_mobility * self.period);
         let touching = self.evaluate(state).1;
-        touching.iter().all(|&[normal, speed]| normal <= NOTHING * force && speed >= -NOTHING * self.speed)
+        touching.iter().all(|&[normal, speed]| normal <= NOTHING * force && speed >= -NOTHING * self.closing)
     }
 }

@@ -1,6 +1,7 @@
 //! Forces and accelerations in sustained contact: laws of mechanics that hold for every robot, and cases by hand.
 
 mod next;
+mod painleve;
 mod refusals;
 mod standing;
 mod springs;

@@ -83,22 +83,6 @@ fn heel_leaves_while_the_foot_turns() {
     assert!(notes.contains("body/0 leaves the ground"), "{notes}");
 }
 
-/// Painleve's rod of length 1, whose lower end slides backward: from friction 1.48 on no finite forces are consistent,
-/// and an impact without approach ends the slide.
-#[test]
-fn rod_without_consistent_forces_stops_at_once() {
-    let (sin, cos) = 0.9_f64.sin_cos();
-    for (friction, expected) in [(1.4, None), (1.5, Some(vec![vec![Mode::Stick]]))] {
-        let state = json!({
-            "position": {"base": {"z": 0.5 * sin}}, "velocity": {"base": {"x": -1}}, "friction": friction,
-            "contacts": [{"link": "rod", "offset": [-0.5 * cos, 0, -0.5 * sin]}],
-        });
-        let shock = forces(&rod(2.0, 1.0 / 12.0), state).sustained.expect("of forces").shock;
-        let modes = shock.map(|shock| shock.into_iter().map(|own| own.modes).collect::<Vec<_>>());
-        assert_eq!(modes, expected, "{friction}");
-    }
-}
-
 /// A body of 5 kg on a thigh and a foot, which stands wherever its contacts hold it while the body turns.
 #[test]
 fn what_stands_by_rates_that_cancel_stands_in_every_digit() {
