@@ -3,7 +3,7 @@
 use super::digits::{Numbers, after};
 use super::enumerate::Tableau;
 use super::linear::Unsettled;
-use super::outcome::{Motion, Rejection, RejectionReason};
+use super::outcome::{Motion, Rejection};
 use super::problem::ContactProblem;
 use super::reading::{CombinationReading, motion, read};
 use super::singular::{Equations, SingularCase, SingularOutcome};
@@ -50,10 +50,9 @@ impl Solved {
         }
     }
 
-    /// Whether some number of a rejected combination is not finite, or it may violate more than its border.
+    /// Whether some number of a rejected combination is not finite, or its reason not the last word.
     pub fn is_vague(&self) -> bool {
         match self {
-            Self::Rejected(Rejection { because: RejectionReason::OnBorder, margin: None, .. }) => true,
             Self::Rejected(Rejection { margin, motion, .. }) => {
                 !(motion.as_ref().is_none_or(Motion::is_finite) && margin.is_none_or(f64::is_finite))
             }

@@ -228,6 +228,11 @@ impl Rejection {
     pub(super) fn of(modes: &[Mode], because: RejectionReason) -> Self {
         Self { modes: modes.to_vec(), because, margin: None, motion: None }
     }
+
+    /// The same, which more digits may reject for another reason.
+    pub(super) fn vague(self) -> Self {
+        Self { margin: Some(f64::NAN), ..self }
+    }
 }
 
 /// How much of an undecided problem is open.

@@ -151,7 +151,7 @@ impl PrecisionTask for UndecidedPass<'_, '_> {
         let mut left = 0;
         let Self { undecided, collected, .. } = self;
         for (place, Undecided { pending, blunt }) in open.into_iter().chain(excluded).enumerate() {
-            let stops = place >= most || is_last && place >= decisive || is_spent_after(rounds);
+            let stops = place >= most || is_spent_after(rounds);
             let listed = collected.options.rejections.contain(&pending.modes);
             let blunt = match if stops { Err(Unsettled) } else { solver.solve(&pending.modes) } {
                 Ok(solved) if solved.is_sharp() && !(listed && solved.is_vague()) => {
@@ -165,7 +165,7 @@ impl PrecisionTask for UndecidedPass<'_, '_> {
             left += usize::from(place < decisive);
         }
         *precision.share(&mut collected.found.effort) += (before - undecided.len()) as u64;
-        // Reasons alone are not worth the most digits.
-        left == 0 && (undecided.is_empty() || precision >= Precision::DoubleDouble)
+        // For reasons alone the first of many digits are enough.
+        left == 0 && (undecided.is_empty() || is_last)
     }
 }

@@ -32,8 +32,10 @@ impl Rejection {
     /// Of a combination whose reading is negative; `motion` is not asked for if two equations contradict each other.
     pub(super) fn read(modes: &[Mode], reading: CombinationReading, motion: impl FnOnce() -> Motion) -> Self {
         let solved = !matches!(reading.because, RejectionReason::NothingHolds { .. });
-        let motion = solved.then(motion);
-        Self { margin: reading.margin.filter(|_| !reading.is_vague()), motion, ..Self::of(modes, reading.because) }
+        let is_vague = reading.is_vague();
+        let rejection =
+            Self { margin: reading.margin, motion: solved.then(motion), ..Self::of(modes, reading.because) };
+        if is_vague { rejection.vague() } else { rejection }
     }
 }
 

@@ -152,11 +152,12 @@ impl<'a, T: Ordered> Equations<'a, T> {
         let functions = space.functions();
         let found = widest(&functions, space.solutions.directions.len(), T::from_f64(UNBOUNDED));
         let found = found.and_then(|(inside, least)| Ok((inside, least, settled(least)?)));
+        let twin = Rejection::of(modes, RejectionReason::RedundantTwin);
         let (inside, least, standing) = match found {
             Ok((inside, .., Ordering::Less)) => return Ok(SingularCase::Rejected(self.rejected(&space, &inside))),
-            _ if is_of_others => {
-                return Ok(SingularCase::Rejected(Rejection::of(modes, RejectionReason::RedundantTwin)));
-            }
+            Ok(_) if is_of_others => return Ok(SingularCase::Rejected(twin)),
+            // Perhaps it violates an inequality as well.
+            Err(_) if is_of_others => return Ok(SingularCase::Rejected(twin.vague())),
             found => found?,
         };
         if space.is_one_velocity()? {

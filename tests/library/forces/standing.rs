@@ -1,10 +1,11 @@
 //! Bodies that stand, slide and roll on level ground and slopes.
 
-use super::{forces, modes, outcomes, rod};
+use super::{forces, modes, outcomes};
 use crate::support::impact::robot;
-use crate::support::urdf::{self, HINGE, POINT, body, collision, joint, link};
-use heelstrike::Robot;
+use crate::support::urdf::{self, Axis, HINGE, POINT, body, collision, joint, link};
 use heelstrike::impact::{Mode, Verdict};
+use heelstrike::pipeline::{Options, Pipeline};
+use heelstrike::{Defaults, Robot, State};
 use serde_json::json;
 
 const GRAVITY: f64 = 9.81;
@@ -117,5 +118,46 @@ fn what_stands_by_rates_that_cancel_stands_in_every_digit() {
             assert_eq!(modes(&other), modes(&exact), "{rates:?} {scene}");
             assert!(other.analysis.as_ref().unwrap().proven);
         }
+    }
+}
+
+/// Two soles on legs that slide or swing, all of which have one rate of turn: rounding, or below the resting speed.
+#[test]
+fn what_turns_as_one_with_a_sole_that_stands_does_not_turn() {
+    let sole =
+        |name: &str, height: f64| link(name, 1.0, [0.0; 2], 0.1, &collision([0.0, height], "box size=\"0.2 0.1 0.1\""));
+    let along = Axis::Prismatic([0.0, 1.0]);
+    let torso = || link("torso", 5.0, [0.0; 2], 0.5, "");
+    let sliding = urdf::robot(&[
+        torso(),
+        sole("a", 0.0),
+        joint("ja", along, ["torso", "a"], [-0.3, -0.95], ""),
+        sole("b", 0.0),
+        joint("jb", along, ["torso", "b"], [0.4, -0.95], ""),
+    ]);
+    let swinging = urdf::robot(&[
+        torso(),
+        sole("a", -0.95),
+        joint("ja", HINGE, ["torso", "a"], [-0.3, 0.0], ""),
+        sole("b", -0.95),
+        joint("jb", HINGE, ["torso", "b"], [0.4, 0.0], ""),
+        link("arm", 1.0, [0.0, -0.2], 0.1, ""),
+        joint("shoulder", HINGE, ["torso", "arm"], [0.0, 0.3], ""),
+    ]);
+    for (robot, rates, limit, turning) in
+        [(sliding, json!({"ja": 0.5, "jb": 0.5}), None, 1e-17), (swinging, json!({"shoulder": 5}), Some(1e-5), 1e-7)]
+    {
+        let robot = self::robot(&robot);
+        let options = Options { resting_speed: limit, ..Options::default() };
+        let lifted = if limit.is_none() { -0.5 } else { 0.0 };
+        let [exact, turned] = [0.0, turning].map(|pitch| {
+            let state = json!({"friction": 0.6, "position": {"base": {"z": 1}},
+                "velocity": {"base": {"z": lifted, "pitch": pitch}, "joints": rates}});
+            let state = State::from_json(&state.to_string(), &robot, &Defaults::default()).expect("a state");
+            Pipeline::new(&robot, options.clone()).forces(&state).expect("an answer")
+        });
+        assert_eq!((modes(&exact), modes(&turned)), (vec![vec![Mode::Stick; 4]], vec![vec![Mode::Stick; 4]]));
+        let margins = [&exact, &turned].map(|found| outcomes(found)[0].margin.expect("a margin"));
+        assert!((margins[0] - margins[1]).abs() < 1e-4 && margins[0] > 0.1, "{margins:?}");
     }
 }
