@@ -64,15 +64,19 @@ impl Visitor<Rounded> for F64Pass<'_, '_> {
             let reading = read(leaf, modes, laws, scale, collected.at_zero());
             let after = |contact: usize, xi: Pair<Rounded>| after(xi.map(|own| own.value), contact, modes, problem);
             let motion = |memory| motion(leaf, after, memory);
-            let mut blunt = None;
+            let pending = || Pending { number, modes: modes.to_vec() };
             if reading.sign == Sign::Negative {
                 let is_vague = reading.is_vague();
-                let rejection = Rejection::read(modes, reading, || motion(Motion::default()));
-                if !is_vague {
-                    return collected.reject(number, modes, || rejection);
-                }
-                blunt = Some(Solved::Rejected(rejection));
-            } else if reading.sign == Sign::Positive {
+                let rejection = || Rejection::read(modes, reading, || motion(Motion::default()));
+                return match is_vague {
+                    true => {
+                        let blunt = Some(Solved::Rejected(rejection()));
+                        undecided.push(Undecided { pending: pending(), blunt });
+                    }
+                    false => collected.reject(number, modes, rejection),
+                };
+            }
+            if reading.sign == Sign::Positive {
                 let OutcomeLists { modes: mut own_modes, motion: memory, friction_needed } = collected.lists();
                 let motion = motion(memory);
                 if f64_serves(leaf, modes, (problem, scale), (&motion, reading.margin)) {
@@ -83,7 +87,7 @@ impl Visitor<Rounded> for F64Pass<'_, '_> {
                     return collected.add_regular(number, own_modes, reading, index, numbers);
                 }
             }
-            undecided.push(Undecided { pending: Pending { number, modes: modes.to_vec() }, blunt });
+            undecided.push(Undecided { pending: pending(), blunt: None });
         });
     }
 }

@@ -368,7 +368,7 @@ impl<'r> Pipeline<'r> {
         let Impact { notes, problem, contacts, .. } = &mut *prepared.impact;
         if let Some(analysis) = &analysis {
             notes.extend(analysis.notes(problem, || self.robot.mass()));
-            notes.extend(self.nearly_one(contacts, &analysis.outcomes));
+            notes.extend(if brief { None } else { self.nearly_one(contacts, &analysis.outcomes) });
         }
         let matrices = self.options.matrices.then(|| self.matrices());
         let followed = analysis.as_mut().filter(|_| next).map(|analysis| self.follow(state, &prepared, analysis));
