@@ -159,6 +159,13 @@ impl PrecisionTask for UndecidedPass<'_, '_> {
             let listed = collected.options.rejections.contain(&pending.modes);
             let blunt = match if stops { Err(Unsettled) } else { solver.solve(&pending.modes) } {
                 Ok(solved) if solved.is_sharp() && !(listed && solved.is_vague()) => {
+                    // It has the velocity of others because contacts depend on each other: none of them is on a border.
+                    let solved = match solved {
+                        Solved::Rejected(Rejection { because: RejectionReason::OnBorder, .. }) if place >= decisive => {
+                            Solved::Rejected(Rejection::of(&pending.modes, RejectionReason::RedundantTwin))
+                        }
+                        solved => solved,
+                    };
                     collected.add(&pending, solved);
                     continue;
                 }
