@@ -1,19 +1,19 @@
-//! A budget of work: how much time an answer may take.
+//! A budget of time for computing an answer.
 //!
 //! ```text
-//!     Budget::within --work--> loops without a bound of their own ask is_spent --yes--> what is open stays undecided
+//!     Budget::within --work--> loops that have no fixed bound ask is_spent --yes--> unfinished parts stay undecided
 //! ```
 //!
-//! This crate reads no clock: who sets a budget gives one. A budget holds for all that its thread does within it, so
-//! that a linear program in the middle of a proof ends as soon as one at its edge: every sign that is asked for then is
-//! unknown, which is always a right answer.
+//! This crate reads no clock; the caller supplies one with the budget. A budget covers everything that its thread does
+//! within it, at any depth of calls: a linear program inside a proof stops as early as the proof itself. A sign that is
+//! not computed in time counts as unknown, which is never wrong.
 
 use std::cell::{Cell, RefCell};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-/// How much time work may take, and by which clock.
+/// The time that work may take, and the clock that measures it.
 ///
 /// ```
 /// use heelstrike::{Budget, ContactProblem, Friction, analyze, impact::ListedRejections};
@@ -29,10 +29,10 @@ use std::time::Duration;
 /// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Budget {
-    /// How much.
+    /// Time that the work may take.
     pub time: Duration,
-    /// Time that the calling thread has worked, since any moment: best its processor time. It is not called by work
-    /// that takes less than some ten microseconds.
+    /// Returns the time since any fixed moment, preferably the processor time of the calling thread. [`Budget::within`]
+    /// does not call the clock for work that takes less than about ten microseconds.
     pub clock: fn() -> Duration,
 }
 
@@ -40,39 +40,40 @@ pub struct Budget {
 #[derive(Debug, Clone)]
 pub struct SharedBudget {
     budget: Budget,
-    /// In nanoseconds.
+    /// Time that all threads have spent \[ns\].
     spent: Arc<AtomicU64>,
 }
 
-/// A budget for each of many pieces of work, and one for all that end beyond theirs, of which each may take a sixth of
-/// what is left: the first ones take what they would alone, and later ones ever less.
+/// A time limit for each of many pieces of work, together with a total for the pieces that exceed their limit. Each
+/// piece may take at most a sixth of the remaining total. The first pieces therefore get their full limit, and later
+/// ones less and less.
 #[derive(Debug, Clone)]
 pub struct TotalBudget {
     each: Budget,
-    /// In nanoseconds.
+    /// Remaining total \[ns\].
     left: Arc<AtomicU64>,
-    /// The least that one had and spent.
+    /// The smallest limit of all pieces that exceeded theirs \[ns\]; `u64::MAX` if none did.
     least: Arc<AtomicU64>,
 }
 
-/// The part of what is left that one piece of work may take.
+/// One piece of work may take the remaining total divided by this number.
 const PARTS: u64 = 6;
 
-/// All of a shared budget was spent; how much that was.
+/// The error that a shared budget is spent; contains the time of that budget.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BudgetSpent(pub Duration);
 
 thread_local! {
     static WORK: Work = const { Work { running: Cell::new(None), rounds: Cell::new(ROUNDS), spent: Cell::new(false) } };
-    /// What all that share the budget of this thread's work have spent \[ns\]. It is not part of the work, since what needs
-    /// no drop is quicker to reach.
+    /// Time that all threads have spent of the budget that this thread shares \[ns\]. It is not part of [`WORK`],
+    /// because a thread-local value without a destructor is faster to access.
     static SHARED: RefCell<Option<Arc<AtomicU64>>> = const { RefCell::new(None) };
 }
 
-/// What the thread is at work on.
+/// State of the budget that the thread works within.
 struct Work {
     running: Cell<Option<Running>>,
-    /// How many rounds until the clock is read.
+    /// Rounds until the clock is read again.
     rounds: Cell<u32>,
     spent: Cell<bool>,
 }
@@ -80,18 +81,18 @@ struct Work {
 #[derive(Clone, Copy)]
 struct Running {
     budget: Budget,
-    /// When the clock was last read.
+    /// Clock value at the last reading.
     last: Option<Duration>,
-    /// Of this work alone \[ns\].
+    /// Time that this work alone has spent \[ns\].
     own: u64,
-    /// Whether others share the budget, by [`SHARED`].
+    /// Whether the budget is shared with other threads, by means of [`SHARED`].
     is_shared: bool,
 }
 
 impl Work {
-    /// Reads the clock; whether everything is spent.
+    /// Reads the clock and returns whether the budget is spent.
     fn is_spent_now(&self) -> bool {
-        // Taken meanwhile: a clock may itself work within a budget.
+        // The state is taken out during the call, because the clock may itself work within a budget.
         let Some(Running { budget, last, own, is_shared }) = self.running.take() else { return false };
         let all = if is_shared { SHARED.take() } else { None };
         let now = (budget.clock)();
@@ -114,7 +115,7 @@ fn nanoseconds(time: Duration) -> u64 {
     u64::try_from(time.as_nanos()).unwrap_or(u64::MAX)
 }
 
-/// Ends the work of a thread, however it ends.
+/// Guard that ends the budget of the thread's work, also on unwinding.
 struct Ending;
 
 impl Drop for Ending {
@@ -131,23 +132,24 @@ impl Drop for Ending {
 }
 
 impl Budget {
-    /// Does the work; what of it cannot be done within the budget is left open by [`Pipeline`](crate::Pipeline) and
-    /// [`analyze`](crate::analyze). Within the work of another budget, that one goes on.
+    /// Runs `work` within this budget. [`Pipeline`](crate::Pipeline) and [`analyze`](crate::analyze) leave open what
+    /// they cannot finish in time. Inside the work of another budget, that outer budget remains in force and this one
+    /// has no effect.
     pub fn within<R>(self, work: impl FnOnce() -> R) -> R {
         Running { budget: self, last: None, own: 0, is_shared: false }.during(None, work)
     }
 }
 
 impl TotalBudget {
-    /// A budget of which nothing is spent yet; by default the `total` is six times that of each.
+    /// Creates an unspent budget. The default `total` is six times the time of `each`.
     pub fn new(each: Budget, total: Option<Duration>) -> Self {
         let total = total.map_or(nanoseconds(each.time).saturating_mul(PARTS), nanoseconds);
         Self { each, left: Arc::new(total.into()), least: Arc::new(u64::MAX.into()) }
     }
 
-    /// Does the work, as [`Budget::within`].
+    /// Runs `work` within the limit of one piece, see [`Budget::within`].
     pub fn within<R>(&self, work: impl FnOnce() -> R) -> R {
-        // Almost always enough is left for the whole time of one.
+        // Almost always the remaining total allows the full limit of a piece.
         let part = Duration::from_nanos(self.left.load(Ordering::Relaxed) / PARTS);
         let budget = Budget { time: self.each.time.min(part), ..self.each };
         let (made, is_spent) = budget.within(|| (work(), WORK.with(|work| work.spent.get())));
@@ -160,7 +162,8 @@ impl TotalBudget {
         made
     }
 
-    /// What a piece of work spent that had less than each may take, the least of all; `None` if there is none.
+    /// Returns the smallest limit of all pieces that exceeded theirs, if it was below the time of `each`; `None`
+    /// otherwise.
     pub fn least(&self) -> Option<Duration> {
         let least = Duration::from_nanos(self.least.load(Ordering::Relaxed));
         (least < self.each.time && least != Duration::from_nanos(u64::MAX)).then_some(least)
@@ -168,28 +171,28 @@ impl TotalBudget {
 }
 
 impl SharedBudget {
-    /// A budget of which nothing is spent yet.
+    /// Creates an unspent budget.
     pub fn new(budget: Budget) -> Self {
         Self { budget, spent: Arc::default() }
     }
 
-    /// What the work makes, on any number of [`Workers`](crate::sweep::Workers).
+    /// Runs `work`, which may use any number of [`Workers`](crate::sweep::Workers), and returns its result.
     ///
     /// # Errors
-    /// The budget was spent before: what was made then means nothing.
+    /// Returns an error if the budget is spent. The result of the work is dropped then, because it has no meaning.
     pub fn within<R>(&self, work: impl FnOnce() -> R) -> Result<R, BudgetSpent> {
         let made = self.share(work);
         let is_spent = self.spent.load(Ordering::Relaxed) >= nanoseconds(self.budget.time);
         if is_spent { Err(BudgetSpent(self.budget.time)) } else { Ok(made) }
     }
 
-    /// As [`SharedBudget::within`], by a thread whose work is part of another one's.
+    /// As [`SharedBudget::within`], but without the error; for a thread that does a part of the work of another thread.
     pub(crate) fn share<R>(&self, work: impl FnOnce() -> R) -> R {
         let (budget, last) = (self.budget, Some((self.budget.clock)()));
         Running { budget, last, own: 0, is_shared: true }.during(Some(&self.spent), work)
     }
 
-    /// That within which this thread is at work.
+    /// Returns the shared budget that this thread works within; `None` if there is none.
     pub(crate) fn current() -> Option<Self> {
         let running = WORK.with(|work| work.running.get()).filter(|running| running.is_shared)?;
         Some(Self { budget: running.budget, spent: SHARED.with_borrow(Clone::clone)? })
@@ -213,7 +216,7 @@ impl Running {
     }
 }
 
-/// As [`Budget::within`], if there is one.
+/// As [`Budget::within`]; runs `work` without a limit if `budget` is `None`.
 pub fn within<R>(budget: Option<Budget>, work: impl FnOnce() -> R) -> R {
     match budget {
         Some(budget) => budget.within(work),
@@ -221,12 +224,13 @@ pub fn within<R>(budget: Option<Budget>, work: impl FnOnce() -> R) -> R {
     }
 }
 
-/// Whether the budget of this thread's work is spent, asked at least once in each round of a loop without a bound.
+/// Returns whether the budget of this thread's work is spent. Every loop without a fixed bound calls it at least once
+/// per round.
 pub(crate) fn is_spent() -> bool {
     is_spent_after(1)
 }
 
-/// As [`is_spent`], after work that takes about as long as so many rounds of a linear program.
+/// As [`is_spent`], after work that takes about as long as `rounds` rounds of a linear program.
 pub(crate) fn is_spent_after(rounds: u32) -> bool {
     WORK.with(|work| {
         let left = work.rounds.get().saturating_sub(rounds);
@@ -241,7 +245,7 @@ pub(crate) fn is_spent_after(rounds: u32) -> bool {
     })
 }
 
-/// Work that takes so many rounds and more is followed by a look at the clock, which takes microseconds.
+/// Rounds between two readings of the clock, because one reading takes microseconds.
 pub(crate) const ROUNDS: u32 = 1024;
 
 #[cfg(test)]
@@ -252,7 +256,7 @@ mod tests {
         is_spent_after(u32::MAX)
     }
 
-    /// A clock that goes on by a second whenever it is read.
+    /// A clock that advances by one second at each reading.
     fn ticking() -> Duration {
         thread_local!(static TICKS: Cell<u64> = const { Cell::new(0) });
         Duration::from_secs(TICKS.replace(TICKS.get() + 1))
@@ -287,7 +291,7 @@ mod tests {
 
     #[test]
     fn a_shared_budget_stays_spent() {
-        // 2^33 s are more than a third of what 64 bits hold in nanoseconds.
+        // 2^33 s are more than a third of the nanoseconds that 64 bits can hold.
         let leaping = || Duration::from_secs(ticking().as_secs() << 33);
         let shared = SharedBudget::new(Budget { time: Duration::MAX, clock: leaping });
         let looks = shared.share(|| [(); 5].map(|()| is_spent_now()));
@@ -297,7 +301,7 @@ mod tests {
 
     #[test]
     fn work_beyond_its_budget_takes_ever_less() {
-        // A nanosecond a look, and one for the beginning.
+        // Each reading advances the clock by one nanosecond, and the first reading marks the beginning.
         thread_local!(static TICKS: Cell<u64> = const { Cell::new(0) });
         let clock = || Duration::from_nanos(TICKS.replace(TICKS.get() + 1));
         let each = Budget { time: Duration::from_nanos(60), clock };
@@ -326,7 +330,7 @@ mod tests {
             };
             std::thread::scope(|scope| scope.spawn(work).join()).expect("no panic");
         };
-        // A look at the beginning, at the end, and these.
+        // The clock is read at the beginning, at the end and `count` times between them.
         assert_eq!(shared.within(|| looks(1)), Ok(()));
         assert_eq!(shared.within(|| looks(1)), Err(BudgetSpent(Duration::from_secs(6))));
     }

@@ -1,11 +1,11 @@
-//! Every outcome of the rigid frictional impact of a planar legged robot.
+//! Finds every outcome of the rigid frictional impact of a planar legged robot.
 //!
-//! A foot strikes the ground. Simulators assume that it sticks and print one answer. For some states no sticking answer
-//! exists and the other foot slides at any friction; for others several outcomes are equally valid. This crate reads
-//! a robot's URDF and a state just before the impact, and finds all of them: modes, impulses, velocities, and whether
-//! the answer is unique, ambiguous or absent.
+//! A foot strikes the ground. Most simulators assume that it sticks and return one answer. In some states, no outcome
+//! in which the foot sticks exists, and the other foot slides at any friction. In other states, several outcomes are
+//! equally valid. This crate reads a robot's URDF and a state just before the impact. It finds all outcomes with their
+//! modes, impulses and velocities, and tells whether the answer is unique, ambiguous or absent.
 //!
-//! # The way of the data
+//! # Data flow
 //!
 //! ```text
 //!     URDF text --[description]--> links and joints, checked --[robot]--> Robot: planar floating-base tree
@@ -19,8 +19,8 @@
 //!     Study of one or two parameters --[sweep]--> regions, borders --[write, draw]--> JSON, CSV, text, picture, page
 //! ```
 //!
-//! The types that most programs need are re-exported below. Each is documented in its module with what it refers to;
-//! a module uses only those that `docs/architecture.md` lists above it.
+//! The types that most programs need are re-exported below. The documentation of each is in its own module. A module
+//! uses only the modules that `docs/architecture.md` lists above it.
 //!
 //! # The impact
 //!
@@ -43,16 +43,17 @@
 //! | mu | `friction` | Coulomb coefficient, 0 to infinite | |
 //! | e | `restitution` | Newton's coefficient, 0 to 1 | |
 //!
-//! Each contact separates, sticks, slides along +t or slides along -t; every consistent combination is an outcome
-//! (C. D. Remy, "Ambiguous collision outcomes and sliding with infinite friction in models of legged systems", IJRR
-//! 2017, called "the paper" throughout; "Featherstone 2008" is his *Rigid Body Dynamics Algorithms*).
+//! Each contact separates, sticks, slides along +t or slides along -t. Every consistent combination of these modes is
+//! an outcome. The theory is from C. D. Remy, "Ambiguous collision outcomes and sliding with infinite friction in
+//! models of legged systems", IJRR 2017, called "the paper" throughout. "Featherstone 2008" is R. Featherstone, *Rigid
+//! Body Dynamics Algorithms*.
 //!
 //! # Frames and signs
 //!
 //! `x` points forward along the ground, `z` up. `pitch` and the angles of bodies are right-handed about the plane's
 //! normal n = up x forward (+y in the x-z plane): a positive pitch dips the nose. Joint coordinates keep the URDF's own
-//! sign. A contact's normal points from the ground to the robot, its tangent t is the normal turned clockwise: +x on
-//! level ground. `planar` is the one place where this handedness is written as code.
+//! sign. A contact's normal points from the ground to the robot. Its tangent t is the normal turned clockwise, which is
+//! +x on level ground. The module `planar` is the only place that implements this handedness.
 //!
 //! # Example
 //!

@@ -1,8 +1,9 @@
-//! Vectors, rotations and inertias of the plane; frame, order and handedness are stated here, once.
+//! Vectors, rotations and inertias of the plane. This module defines the frame, the order of components and the
+//! handedness for the whole crate.
 //!
-//! The plane has axes *forward* (x) and *up* (z) and the normal n = up x forward. An angle is right-handed about n, so
-//! a positive one turns up toward forward: **clockwise** seen with forward to the right and up upward, the nose of a
-//! robot dips. A rotation is the pair (cos, sin) of such an angle; any [`Real`] works.
+//! The plane has axes *forward* (x) and *up* (z) and the normal n = up x forward. An angle is right-handed about n: a
+//! positive angle rotates up toward forward. If forward points right and up points up, this rotation is **clockwise**,
+//! and the nose of a robot dips. A rotation is stored as (cos, sin) of its angle, in any number type [`Real`].
 
 use crate::scalar::{Real, Trigonometry};
 use serde::{Deserialize, Serialize, Serializer};
@@ -22,56 +23,57 @@ pub struct Vector<T = f64> {
 pub type Pair<T> = [T; 2];
 
 impl<T> Vector<T> {
-    /// The vector with these components.
+    /// Creates the vector with the given components.
     pub const fn new(x: T, z: T) -> Self {
         Self { x, z }
     }
 
-    /// x and z.
+    /// Returns `[x, z]`.
     pub fn components(self) -> [T; 2] {
         [self.x, self.z]
     }
 
-    /// The vector of both components' images.
+    /// Applies `change` to both components.
     pub fn map<U>(self, mut change: impl FnMut(T) -> U) -> Vector<U> {
         Vector { x: change(self.x), z: change(self.z) }
     }
 }
 
 impl<T: Real> Vector<T> {
-    /// The unit vectors forward and up.
+    /// Returns the unit vectors forward and up.
     pub fn axes() -> [Self; 2] {
         [Self { x: T::one(), z: T::zero() }, Self { x: T::zero(), z: T::one() }]
     }
 
-    /// The zero vector.
+    /// Returns the zero vector.
     pub fn zero() -> Self {
         Self { x: T::zero(), z: T::zero() }
     }
 
-    /// The scalar product.
+    /// Returns the scalar product.
     pub fn dot(self, other: Self) -> T {
         self.x * other.x + self.z * other.z
     }
 
-    /// The vector turned by a right angle about the normal: the velocity of a point at this arm by a turn at 1 rad/s.
+    /// Rotates the vector by +90 degrees about the normal. The result is the velocity of a point with this position
+    /// vector when its body rotates at 1 rad/s about the origin.
     pub fn perpendicular(self) -> Self {
         Self { x: self.z, z: -self.x }
     }
 }
 
 impl Vector<f64> {
-    /// The Euclidean norm.
+    /// Returns the Euclidean norm.
     pub fn length(self) -> f64 {
         libm::hypot(self.x, self.z)
     }
 
-    /// The lesser one of each component.
+    /// Returns the smaller value of each component.
     pub fn least(self, other: Self) -> Self {
         Self { x: self.x.min(other.x), z: self.z.min(other.z) }
     }
 
-    /// The greater one of each component.
+    /// Returns the larger value of each component.
     pub fn greatest(self, other: Self) -> Self {
         Self { x: self.x.max(other.x), z: self.z.max(other.z) }
     }
@@ -158,23 +160,23 @@ pub struct Rotation<T> {
 }
 
 impl<T: Real> Rotation<T> {
-    /// The turn by zero.
+    /// Returns the rotation by zero.
     pub fn identity() -> Self {
         Self { cos: T::one(), sin: T::zero() }
     }
 
-    /// `vector`, given in the turned frame, in the axes it was turned from.
+    /// Rotates `vector`: takes components in the rotated frame and returns components in the original frame.
     #[inline]
     pub fn apply(self, Vector { x, z }: Vector<T>) -> Vector<T> {
         Vector { x: self.cos * x + self.sin * z, z: self.cos * z - self.sin * x }
     }
 
-    /// The rotation by the opposite angle.
+    /// Returns the inverse rotation.
     pub fn back(self) -> Self {
         Self { cos: self.cos, sin: -self.sin }
     }
 
-    /// The rotation by the sum of both angles.
+    /// Returns the rotation by the sum of both angles.
     #[inline]
     pub fn then(self, other: Self) -> Self {
         Self { cos: self.cos * other.cos - self.sin * other.sin, sin: self.sin * other.cos + self.cos * other.sin }
@@ -182,41 +184,41 @@ impl<T: Real> Rotation<T> {
 }
 
 impl<T: Trigonometry> Rotation<T> {
-    /// The rotation by `angle` \[rad\], in f64 the same bits on every platform.
+    /// Creates the rotation by `angle` \[rad\]. In f64, the result has the same bits on every platform.
     pub fn by(angle: f64) -> Self {
         let [cos, sin] = T::cos_sin(angle);
         Self { cos, sin }
     }
 }
 
-/// Inertia of a rigid body about a point, in axes that do not turn with it
-/// (the planar case of Featherstone 2008, section 2.13).
+/// Inertia of a rigid body about a reference point, in a fixed set of axes (the planar case of Featherstone 2008,
+/// section 2.13).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Inertia<T> {
     /// Mass \[kg\].
     pub mass: T,
-    /// Mass times the position of the CoG from the point \[kg m\].
+    /// Mass times the vector from the reference point to the center of mass \[kg m\].
     pub first: Vector<T>,
-    /// Moment of inertia about the normal through the point \[kg m^2\].
+    /// Moment of inertia about the normal through the reference point \[kg m^2\].
     pub second: T,
 }
 
 impl<T: Real> Inertia<T> {
-    /// The inertia in the axes that the body is turned from.
+    /// Rotates the inertia from the axes of a body into the axes that `turn` refers to.
     #[inline]
     pub fn turned(self, turn: Rotation<T>) -> Self {
         Self { first: turn.apply(self.first), ..self }
     }
 
-    /// The same body about a point from which the old one is seen at `arm`.
+    /// Moves the reference point: `arm` is the vector from the new reference point to the old one.
     #[inline]
     pub fn seen_from(self, arm: Vector<T>) -> Self {
         let shifted = self.first + arm * self.mass;
-        // I + 2 h.d + m d.d, with the new first moment h + m d in place of one h.
+        // I + 2 h.d + m d.d; the new first moment h + m d already contains one m d.
         Self { mass: self.mass, first: shifted, second: self.second + (self.first + shifted).dot(arm) }
     }
 
-    /// Both bodies as one; they must be given about the same point.
+    /// Adds the inertia of another body. Both must have the same reference point.
     #[inline]
     pub fn with(self, other: Self) -> Self {
         Self { mass: self.mass + other.mass, first: self.first + other.first, second: self.second + other.second }
