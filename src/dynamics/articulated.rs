@@ -1,15 +1,15 @@
-//! G = J M^-1 J^T and M^-1 J^T p by articulated bodies, without M.
+//! G = J M^-1 J^T and M^-1 J^T p by the articulated-body algorithm, without M.
 //!
 //! ```text
 //!     A_i = I_i + sum over children of (A_c - U_c D_c^-1 U_c^T) seen from i         U = A S,  D = S^T A S + rotor
 //!     y_i = S_i^T f_i,   f_parent = f_i - U_i D_i^-1 y_i                            G = Y^T D^-1 Y
 //! ```
 //!
-//! A and f are 3 x 3 and 3-vectors in the plane, kept as a moment, a coupling and a linear block about each body's
-//! origin in world axes. A revolute joint without rotor passes no moment on, so that its child is a 2 x 2 block for the
-//! parent. D and Y are those of M = L^T D L, found without M: a second, independent way to the same numbers, and the
-//! only quick one for long chains. It does not handle mimic joints: a column here moves one joint. Source: Featherstone
-//! 2008, sections 7.2 and 7.3. Cost: O(nb + n depth), and O(n^2) per shared joint for G.
+//! A and f are 3 x 3 matrices and 3-vectors in the plane, stored as moment, coupling and linear block about each body's
+//! origin in world axes. A revolute joint without a rotor transmits no moment, so the parent sees only a 2 x 2 block of
+//! the child. D and Y equal those of M = L^T D L. This is a second, independent way to the same numbers, and the only
+//! fast one for long chains. It does not support mimic joints: each column must move exactly one joint. Source:
+//! Featherstone 2008, sections 7.2 and 7.3. Cost: O(nb + n depth), and O(n^2) per shared joint for G.
 
 use super::articulated_inertia::{ArticulatedInertia, Wrench};
 use super::delassus::{PointImpulse, from_half};
@@ -21,7 +21,7 @@ use crate::scalar::Real;
 
 /// Computes every body's articulated inertia and the pivots D (nv, columns of the plan) from the kinematics.
 ///
-/// Callers check for a vanishing pivot, as with [`factorize`](super::factorize).
+/// Callers check whether a pivot vanishes, as with [`factorize`](super::factorize).
 pub fn articulated_inertias<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
     let Workspace { rotation, arm, direction, articulated, pivots, .. } = workspace;
     articulated.clear();
@@ -80,7 +80,7 @@ pub fn articulated_delassus<T: Real>(plan: &Plan<T>, contacts: &[ContactPoint<T>
     from_half(contacts.len(), workspace, |a, b| plan.branch(plan.shared(outermost(a), outermost(b))));
 }
 
-/// Adds to `velocity` (dq/dt by coordinate) what an impulse p does to it: M^-1 J^T p; `rates` and `motions` are
+/// Adds the velocity change M^-1 J^T p of an impulse p to `velocity` (dq/dt by coordinate). `rates` and `motions` are
 /// scratch.
 pub fn add_articulated_impulse<T: Real>(
     plan: &Plan<T>,
@@ -100,8 +100,8 @@ pub fn add_articulated_impulse<T: Real>(
     }
 }
 
-/// Takes joint forces by column (nv; N, N m) in `column` to the accelerations that they and the bodies' demands give,
-/// after [`demands`](super::demands): M^-1 (tau - b), without the sums b.
+/// Replaces the joint forces tau in `column` (nv, columns of the plan; N, N m) by the accelerations M^-1 (tau - b).
+/// Requires the results of [`demands`](super::demands), and uses them up: b is never formed.
 pub fn articulated_acceleration<T: Real>(
     plan: &Plan<T>,
     workspace: &mut Workspace<T>,
@@ -124,7 +124,7 @@ pub fn articulated_acceleration<T: Real>(
     set_in_motion(plan, workspace, column, motions);
 }
 
-/// Takes D^-1 y in `rates` to the rates that an impulse gives, and collects each body's motion.
+/// Replaces D^-1 y in `rates` by the rates that the impulse causes, and computes each body's motion.
 pub(super) fn set_in_motion<T: Real>(
     plan: &Plan<T>,
     workspace: &Workspace<T>,
@@ -162,7 +162,7 @@ pub(super) fn set_in_motion<T: Real>(
     }
 }
 
-/// Takes D^-1 y of a floating base in `rates` to its rates, and gives the root's spin and the velocity of its origin.
+/// Replaces D^-1 y of a floating base in `rates` by its rates. Returns the root's spin and the velocity of its origin.
 fn root_motion<T: Real>(workspace: &Workspace<T>, rates: &mut [T]) -> Motion<T> {
     let root = &workspace.articulated[0];
     let [_, xz, zz] = root.without_turn(T::zero(), root.moment).linear;
@@ -172,7 +172,7 @@ fn root_motion<T: Real>(workspace: &Workspace<T>, rates: &mut [T]) -> Motion<T> 
     (rates[2], origin)
 }
 
-/// Passes a force on `body` inward, joint by joint; reports y and y/D of every column on the way.
+/// Passes a force on `body` toward the root, joint by joint, and reports y and y/D of every column on the path.
 fn to_root<T: Real>(
     plan: &Plan<T>,
     workspace: &Workspace<T>,
@@ -188,7 +188,7 @@ fn to_root<T: Real>(
     }
 }
 
-/// Passes a force on body `at`, on whose joint `tau` acts, through that joint; reports y and y/D of its column.
+/// Passes a force on body `at` through its joint, on which `tau` acts, and reports y and y/D of the joint's column.
 #[inline]
 fn through_joint<T: Real>(
     plan: &Plan<T>,
@@ -202,7 +202,7 @@ fn through_joint<T: Real>(
     let own = &workspace.articulated[at];
     let driven = |y: T| tau.map_or(y, |tau| tau + y);
     match (motion, column) {
-        // No joint drives the base.
+        // No joint force acts on the base.
         (JointMotion::Root, Some(column)) => {
             let pitch = force.moment / workspace.pivots[column];
             visit(column, force.moment, pitch);
@@ -218,7 +218,8 @@ fn through_joint<T: Real>(
             let y = driven(sign * force.moment);
             let rate = y / workspace.pivots[column];
             visit(column, y, rate);
-            // n - A_nn y / D without the cancellation: without a rotor only what holds the joint is passed on.
+            // Equals n - A_nn y / D without its cancellation: without a rotor, only the joint's own torque is
+            // transmitted.
             let passed = rotor * rate;
             force.moment = sign * tau.map_or(passed, |tau| passed - tau);
             force.linear = force.linear - own.coupling * (sign * rate);

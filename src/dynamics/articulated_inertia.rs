@@ -1,10 +1,10 @@
-//! The inertia of a body while the joints beyond it give way.
+//! Articulated-body inertia: the inertia of a body while the joints beyond it move freely.
 
 use crate::planar::{Inertia, Vector};
 use crate::scalar::Real;
 
-/// The symmetric inertia [[moment, coupling^T], [coupling, linear]] that a body shows at its origin, in world axes,
-/// while all joints beyond it give way.
+/// The symmetric matrix [[moment, coupling^T], [coupling, linear]]: the inertia of a body and of all that it carries
+/// while the joints beyond it move freely, about the body's origin in world axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ArticulatedInertia<T> {
     /// Moment for a unit angular acceleration \[kg m^2\].
@@ -20,15 +20,15 @@ impl<T: Real> ArticulatedInertia<T> {
         Self { moment: body.second, coupling: body.first.perpendicular(), linear: [body.mass, T::zero(), body.mass] }
     }
 
-    /// Force for the linear acceleration `along`.
+    /// Returns the force for the linear acceleration `along`.
     #[inline]
     pub(super) fn stretch(&self, along: Vector<T>) -> Vector<T> {
         let [xx, xz, zz] = self.linear;
         Vector { x: Vector::new(xx, xz).dot(along), z: Vector::new(xz, zz).dot(along) }
     }
 
-    /// What a revolute joint of pivot D leaves to the parent = moment + rotor. Always u (u / D), never u u (1 / D): the
-    /// latter underflows for small masses.
+    /// Returns the part of the inertia that a revolute joint with pivot D = moment + rotor transmits to the parent.
+    /// Products are computed as u (u / D), because u u (1 / D) underflows for small masses.
     #[inline]
     pub(super) fn without_turn(&self, rotor: T, pivot: T) -> Self {
         let kept = rotor / pivot;
@@ -42,8 +42,8 @@ impl<T: Real> ArticulatedInertia<T> {
         }
     }
 
-    /// What a prismatic joint along `along` of pivot D leaves to the parent. Components along and across the joint are
-    /// kept apart, so that what the joint does not pass on cancels before rounding.
+    /// Returns the part of the inertia that a prismatic joint along `along` with pivot D transmits to the parent.
+    /// Components along and across the joint are kept apart: what the joint does not transmit cancels before rounding.
     #[inline]
     pub(super) fn without_slide(&self, along: Vector<T>, rotor: T, pivot: T) -> Self {
         let across = along.perpendicular();
@@ -53,7 +53,7 @@ impl<T: Real> ArticulatedInertia<T> {
         let (kept, by_lever) = (rotor / pivot, lever / pivot);
         let (same, other, mixed) = (same * kept, other - mixed * (mixed / pivot), mixed * kept);
         let (lever, side, spent) = (lever * kept, side - across.dot(pulled) * by_lever, lever * by_lever);
-        // `along` has length one up to rounding; dividing by its square makes the formula right for any length.
+        // `along` has length one up to rounding. The division by its square makes the formula right for any length.
         let square = along.dot(along);
         let [same, other, mixed] = [same, other, mixed].map(|entry| entry / square / square);
         let [Vector { x, z }, Vector { x: p, z: q }] = [along, across];
@@ -69,16 +69,16 @@ impl<T: Real> ArticulatedInertia<T> {
         }
     }
 
-    /// The same inertia about a point from which the old one is seen at `arm`.
+    /// Moves the reference point: `arm` is the vector from the new reference point to the old one.
     #[inline]
     pub(super) fn seen_from(self, arm: Vector<T>) -> Self {
         let lever = arm.perpendicular();
         let shifted = self.coupling + self.stretch(lever);
-        // A + 2 h.l + l.M l, with the new coupling h + M l in place of one h.
+        // A + 2 h.l + l.M l; the new coupling h + M l already contains one M l.
         Self { moment: self.moment + (self.coupling + shifted).dot(lever), coupling: shifted, linear: self.linear }
     }
 
-    /// Both inertias as one; they must be given about the same point.
+    /// Adds another inertia. Both must have the same reference point.
     #[inline]
     pub(super) fn with(self, other: Self) -> Self {
         let [[a, b, c], [d, e, f]] = [self.linear, other.linear];
@@ -90,7 +90,7 @@ impl<T: Real> ArticulatedInertia<T> {
     }
 }
 
-/// A force and its moment about a body's origin, in world axes \[N, N m\]; an impulse or a momentum \[N s, N m s\].
+/// A force and its moment about a body's origin in world axes \[N, N m\]; also an impulse or momentum \[N s, N m s\].
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Wrench<T> {
     pub moment: T,
@@ -103,13 +103,13 @@ impl<T: Real> Wrench<T> {
         Self { moment: arm.perpendicular().dot(linear), linear }
     }
 
-    /// The same about a point from which the old one is seen at `arm`.
+    /// Moves the reference point: `arm` is the vector from the new reference point to the old one.
     #[inline]
     pub fn seen_from(self, arm: Vector<T>) -> Self {
         Self { moment: self.moment + arm.perpendicular().dot(self.linear), linear: self.linear }
     }
 
-    /// Both as one; they must be given about the same point.
+    /// Adds another wrench. Both must have the same reference point.
     #[inline]
     pub fn with(self, other: Self) -> Self {
         Self { moment: self.moment + other.moment, linear: self.linear + other.linear }

@@ -1,26 +1,27 @@
-//! How far G by articulated bodies is from that of the exact state, by what its motions leave unbalanced.
+//! Error bounds of G computed by articulated bodies, from the momentum that its motions leave unbalanced.
 //!
-//! For a unit impulse along row r let u_r be the velocities of all bodies b, with |u|^2 = sum of u_b . I_b u_b, twice
-//! the kinetic energy. Then G_rs = J_s u_r, and |u_r|^2 = G_rr. Any motion w that the joints allow, and any impulses F
-//! in the joints that do no work there, say how far w is from u_r (W. Prager, J. L. Synge, "Approximations in elasticity
-//! based on the concept of function space", Quart. Appl. Math. 5, 1947):
+//! For a unit impulse along row r, let u_r be the velocities of all bodies b, with |u|^2 = sum of u_b . I_b u_b, which
+//! is twice the kinetic energy. Then G_rs = J_s u_r, and |u_r|^2 = G_rr. Let w be any motion that the joints allow, and
+//! F any impulses in the joints that do no work in such motions. They bound the distance of w from u_r (W. Prager, J.
+//! L. Synge, "Approximations in elasticity based on the concept of function space", Quart. Appl. Math. 5, 1947):
 //!
 //! ```text
-//!     |w - u_r|^2 <= sum over b of (I_b w_b - p_b) . I_b^-1 (I_b w_b - p_b)       p_b: of F and of the contact on b
+//!     |w - u_r|^2 <= sum over b of (I_b w_b - p_b) . I_b^-1 (I_b w_b - p_b)       p_b: F and contact on b
 //!     |J_s w - G_rs| = |<u_s, w - u_r>| <= sqrt(G_ss) |w - u_r|
 //! ```
 //!
-//! w is what f64 found, and F what w asks for, summed from the outermost body inward. Both are taken as exactly these
-//! numbers, so that no error is passed on from body to body:
+//! w is the motion that f64 computed. F is what w requires, summed from the outermost body toward the root. Both are
+//! taken as exactly these f64 numbers, so no error propagates from body to body:
 //!
-//! 1. Through a revolute joint F has no moment but its rotor's: what the sum has is left on the body. Through a
-//!    prismatic joint it has no force along the joint; a rotor counts as a body of its own.
-//! 2. Origins in w are apart at a joint by rounding, delta. To move all that the joint carries by delta gives a motion
-//!    that the joints allow, at a distance of sqrt(mass carried) |delta|.
-//! 3. A rotation is off by [`TURN`] u per joint below it (see [`bounds`](super::bounds)), and so is an arm.
+//! 1. At a revolute joint, F has no moment but that of the rotor; the rest of the summed moment stays on the body. At a
+//!    prismatic joint, F has no force along the joint. A rotor counts as a separate body.
+//! 2. The origins in w violate a joint by a rounding error delta. Moving all bodies that the joint carries by delta
+//!    gives a motion that the joints allow. Its distance from w is sqrt(mass carried) |delta|.
+//! 3. The error of a rotation is [`TURN`] u per joint between the body and the root (see [`bounds`](super::bounds));
+//!    that of an arm is this times its length.
 //!
-//! Nothing is known of a body without mass or moment of inertia. Everything is doubled for the terms of second order,
-//! which are small because the bound counts as unknown beyond a tenth. Cost: O(n nb + n^2).
+//! There is no bound if a body has no mass or no moment of inertia. All bounds are doubled to cover the terms of second
+//! order. These are small, because a bound above one tenth counts as unknown. Cost: O(n nb + n^2).
 
 use super::articulated::set_in_motion;
 use super::articulated_inertia::Wrench;
@@ -30,40 +31,41 @@ use super::workspace::Workspace;
 use crate::dynamics::plan::{JointMotion, Plan, PlanBody};
 use crate::planar::Vector;
 
-/// Roundings of a rotation per joint: 4 of its cosine and sine, 3 of the product, in the sum of both components.
+/// Roundings of a rotation per joint: 4 in its cosine and sine and 3 in the product, for the sum of both components.
 const TURN: f64 = 16.0;
-/// Roundings of a few products and sums, with those of the inertia's own entries.
+/// Roundings of a few products and sums, including those in the entries of an inertia.
 const SUM: f64 = 16.0 * UNIT_ROUNDOFF;
-/// Roundings of the ground's axes, and of the place of a point on them.
+/// Roundings of the ground's axes, and of the position of a point along them.
 const GROUND: f64 = 64.0 * UNIT_ROUNDOFF;
 /// Covers the underflow of a few products.
 const UNDERFLOW: f64 = 1e-300;
 
-/// Memory that is reused.
+/// Memory of the computation, reused.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Balance {
     bodies: Vec<BodyScale>,
     passed: Vec<Passed>,
     motions: Vec<Motion<f64>>,
-    /// How far each body's origin may be from where the joints allow it, in w \[m/s\].
+    /// Bound on the distance of each body's origin in w from where the joints allow it \[m/s\].
     apart: Vec<f64>,
     rates: Vec<f64>,
 }
 
-/// What all rows have in common.
+/// Quantities of a body that are the same for all rows of G.
 #[derive(Debug, Clone, Copy)]
 struct BodyScale {
-    /// Mass times the center of mass from the origin, in the world's axes, and at least its length \[kg m\].
+    /// Mass times the vector from the origin to the center of mass, in the world's axes, and an upper bound on its
+    /// length \[kg m\].
     first: Vector<f64>,
     first_length: f64,
-    /// At least the distance of the center of mass from the origin \[m\].
+    /// Upper bound on the distance of the center of mass from the origin \[m\].
     com: f64,
-    /// 1 / sqrt(mass), and the same of the moment of inertia about the center of mass.
+    /// 1 / sqrt(mass), and 1 / sqrt(moment of inertia about the center of mass).
     per_mass: f64,
     per_moment: f64,
-    /// sqrt(mass that the joint carries).
+    /// Square root of the mass that the joint carries.
     carried: f64,
-    /// What a rotation is off by.
+    /// Error of the rotation.
     turn: f64,
 }
 
@@ -83,21 +85,21 @@ impl BodyScale {
     }
 }
 
-/// At most the moment of inertia about the center of mass; not positive, or not a number, if it may be zero.
+/// Lower bound on the moment of inertia about the center of mass; not positive, or NaN, if it may be zero.
 fn central_moment(body: &PlanBody<f64>) -> f64 {
     let (mass, first, second) = (body.inertia.mass, body.inertia.first, body.inertia.second);
     second * (1.0 - SUM) - first.dot(first * (1.0 / mass)) * (1.0 + SUM) - UNDERFLOW
 }
 
-/// Whether something can be known by the balance: mimic joints have no articulated bodies, and a body without inertia
-/// no balance.
+/// Returns whether this method can give a bound: there are no mimic joints, and every body except a fixed root has mass
+/// and moment of inertia.
 pub fn has_balance(plan: &Plan) -> bool {
     let is_heavy = |body: &PlanBody<f64>| central_moment(body) > 0.0;
     let moves = |body: &PlanBody<f64>| body.parent.is_some() || plan.floating;
     !plan.has_mimics && plan.bodies.iter().filter(|body| moves(body)).all(is_heavy)
 }
 
-/// What bodies beyond pass on, with the error of its force and of its moment.
+/// The wrench that a body receives from the bodies it carries, with the errors of its force and of its moment.
 #[derive(Debug, Clone, Copy)]
 struct Passed {
     wrench: Wrench<f64>,
@@ -106,8 +108,8 @@ struct Passed {
 }
 
 impl Balance {
-    /// How far an entry G_ij may be off, and how far it likely is, relative to sqrt(G_ii G_jj); the first is infinite if
-    /// nothing is known. `arms` are those of the `points`.
+    /// Returns the error bound of an entry G_ij and its likely error, both relative to sqrt(G_ii G_jj). Both are
+    /// infinite if nothing is known. `arms` belong to the `points`.
     pub fn errors(
         &mut self,
         plan: &Plan,
@@ -148,7 +150,7 @@ impl Balance {
                         self.apart[point.body] + (SUM + GROUND) * (speed + turning) + (2.0 * turn + GROUND) * turning;
                     for (column, axis) in (2 * other..).zip(point.axes()) {
                         let scale = own * entry(column, column).sqrt();
-                        // A row that vanishes although its contact can move is known to no relative error.
+                        // If a row of G vanishes although its contact can move, there is no relative error bound.
                         let apart = (axis.dot(velocity) - entry(row, column)).abs();
                         let error = (apart + rounding) / scale + jumps + off;
                         if error.is_nan() || error >= SMALL {
@@ -164,7 +166,7 @@ impl Balance {
         [bound, seen + LIKELY * (UNIT_ROUNDOFF + bound / (TURN * depth as f64))]
     }
 
-    /// At what distance from the motion the joints allow one \[sqrt J\].
+    /// Returns a bound on the distance from the motion to one that the joints allow \[sqrt J\].
     fn jumps(&mut self, plan: &Plan, stretched: &[Stretched], workspace: &Workspace) -> f64 {
         let mut sum = 0.0;
         self.apart.clear();
@@ -184,7 +186,8 @@ impl Balance {
         sum
     }
 
-    /// The distance of the motion from u over `own`, the length of u, and the part of it that is not for rounding here.
+    /// Returns the distance of the motion from u divided by `own`, the length of u, and the same without the roundings
+    /// of this computation.
     fn imbalance(
         &mut self,
         plan: &Plan,
@@ -201,11 +204,11 @@ impl Balance {
             force_error: GROUND,
             moment_error: 2.0 * (GROUND + self.bodies[point.body].turn) * arm.length,
         };
-        // The first part covers squares that underflow.
+        // The initial value covers squares that underflow.
         let [mut squares, mut seen] = [1e-100; 2];
         for (index, body) in plan.bodies.iter().enumerate().rev() {
             if body.parent.is_none() && !plan.floating {
-                // The ground takes it.
+                // The ground supports a fixed root.
                 continue;
             }
             let (scale, passed, (spin, origin)) = (&self.bodies[index], self.passed[index], self.motions[index]);
@@ -230,7 +233,7 @@ impl Balance {
                 let part = SUM * sizes * body.rotor.sqrt() / own;
                 squares += part * part;
             }
-            // What the joint transmits, what remains on the body, and by how much the joint's force is inexact.
+            // The wrench that the joint transmits, the one that stays on the body, and the error of the joint's force.
             let (sent, left, inexact) = match (body.motion, body.column) {
                 (JointMotion::Root, _) => (nothing, wrench, 0.0),
                 (JointMotion::Fixed, _) | (_, None) => (wrench, nothing, 0.0),

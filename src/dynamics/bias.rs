@@ -1,17 +1,17 @@
-//! What a motion and gravity demand while no coordinate accelerates: bias forces, and accelerations of points.
+//! Bias forces, and accelerations of points: the effects of velocities and gravity while no coordinate accelerates.
 //!
 //! ```text
 //!     M a = tau - b + J^T f          c' = J a + sigma          K a + kappa = 0
 //!
-//!     o_i = o_p - omega_p^2 r_i + 2 omega_p turned(d_i) q'_i     outward; r_i the arm from p, d_i of a prismatic joint
+//!     o_i = o_p - omega_p^2 r_i + 2 omega_p turned(d_i) q'_i     outward; r_i: arm from p, d_i: prismatic axis
 //!     F_i = m (o_i - g) - omega_i^2 h_i,  N_i = turned(h_i) . (o_i - g)      inward as a wrench, b = S_i . wrench
 //!     sigma = o_i - omega_i^2 r                                     of a point, or of a circle's center, at r
 //! ```
 //!
-//! No body has an angular acceleration of its own: in the plane the axes of all joints are parallel, so that rates of
-//! turn only add up. A circle rolls on straight ground: its lowest point lies at a constant distance below its center,
-//! so that both accelerate alike. Source: Featherstone 2008, section 5.3 (recursive Newton-Euler), in world axes. Cost:
-//! O(nb).
+//! Here turned(r) is r rotated by +90 degrees. No body has an angular acceleration: the axes of all joints are
+//! parallel, so the angular velocities simply add up. A circle rolls on straight ground: its lowest point stays at a
+//! constant distance below its center, so both have the same acceleration. Source: Featherstone 2008, section 5.3
+//! (recursive Newton-Euler), in world axes. Cost: O(nb).
 
 use super::articulated_inertia::Wrench;
 use super::jacobian::ContactPoint;
@@ -20,9 +20,9 @@ use crate::dynamics::plan::{JointMotion, Plan};
 use crate::planar::Vector;
 use crate::scalar::Real;
 
-/// Computes every body's motion while no coordinate accelerates and what it demands, from the kinematics, for `velocity`
-/// (dq/dt, braked joints included) and `gravity` along -z of the world \[m/s^2\]. Bodies that are `steady` do not turn:
-/// what is left of the sum of their rates is rounding; with an empty list none is.
+/// Computes the motion of every body while no coordinate accelerates, and the wrench that it requires, from the
+/// kinematics. `velocity` is dq/dt including braked joints, and `gravity` acts along -z of the world \[m/s^2\]. Bodies
+/// marked `steady` do not rotate: the sum of their joint rates is only rounding. An empty list marks none.
 pub fn demands<T: Real>(plan: &Plan<T>, velocity: &[T], gravity: T, steady: &[bool], workspace: &mut Workspace<T>) {
     let Workspace { rotation, arm, direction, spin, squared_spin, drift, demand, .. } = workspace;
     spin.clear();
@@ -63,7 +63,7 @@ pub fn demands<T: Real>(plan: &Plan<T>, velocity: &[T], gravity: T, steady: &[bo
     ));
 }
 
-/// Computes b (nv, columns of the plan; N, N m), as [`demands`] what each body demands.
+/// Computes b (nv, columns of the plan; N, N m). It calls [`demands`] with the same arguments.
 pub fn bias<T: Real>(plan: &Plan<T>, velocity: &[T], gravity: T, steady: &[bool], workspace: &mut Workspace<T>) {
     demands(plan, velocity, gravity, steady, workspace);
     let Workspace { arm, direction, demand, bias, .. } = workspace;
@@ -88,13 +88,13 @@ pub fn bias<T: Real>(plan: &Plan<T>, velocity: &[T], gravity: T, steady: &[bool]
     }
 }
 
-/// Acceleration of the point at `arm` from the origin of `body` while no coordinate accelerates \[m/s^2\].
+/// Returns the acceleration of the point at `arm` from the origin of `body` while no coordinate accelerates \[m/s^2\].
 pub(super) fn point_drift<T: Real>(body: usize, arm: Vector<T>, workspace: &Workspace<T>) -> Vector<T> {
     workspace.drift[body] - arm * workspace.squared_spin[body]
 }
 
 impl<T: Real> ContactPoint<T> {
-    /// sigma, in the world's axes \[m/s^2\], after [`bias`].
+    /// Returns sigma in the world's axes \[m/s^2\]. Requires the results of [`bias`].
     pub fn drift(&self, workspace: &Workspace<T>) -> Vector<T> {
         point_drift(self.body, workspace.rotation[self.body].apply(self.center), workspace)
     }

@@ -1,31 +1,34 @@
-//! How far G and c in f64 may be from those of the exact state: the first layer of every proof.
+//! Error bounds of G and c in f64 against those of the exact state: the first layer of every proof.
 //!
-//! With u the unit roundoff, D the depth of the tree, nb its bodies, nv its columns:
+//! Let u be the unit roundoff, D the depth of the tree, nb its bodies, nv its columns. Higham 2002 is his *Accuracy and
+//! Stability of Numerical Algorithms*.
 //!
-//! 1. *Kinematics.* Cosines and sines are off by 4 u each (see [`Ball`](crate::scalar::Ball)), each product of
-//!    rotations adds 3 u; so after D joints a rotation is off by at most 7 D u, and an arm by that part of its length.
-//! 2. *M and J.* Each entry is a sum of products of masses and arms, collected over at most D levels and nb bodies.
-//!    Replacing every term by its magnitude gives K_i, the moment that column i would have to move if all arms were
-//!    stretched, and by Cauchy and Schwarz |dM_ij| <= eta sqrt(K_i K_j), |dJ_ri| <= eta A_ri with A_ri the stretched
-//!    arm from joint i to the contact, and eta = [`ENTRY`] (D + nb) u.
-//! 3. *M = L^T D L* is the factorization of a matrix that differs from M by gamma sqrt(K_i K_j) more, with gamma = 2
-//!    (nv + 2) u (Higham 2002, theorem 10.3). In the energy norm that is eps = nv (eta + gamma) tau with tau = sum K_i
-//!    (M^-1)_ii, which bounds |S M^-1 S| for S = diag(sqrt K_i). So |dG_rs| <= eps / (1 - eps) sqrt(G_rr G_ss).
-//! 4. *J* adds eta a_r with a_r = sum A_ri sqrt((M^-1)_ii) to the length sqrt(G_rr) of its row in the energy norm, and
-//!    the triangular solves add gamma sqrt(nv tau) of it (Higham 2002, theorem 8.5).
-//! 5. A *mimic joint* turns by up to three angles instead of one and brings further roundings to its displacement: it
-//!    counts for three levels. Its motion is multiplied by its rate, and where a column moves several joints b, the
-//!    triangle inequality of the energy norm gives sqrt(K_i) = sum |rate_b| sqrt(K_b), and A_ri is a sum of the same
-//!    form.
-//! 6. *Accelerations* a = M^-1 h of loads known to dh. The solve is exact for a matrix off by 3 gamma sqrt(K_i K_j) at
-//!    most (Higham 2002, theorem 10.4), so that exactly M (a^ - a) = r with |r_i| <= dh_i + (eta + 3 gamma) sqrt(K_i) sum
-//!    sqrt(K_j) |a^_j|. In the energy norm J M^-1 r is at most sqrt(G_rr) sum |r_i| sqrt((M^-1)_ii). J and sigma add eta
-//!    times the magnitude of their terms ([`Magnitude`]), and dh_i is eta times that of h_i: no result takes more
-//!    operations one on top of the other than an entry of M.
-//! 7. (M^-1)_ii is itself computed by a triangular solve, so it may be short by a factor (1 - gamma sqrt(nv tau))^2.
+//! 1. *Kinematics.* Cosines and sines have errors of at most 4 u (see [`Ball`](crate::scalar::Ball)), and each product
+//!    of rotations adds 3 u. After D joints the error of a rotation is at most 7 D u, and that of an arm is 7 D u times
+//!    its length.
+//! 2. *M and J.* Each entry is a sum of products of masses and arms over at most D levels and nb bodies. Let K_i be the
+//!    inertia that column i would move if all arms were stretched: the entry with every term replaced by its magnitude.
+//!    By Cauchy and Schwarz, |dM_ij| <= eta sqrt(K_i K_j) and |dJ_ri| <= eta A_ri, where A_ri is the stretched arm from
+//!    joint i to the contact and eta = [`ENTRY`] (D + nb) u.
+//! 3. *M = L^T D L* is the factorization of a matrix that differs from M by a further gamma sqrt(K_i K_j), with gamma =
+//!    2 (nv + 2) u (Higham 2002, theorem 10.3). In the energy norm both errors of M together are eps = nv (eta + gamma)
+//!    tau, where tau = sum K_i (M^-1)_ii bounds |S M^-1 S| for S = diag(sqrt K_i). So |dG_rs| <= eps / (1 - eps)
+//!    sqrt(G_rr G_ss).
+//! 4. *J*: in the energy norm a row has the length sqrt(G_rr). The error of J adds eta a_r with a_r = sum A_ri
+//!    sqrt((M^-1)_ii), and the triangular solves add gamma sqrt(nv tau) sqrt(G_rr) (Higham 2002, theorem 8.5).
+//! 5. A *mimic joint* rotates by up to three angles instead of one, and its displacement has further roundings: it
+//!    counts as three levels. Its motion is multiplied by its rate. If a column moves several joints b, the triangle
+//!    inequality of the energy norm gives sqrt(K_i) = sum |rate_b| sqrt(K_b), and A_ri is a sum of the same form.
+//! 6. *Accelerations* a = M^-1 h, with loads h known to within dh. The computed a^ solves a system with a matrix that
+//!    differs by at most 3 gamma sqrt(K_i K_j) (Higham 2002, theorem 10.4). So M (a^ - a) = r exactly, with |r_i| <=
+//!    dh_i + (eta + 3 gamma) sqrt(K_i) sum sqrt(K_j) |a^_j|, and |J M^-1 r| <= sqrt(G_rr) sum |r_i| sqrt((M^-1)_ii) by
+//!    the energy norm. J and sigma add eta times the magnitude of their terms ([`Magnitude`]). dh_i is eta times the
+//!    magnitude of h_i, because no result takes more successive operations than an entry of M.
+//! 7. (M^-1)_ii is itself computed by a triangular solve, so it may be too small by a factor (1 - gamma sqrt(nv
+//!    tau))^2.
 //!
-//! Everything is doubled for the terms of second order, which are small because the bound counts as unknown beyond a
-//! tenth. The constants are generous: a sign that falls within them is settled by balls.
+//! All bounds are doubled to cover the terms of second order. These are small, because a bound above one tenth counts
+//! as unknown. The constants are generous. If a bound does not decide a sign, balls do.
 
 use super::balance::Balance;
 use super::jacobian::ContactPoint;
@@ -36,37 +39,38 @@ use crate::dynamics::plan::{Configuration, JointMotion, Plan};
 use crate::planar::{Pair, Rotation, Vector};
 use crate::scalar::{Magnitude, UNDERFLOW};
 
-/// Roundings in an entry of M or J, per level and body: twice those of step 2.
+/// Roundings in an entry of M or J, per level and body. This is twice the number of step 2.
 const ENTRY: f64 = 96.0;
-/// What moves one end of a loop against the other, with every arm stretched.
+/// Bounds on the motion of one end of a loop relative to the other, with every arm stretched.
 #[derive(Debug, Clone, Default)]
 pub struct Reach {
-    /// Speed for a unit rate of each column \[m/s\].
+    /// Largest speed for a unit rate of each column \[m/s\].
     pub columns: Vec<f64>,
-    /// The shortest arm by which a joint turns it \[m\]; infinite if none does.
+    /// Shortest arm about which a joint rotates the end \[m\]; infinite if no joint does.
     pub shortest: f64,
     /// The longest arm \[m\].
     pub longest: f64,
 }
 
-/// Error bounds of one state, in memory that is reused.
+/// Error bounds of one state. The memory is reused.
 #[derive(Debug, Clone, Default)]
 pub struct RoundingBounds {
-    /// Of an entry G_ij, relative to sqrt(G_ii G_jj); infinite where nothing is known.
+    /// Bound of an entry G_ij relative to sqrt(G_ii G_jj); infinite if unknown.
     pub delassus: f64,
-    /// Of c, per contact \[m/s\].
+    /// Bound of c, per contact \[m/s\].
     pub velocity: Vec<Pair<f64>>,
-    /// Of the base's velocity, if a stance gives it \[m/s\]; else zero.
+    /// Bound of the base velocity \[m/s\] if it is computed from a stance; else zero.
     pub base: f64,
-    /// What part of the bounds of G and of c the errors are likely to reach; see `LIKELY`.
+    /// Fractions of the bounds of G and of c that the errors are likely to reach; see `LIKELY`.
     pub likely: [f64; 2],
     bodies: Vec<Stretched>,
-    /// How many roundings an entry of M or J may have, against its stretched magnitude.
+    /// Largest number of roundings in an entry of M or J, relative to its stretched magnitude.
     roundings: f64,
     /// sqrt(K_i) per column.
     roots: Vec<f64>,
     contacts: Vec<Arm>,
-    /// The speed of each contact, and of the foot of a stance, if no two terms of J v canceled each other \[m/s\].
+    /// Upper bound on the sum of the magnitudes of the terms of J v per contact, including those of a stance's foot
+    /// \[m/s\].
     terms: Vec<f64>,
     /// sqrt((M^-1)_ii) per column.
     ease: Vec<f64>,
@@ -75,27 +79,29 @@ pub struct RoundingBounds {
 }
 
 impl RoundingBounds {
-    /// Takes the lengths of a configuration and of its contacts; the others read them. All have the same plan.
+    /// Computes the bounds of a configuration and of its contacts, which the other methods use. Every call on one value
+    /// must have the same plan.
     pub fn stretch(&mut self, plan: &Plan, configuration: &Configuration, contacts: impl Iterator<Item = Arm>) {
         self.contacts.clear();
         self.contacts.extend(contacts);
-        // Turns change no length.
+        // Rotations change no length.
         if !self.bodies.is_empty() && !plan.has_slides {
             return;
         }
         stretch(plan, configuration, &mut self.bodies);
         self.measure_moments(plan);
         let depth = self.bodies.iter().map(|body| body.depth).max().unwrap_or(0) + 1;
-        // Where columns are shared, an entry may have a term for every body and every level.
+        // If columns are shared, an entry may have one term for every pair of a body and a level.
         let terms = if plan.has_mimics { (depth + 1) * (self.bodies.len() + 1) } else { depth + self.bodies.len() };
         self.roundings = ENTRY * terms as f64;
     }
 
-    /// Bounds c = J v. The foot of a `stance` gives the base's velocity; the contacts that `rests` names are at rest.
+    /// Bounds c = J v. With a `stance`, that foot determines the base velocity. Contacts for which `rests` is true are
+    /// exactly at rest.
     pub fn velocities(&mut self, plan: &Plan, velocity: &[f64], stance: Option<Arm>, rests: impl Fn(usize) -> bool) {
         let roundings = self.roundings;
         let eta = roundings * UNIT_ROUNDOFF;
-        // The bound of G counts every column, and doubles twice.
+        // The bound of G counts every column, and it is doubled twice.
         self.likely = [LIKELY / (4.0 * plan.columns().max(1) as f64 * roundings), LIKELY / roundings];
         let base = stance.map_or(0.0, |foot| 2.0 * self.speed(plan, foot, velocity));
         self.base = eta * base;
@@ -108,14 +114,14 @@ impl RoundingBounds {
         self.terms = terms;
     }
 
-    /// What the terms of the speed of a contact and twice those of a stance's foot add up to \[m/s\].
+    /// Returns the sum of the magnitudes of the terms of a contact's speed, plus twice that of a stance's foot \[m/s\].
     pub fn terms(&self, contact: usize) -> f64 {
         self.terms[contact]
     }
 
-    /// Bounds an `acceleration` a by coordinate without contact forces, and c' = J a + sigma of the contacts, after
-    /// [`RoundingBounds::delassus`]; infinite without it. Of the loads h by column and of c' the magnitudes are given; h
-    /// has `more` terms than a robot alone.
+    /// Bounds an `acceleration` a by coordinate without contact forces, and c' = J a + sigma of the contacts. `loads`
+    /// and `whole` are the magnitudes of h by column and of c'; h has `more` terms than that of a robot alone. The
+    /// bounds are infinite unless [`RoundingBounds::delassus`] has bounded G for this state.
     pub fn accelerations(
         &self,
         plan: &Plan,
@@ -134,7 +140,7 @@ impl RoundingBounds {
         });
         let rows = 2 * whole.len();
         let is_known = self.delassus.is_finite() && self.ease.len() == plan.columns();
-        // What is not a number bounds nothing.
+        // A bound that is not finite bounds nothing.
         let doubled = |bound: f64| if is_known && bound.is_finite() { 2.0 * bound } else { f64::INFINITY };
         let of_row = |row: usize, Magnitude(terms): Magnitude| {
             doubled(workspace.delassus[row * rows + row].max(0.0).sqrt() * energy + eta * terms)
@@ -147,7 +153,7 @@ impl RoundingBounds {
         (by_coordinate, (0..whole.len()).map(of_contact).collect())
     }
 
-    /// The poses of a plan with every arm stretched, for computations of magnitudes.
+    /// Sets the poses of `workspace` with every arm stretched, for computations of magnitudes.
     pub fn stretched_poses(&self, plan: &Plan<Magnitude>, workspace: &mut Workspace<Magnitude>) {
         let turned = Rotation { cos: Magnitude(1.0), sin: Magnitude(1.0) };
         let Workspace { rotation, arm, direction, .. } = workspace;
@@ -162,7 +168,7 @@ impl RoundingBounds {
         }));
     }
 
-    /// The contacts as points with their arms stretched.
+    /// Returns the contacts as points with their arms stretched.
     pub fn stretched_points(&self) -> impl Iterator<Item = ContactPoint<Magnitude>> {
         let turned = Rotation { cos: Magnitude(1.0), sin: Magnitude(1.0) };
         self.contacts.iter().map(move |&Arm { body, length }| {
@@ -171,19 +177,20 @@ impl RoundingBounds {
         })
     }
 
-    /// The speed that a contact would have if no two terms of J v canceled each other \[m/s\].
+    /// Returns the sum of the magnitudes of the terms of a contact's speed J v \[m/s\].
     pub fn speed(&self, plan: &Plan, contact: Arm, velocity: &[f64]) -> f64 {
         let mut sum = 0.0;
         self.walk(plan, contact, |_, coordinate, arm| {
             if velocity[coordinate] != 0.0 {
-                // A product may underflow, and is off by that at most.
+                // A product that underflows has at most this error.
                 sum += arm * velocity[coordinate].abs() + UNDERFLOW;
             }
         });
         sum
     }
 
-    /// What moves `end` against a point of the body `other`: joints on its way to the root that are not on the other's.
+    /// Returns the motion of `end` relative to body `other`: its columns are those of joints on the path from `end` to
+    /// the root that are not on the path from `other`.
     pub fn reach(&self, plan: &Plan, end: Arm, other: usize) -> Reach {
         let mut reach = Reach { columns: vec![0.0; plan.columns()], shortest: f64::INFINITY, longest: end.length };
         for (index, body) in plan.way_beyond(end.body, other) {
@@ -202,7 +209,7 @@ impl RoundingBounds {
         reach
     }
 
-    /// Takes the moments K of the stretched bodies.
+    /// Computes sqrt(K) of each column from the stretched bodies.
     fn measure_moments(&mut self, plan: &Plan) {
         self.roots.clear();
         self.roots.resize(plan.columns(), 0.0);
@@ -221,7 +228,7 @@ impl RoundingBounds {
         }
     }
 
-    /// Bounds G, from the factorized mass matrix and the Delassus matrix.
+    /// Bounds G. Requires the factorized mass matrix and the Delassus matrix.
     pub fn delassus(&mut self, plan: &Plan, workspace: &Workspace) {
         let nv = plan.columns();
         let (eta, gamma) = (self.roundings * UNIT_ROUNDOFF, 2.0 * (nv + 2) as f64 * UNIT_ROUNDOFF);
@@ -245,7 +252,7 @@ impl RoundingBounds {
             for row in [2 * index, 2 * index + 1] {
                 let own = workspace.delassus[row * rows + row];
                 if length > 0.0 {
-                    // A row of G that vanishes although its contact can move is known to no relative error.
+                    // If a row of G vanishes although its contact can move, there is no relative error bound.
                     jacobian = jacobian.max(eta * length / (short * own.sqrt()));
                 }
             }
@@ -255,19 +262,19 @@ impl RoundingBounds {
             if sum < SMALL { 2.0 * (2.0 * eps + 2.0 * jacobian + 4.0 * solve + 2.0 * gamma) } else { f64::INFINITY };
     }
 
-    /// Bounds G by articulated bodies, whose contacts are the `points`.
+    /// Bounds G computed by articulated bodies. `points` are its contacts.
     pub fn articulated_delassus(&mut self, plan: &Plan, points: &[ContactPoint], workspace: &Workspace) {
         let [bound, likely] = self.balance.errors(plan, &self.bodies, (points, &self.contacts), workspace);
         self.delassus = bound;
-        // They bound no accelerations.
+        // This bound does not extend to accelerations.
         self.ease.clear();
         if bound > 0.0 && bound.is_finite() {
             self.likely[0] = likely / bound;
         }
     }
 
-    /// Walks from a contact to the root and reports each joint's column, coordinate and stretched arm (1 of a slide),
-    /// times its rate if it follows another.
+    /// Walks from a contact to the root. Reports each joint's column, coordinate, and stretched arm (1 for a prismatic
+    /// joint) times the multiplier of a mimic joint.
     fn walk(&self, plan: &Plan, contact: Arm, mut visit: impl FnMut(Option<usize>, usize, f64)) {
         let mut arm = contact.length;
         for (index, body) in plan.way_to_root(contact.body) {
@@ -289,9 +296,9 @@ impl RoundingBounds {
     }
 }
 
-/// (M^-1)_ii of one column: |D^-1/2 L^-T e_i|^2; `y` has an entry for each column and is scratch.
+/// Returns (M^-1)_ii of one column as |D^-1/2 L^-T e_i|^2. `y` is scratch with one entry per column.
 fn squared_ease(plan: &Plan, factor: &LtlFactor, column: usize, y: &mut [f64]) -> f64 {
-    // Entries off the branch of the column are zero; those of `y` are stale, and not read.
+    // Entries outside of the branch of the column are zero. In `y` they are stale, and are not read.
     let (y, row) = (&mut y[..column], factor.row(column));
     plan.for_ancestors(column, |j| y[j] = -row[j]);
     let mut sum = 1.0 / factor.pivot(column);

@@ -1,12 +1,12 @@
 //! The joint-space inertia matrix M by composite rigid bodies, and its factor.
 //!
 //! ```text
-//!     I^c_i = I_i + sum of children's I^c        M_ij = S_i^T I^c_j S_j  for i on the way from j to the root
+//!     I^c_i = I_i + sum of children's I^c        M_ij = S_i^T I^c_j S_j  for i on the path from j to the root
 //! ```
 //!
-//! Source: Featherstone 2008, section 6.2. Inertias are kept about each body's own origin in world axes, so that moving
-//! one to the parent is a shift without a turn. S is the motion for a unit rate of the column, and where a column moves
-//! several joints their entries add up (see [`plan`](crate::dynamics::plan)). Cost: O(nb depth).
+//! Source: Featherstone 2008, section 6.2. Each inertia refers to the body's own origin in world axes, so that moving
+//! it to the parent is a shift without a rotation. S is the motion for a unit rate of the column. If a column moves
+//! several joints, their entries add up (see [`plan`](crate::dynamics::plan)). Cost: O(nb depth).
 
 use super::articulated_inertia::Wrench;
 use super::workspace::Workspace;
@@ -14,7 +14,7 @@ use crate::dynamics::plan::{JointMotion, Plan};
 use crate::planar::Vector;
 use crate::scalar::Real;
 
-/// Computes the inertia of every body with all that it carries from the kinematics.
+/// Computes the composite inertia of every body, which includes all bodies that it carries, from the kinematics.
 fn composite_inertias<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
     let Workspace { rotation, arm, composite, .. } = workspace;
     composite.clear();
@@ -26,7 +26,7 @@ fn composite_inertias<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
     }
 }
 
-/// Computes the diagonal of M alone, of a plan without mimic joints. Cost: O(nb).
+/// Computes the diagonal of M without the rest. The plan must have no mimic joints. Cost: O(nb).
 pub fn mass_diagonal<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
     composite_inertias(plan, workspace);
     let Workspace { direction, composite, diagonal, .. } = workspace;
@@ -46,7 +46,7 @@ pub fn mass_diagonal<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
     }
 }
 
-/// Computes M (nv x nv, columns of the plan; kg, kg m, kg m^2) from the kinematics.
+/// Computes M (nv x nv, columns of the plan; kg, kg m, kg m^2) from the results of [`kinematics`](super::kinematics()).
 pub fn mass_matrix<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
     composite_inertias(plan, workspace);
     let nv = plan.columns();
@@ -74,7 +74,7 @@ pub fn mass_matrix<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
             }
             JointMotion::Fixed => continue,
         };
-        // `momentum` is that of a unit rate of this joint; the walk to the root projects it on every joint below.
+        // `momentum` belongs to a unit rate of this joint. The walk to the root projects it on every joint on the path.
         let along = |at: usize, momentum: Wrench<T>| match plan.bodies[at].motion {
             JointMotion::Root | JointMotion::Fixed => momentum.moment,
             JointMotion::Revolute { rate, .. } => rate * momentum.moment,
@@ -89,7 +89,7 @@ pub fn mass_matrix<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
                 let part = along(at, momentum);
                 plan.bring(&mut mass_matrix[column.max(other) * nv + column.min(other)], part);
                 if other == column {
-                    // Both joints move with one coordinate: each meets the other's momentum.
+                    // Both joints share this column, so the product appears twice in the diagonal entry.
                     plan.bring(&mut mass_matrix[column * nv + column], part);
                 }
             }
@@ -101,7 +101,7 @@ pub fn mass_matrix<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
     }
 }
 
-/// Factorizes the mass matrix. Callers check for a vanishing pivot.
+/// Factorizes the mass matrix. Callers check whether a pivot vanishes.
 pub fn factorize<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
     workspace.factor.factorize(plan, &workspace.mass_matrix);
 }

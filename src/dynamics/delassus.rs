@@ -1,11 +1,11 @@
-//! The Delassus matrix G = J M^-1 J^T, and what impulses do to the velocity.
+//! The Delassus matrix G = J M^-1 J^T, and the velocity change caused by impulses.
 //!
 //! ```text
 //!     M = L^T D L,   Y = L^-T J^T,   G = Y^T D^-1 Y,   dv = M^-1 J^T p = L^-1 (D^-1 Y p)
 //! ```
 //!
-//! A column of Y is zero off the branch of its contact's body. Source: Featherstone 2008, section 6.5; Pinocchio's
-//! `delassus` for the split. Cost: O(n depth^2 + n^2 nv).
+//! A column of Y is nonzero only on the branch of its contact's body. Source: Featherstone 2008, section 6.5; the split
+//! into Y and D^-1 Y follows Pinocchio's `delassus`. Cost: O(n depth^2 + n^2 nv).
 
 use super::jacobian::walk;
 use super::workspace::Workspace;
@@ -32,7 +32,8 @@ pub fn delassus<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
     workspace.branch = branch;
 }
 
-/// G = Y^T D^-1 Y of n contacts, from Y and D^-1 Y; `shared` gives the columns in which two contacts have entries.
+/// Computes G = Y^T D^-1 Y of n contacts from Y and D^-1 Y. `shared` returns the columns in which both contacts have
+/// entries.
 pub(super) fn from_half<T: Real, I: Iterator<Item = usize>>(
     contacts: usize,
     workspace: &mut Workspace<T>,
@@ -42,7 +43,7 @@ pub(super) fn from_half<T: Real, I: Iterator<Item = usize>>(
     let rows = 2 * contacts;
     delassus.clear();
     delassus.resize(rows * rows, T::zero());
-    // If every joint is braked there are no columns.
+    // There are no columns if every joint is braked.
     let nv = half.len() / contacts.max(1);
     for a in 0..contacts {
         let y = &half[a * nv..][..nv];
@@ -66,15 +67,15 @@ pub(super) fn from_half<T: Real, I: Iterator<Item = usize>>(
 /// An impulse at a point of a body.
 #[derive(Debug, Clone, Copy)]
 pub struct PointImpulse<T = f64> {
-    /// An index into the plan's bodies.
+    /// The body, an index into the plan's bodies.
     pub body: usize,
-    /// The point from the body's origin, in the world's axes \[m\].
+    /// Vector from the body's origin to the point, in the world's axes \[m\].
     pub arm: Vector<T>,
-    /// In the world's axes \[N s\].
+    /// The impulse in the world's axes \[N s\].
     pub vector: Vector<T>,
 }
 
-/// Adds to `velocity` (dq/dt by coordinate) what an impulse p does to it: M^-1 J^T p; `column` is scratch.
+/// Adds the velocity change M^-1 J^T p of an impulse p to `velocity` (dq/dt by coordinate). `column` is scratch.
 pub fn add_impulse<T: Real>(
     plan: &Plan<T>,
     workspace: &Workspace<T>,

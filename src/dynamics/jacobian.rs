@@ -1,37 +1,38 @@
 //! Contact Jacobian at the material points, the contact velocities c = J v, and the kinetic energy.
 //!
-//! A column is the velocity of the contact point for a unit rate of one joint: turned(r) of a revolute joint at
-//! distance r, the direction of a prismatic one. r is summed from the contact inward, so that no large positions are
-//! subtracted. Source: Featherstone 2008, section 2.9 and the paper, section 2. Cost: O(n depth).
+//! A column is the velocity of the contact point for a unit rate of one joint: turned(r) (r rotated by +90 degrees) for
+//! a revolute joint with the arm r from the joint to the point, or the axis of a prismatic joint. r is summed from the
+//! contact toward the root, which avoids differences of large positions. Source: Featherstone 2008, section 2.9, and
+//! the paper, section 2. Cost: O(n depth).
 
 use super::workspace::Workspace;
 use crate::dynamics::plan::{JointMotion, Plan};
 use crate::planar::{Rotation, Vector};
 use crate::scalar::Real;
 
-/// A body's rate of turn \[rad/s\], and the velocity of its origin in the world's axes \[m/s\].
+/// A body's angular velocity \[rad/s\], and the velocity of its origin in the world's axes \[m/s\].
 pub type Motion<T> = (T, Vector<T>);
 
-/// A material point in touch with the ground.
+/// A material point of a body that touches the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactPoint<T = f64> {
-    /// The body, an index into the plan's bodies (those of [`Robot::bodies`](crate::Robot)).
+    /// The body, an index into the plan's bodies, which are those of [`Robot::bodies`](crate::Robot).
     pub body: usize,
-    /// The point, or the center of the circle, in the body's frame \[m\].
+    /// The point if `radius` is zero, else the center of the circle, in the body's frame \[m\].
     pub center: Vector<T>,
-    /// Radius of the circle \[m\]: the point is at the center - radius * normal.
+    /// Radius of the circle \[m\]. The contact point is at center - radius * normal.
     pub radius: T,
-    /// Turn from the world's axes to the ground's (tangent, normal) at the contact.
+    /// Rotation from the world's axes to the tangent and normal of the ground at the contact.
     pub ground: Rotation<T>,
 }
 
 impl<T: Real> ContactPoint<T> {
-    /// The ground's unit tangent and normal in the world's axes.
+    /// Returns the ground's unit tangent and normal in the world's axes.
     pub fn axes(&self) -> [Vector<T>; 2] {
         Vector::axes().map(|axis| self.ground.apply(axis))
     }
 
-    /// The point from its body's origin, in the world's axes \[m\].
+    /// Returns the vector from the body's origin to the contact point, in the world's axes \[m\].
     pub fn arm(&self, workspace: &Workspace<T>) -> Vector<T> {
         let [_, normal] = self.axes();
         workspace.rotation[self.body].apply(self.center) - normal * self.radius
@@ -40,8 +41,8 @@ impl<T: Real> ContactPoint<T> {
 
 /// Computes J (n x nv, [tangential, normal] per contact and column) and c (n, \[m/s\]) for `velocity`, dq/dt.
 ///
-/// With a `stance` (an index into `contacts`) that contact is exactly at rest, and so are further contacts of a body
-/// that does not turn: base velocities are taken as the ones that make it so.
+/// `stance` is the index of a contact that is exactly at rest: its velocity is set to zero. Other contacts of its body
+/// then move by the body's rotation alone. `velocity` must contain the base velocity that belongs to this stance.
 pub fn contact_jacobian<T: Real>(
     plan: &Plan<T>,
     contacts: &[ContactPoint<T>],
@@ -84,7 +85,7 @@ pub fn contact_jacobian<T: Real>(
     workspace.contact_velocity = speeds;
 }
 
-/// Velocity of the point at `arm` from the origin of `body`, in the world's axes \[m/s\].
+/// Returns the velocity of the point at `arm` from the origin of `body`, in the world's axes \[m/s\].
 pub fn point_velocity<T: Real>(
     plan: &Plan<T>,
     body: usize,
@@ -95,8 +96,8 @@ pub fn point_velocity<T: Real>(
     walk(plan, body, arm, velocity, workspace, |_, _| {})
 }
 
-/// Walks from a point to the root: reports what every joint on the way adds to the velocity of the point for a unit
-/// rate of its column, and returns the velocity for all rates, braked joints' included.
+/// Walks from a point to the root. Reports the velocity of the point for a unit rate of each column on the path, joint
+/// by joint. Returns the velocity for all rates in `velocity`, including those of braked joints.
 pub(super) fn walk<T: Real>(
     plan: &Plan<T>,
     body: usize,
@@ -131,7 +132,7 @@ pub(super) fn walk<T: Real>(
     speed
 }
 
-/// Rate at which a body turns about the plane's normal \[rad/s\].
+/// Returns the angular velocity of a body about the plane's normal \[rad/s\].
 pub(super) fn spin<T: Real>(plan: &Plan<T>, body: usize, velocity: &[T]) -> T {
     let base = if plan.floating { velocity[2] } else { T::zero() };
     plan.way_to_root(body).fold(base, |rate, (_, body)| match body.motion {
@@ -140,13 +141,14 @@ pub(super) fn spin<T: Real>(plan: &Plan<T>, body: usize, velocity: &[T]) -> T {
     })
 }
 
-/// Kinetic energy \[J\] for `velocity` (dq/dt, braked joints included): body by body, independent of the mass matrix.
+/// Computes the kinetic energy \[J\] for `velocity` (dq/dt, including braked joints), as a sum over bodies without M:
 ///
 /// ```text
 ///     T = sum of 1/2 (m u.u + 2 omega u.turned(h) + I omega^2) + 1/2 rotor rate^2
 /// ```
 ///
-/// with u the velocity of a body's origin, h and I its first and second moments about it; `motions` is scratch.
+/// where u is the velocity of a body's origin, and h and I are its first and second moments about it. `motions` is
+/// scratch.
 pub fn kinetic_energy<T: Real>(
     plan: &Plan<T>,
     velocity: &[T],

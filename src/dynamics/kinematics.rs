@@ -1,4 +1,4 @@
-//! Where the bodies are: R_i = R_p R(q_i), and the arms from origin to origin.
+//! Poses of the bodies: rotations R_i = R_p R(q_i), and the arm from the parent's origin to each body's origin.
 //!
 //! Source: Featherstone 2008, section 4.1, in world axes. Cost: O(nb).
 
@@ -7,7 +7,7 @@ use crate::dynamics::plan::{Configuration, JointMotion, Plan};
 use crate::planar::{Rotation, Vector};
 use crate::scalar::Real;
 
-/// Computes every body's rotation and arm. Only differences of position enter, so the base's x and z are not read.
+/// Computes the rotation and arm of every body. The base's x and z are not read: only differences of position matter.
 pub fn kinematics<T: Real>(plan: &Plan<T>, configuration: &Configuration<T>, workspace: &mut Workspace<T>) {
     let Workspace { rotation, arm, direction, .. } = workspace;
     rotation.clear();

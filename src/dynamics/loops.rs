@@ -1,18 +1,19 @@
-//! Loops, pairs of points that stay together, eliminated before the contact problem; and braked joints with a column.
+//! Loops (pairs of points that stay together), eliminated before the contact problem, and braked joints that have a
+//! column.
 //!
 //! ```text
 //!     K v = 0,   K = J_a - J_b            M (v+ - v-) = J^T L + K^T l            W = K M^-1 K^T
 //!     l = -W^-1 K M^-1 J^T L              G' = G - X^T W^-1 X,  X = K M^-1 J^T
 //! ```
 //!
-//! W is never formed. In the inner product a.b = a^T D^-1 b of the columns Y = L^-T J^T (see
-//! [`delassus`](super::delassus)) the rows of K are made orthogonal to each other one by one (modified Gram-Schmidt), K
-//! = C Z with C unit lower triangular, and every contact row loses its part along Z. So G' = Y'^T D^-1 Y' is
-//! semidefinite by construction, and no difference of large matrices is taken. Rows that follow from others are found
-//! by pivoting, in f64 alone: every other number takes the same rows in the same order. A joint that keeps its rate
-//! although it has a column (see [`Reductions::held`](crate::reductions::Reductions)) brings a row of the identity,
-//! before all others. Source: Featherstone 2008, sections 8.1 and 8.5 (loop joints of two constraints each, KKT form).
-//! Cost: O(m nv depth + (m^2 + m n) nv) for m loops.
+//! W is never formed. The rows of K become columns of L^-T K^T (see [`delassus`](super::delassus)) and are
+//! orthogonalized one by one (modified Gram-Schmidt) in the inner product a.b = a^T D^-1 b. This gives K = C Z with C
+//! unit lower triangular. Every contact row then loses its component along Z. So G' = Y'^T D^-1 Y' is semidefinite by
+//! construction, and no difference of large matrices is formed. Pivoting in f64 finds the rows that depend on others;
+//! all other number types use the same rows in the same order. A joint that keeps its rate although it has a column
+//! (see [`Reductions::held`](crate::reductions::Reductions)) adds a row of the identity, ahead of the loops. Source:
+//! Featherstone 2008, sections 8.1 and 8.5 (loop joints of two constraints each, KKT form). Cost: O(m nv depth + (m^2 +
+//! m n) nv) for m loops.
 
 use super::bias::point_drift;
 use super::bounds::Reach;
@@ -24,42 +25,43 @@ use crate::planar::Vector;
 use crate::scalar::{Ordered, Real, Sign, dot, subtract};
 use std::ops::Add;
 
-/// Two material points that stay together; impulses act on `a` and, reversed, on `b`.
+/// Two material points a and b that stay together. The impulse of the loop acts on a, and its opposite on b.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Loop<T = f64> {
     /// The bodies of a and b.
     pub bodies: [usize; 2],
-    /// The points in their bodies' frames \[m\].
+    /// The points a and b in the frames of their bodies \[m\].
     pub points: [Vector<T>; 2],
 }
 
-/// What impulses keep as it is.
+/// The constraints that impulses must respect.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Constraints<'a> {
-    /// Coordinates with a column that keep their rates.
+    /// Coordinates that have a column and keep their rates.
     pub kept: &'a [usize],
-    /// Rows of K that count, 2 loop + axis.
+    /// The independent rows of K, numbered 2 loop + axis.
     pub rows: &'a [usize],
 }
 
-/// What [`close`] closes.
+/// The kind of vector that [`close`] corrects.
 #[derive(Debug, Clone, Copy)]
 pub enum Closed<'a, T> {
-    /// The velocity before the impact; a foot of the constraints that rests before it rests after it.
+    /// The velocity before the impact. A foot at rest that the constraints contain stays at rest in it.
     Velocity,
-    /// What impulses change in it.
+    /// A change of velocity caused by impulses.
     Change,
-    /// The acceleration, with kappa of each loop: what of it is there while no coordinate accelerates \[m/s^2\].
+    /// The acceleration. kappa of each loop is the relative acceleration of its points while no coordinate accelerates
+    /// \[m/s^2\].
     Acceleration(&'a [Vector<T>]),
 }
 
 impl<T: Real> Loop<T> {
-    /// Both points from their bodies' origins, in the world's axes \[m\].
+    /// Returns the vectors from the bodies' origins to both points, in the world's axes \[m\].
     fn arms(&self, workspace: &Workspace<T>) -> [Vector<T>; 2] {
         [0, 1].map(|end| workspace.rotation[self.bodies[end]].apply(self.points[end]))
     }
 
-    /// From b to a: how far the pose leaves the loop open \[m\].
+    /// Returns the vector from b to a, which is the gap that the pose leaves in the loop \[m\].
     pub fn gap(&self, plan: &Plan<T>, workspace: &Workspace<T>) -> Vector<T> {
         let arms_to_points = self.arms(workspace);
         let [a, b] = [0, 1].map(|end| {
@@ -70,27 +72,27 @@ impl<T: Real> Loop<T> {
         a - b
     }
 
-    /// The velocities of a and b, braked joints' rates included \[m/s\].
+    /// Returns the velocities of a and b, including the rates of braked joints \[m/s\].
     pub fn velocities(&self, plan: &Plan<T>, velocity: &[T], workspace: &Workspace<T>) -> [Vector<T>; 2] {
         let arms = self.arms(workspace);
         [0, 1].map(|end| point_velocity(plan, self.bodies[end], arms[end], velocity, workspace))
     }
 
-    /// The velocity of a against b, that is K v \[m/s\].
+    /// Returns the velocity of a relative to b, which is K v \[m/s\].
     pub fn opening(&self, plan: &Plan<T>, velocity: &[T], workspace: &Workspace<T>) -> Vector<T> {
         let [a, b] = self.velocities(plan, velocity, workspace);
         a - b
     }
 
-    /// kappa: the acceleration of a against b while no coordinate accelerates, after [`bias`](super::bias())
-    /// \[m/s^2\].
+    /// Returns kappa, the acceleration of a relative to b while no coordinate accelerates \[m/s^2\]. Requires the
+    /// results of [`bias`](super::bias()).
     pub fn drift(&self, workspace: &Workspace<T>) -> Vector<T> {
         let arms = self.arms(workspace);
         let [a, b] = [0, 1].map(|end| point_drift(self.bodies[end], arms[end], workspace));
         a - b
     }
 
-    /// A row of K (nv).
+    /// Returns one row of K (nv).
     fn row(&self, plan: &Plan<T>, axis: usize, workspace: &Workspace<T>) -> Vec<T> {
         let (arms, still) = (self.arms(workspace), still(plan));
         let mut row = vec![T::zero(); plan.columns()];
@@ -104,14 +106,14 @@ impl<T: Real> Loop<T> {
     }
 }
 
-/// Chooses the rows of K that do not follow from others, the most independent first, each with its share: what is left
-/// of the row, after its part along those before it is taken away, as a part of its squared reach. All others have no
-/// more than `tolerance` left.
+/// Chooses the independent rows of K, the most independent first, and returns each with its share. The share is the
+/// squared length of the row without its component along the rows chosen before it, divided by the square of its reach.
+/// The other rows have a share of at most `tolerance`.
 ///
-/// `reaches` are those of each loop's ends. They scale a column by the greatest motion that it could give to an end of a
-/// loop, so that the choice is free of units, and an entry that is zero except for the rounding of the pose stays
-/// small. What moves both ends alike counts nothing, and neither does a `kept` column. Masses do not enter: what a loop
-/// holds is a matter of geometry, and a light link would hide it.
+/// `reaches` holds the reach of both ends of each loop. Each column is scaled by the greatest motion that it could give
+/// to an end of any loop. This makes the choice independent of units, and entries that are zero up to the rounding of
+/// the pose stay small. Motions that both ends share do not count, nor do `kept` columns. Masses do not count either:
+/// what a loop holds depends on the geometry alone, and a light link would hide it.
 pub fn independent_rows(
     plan: &Plan,
     loops: &[Loop],
@@ -138,7 +140,7 @@ pub fn independent_rows(
         .collect();
     let mut chosen = Vec::new();
     loop {
-        // Of equals the first, so that the choice does not depend on how a maximum is sought.
+        // Of equal shares the first row is taken, so that the result is deterministic.
         let share = |reach: f64, left: &[f64]| if reach > 0.0 { square(left) / reach } else { 0.0 };
         let shares = rest.iter().enumerate().map(|(place, (_, reach, left))| (share(*reach, left), place));
         let best = shares.reduce(|best, next| if next.0 > best.0 { next } else { best });
@@ -151,7 +153,8 @@ pub fn independent_rows(
     }
 }
 
-/// Whether the loops are closed exactly, and all rows of K but those of the `constraints` follow from these exactly.
+/// Returns whether the loops are closed exactly, and all rows of K that are not in `constraints` depend exactly on
+/// those.
 pub fn follow_exactly<T: Ordered>(
     plan: &Plan<T>,
     loops: &[Loop<T>],
@@ -181,8 +184,8 @@ pub fn follow_exactly<T: Ordered>(
         && others.all(|own| rest(&basis, row(own)).iter().all(is_zero))
 }
 
-/// Makes the rows of these constraints orthogonal, and behind them those of a `foot` that is to stay at rest where
-/// velocities are closed, from the factorized mass matrix.
+/// Orthogonalizes the rows of the constraints. The rows of a `foot` come last; [`close`] keeps it at rest in the
+/// velocity before the impact. Requires the factorized mass matrix.
 pub fn orthogonalize<T: Real>(
     plan: &Plan<T>,
     loops: &[Loop<T>],
@@ -229,7 +232,7 @@ pub fn orthogonalize<T: Real>(
     workspace.loops = prepared;
 }
 
-/// Takes from Y, D^-1 Y and G what the constraints do not let move: G becomes G'.
+/// Removes from Y, D^-1 Y and G the motions that the constraints do not allow: G becomes G'.
 pub fn eliminate_loops<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
     let nv = plan.columns();
     let Workspace { factor, half, half_by_d, loops, .. } = &mut *workspace;
@@ -249,9 +252,9 @@ pub fn eliminate_loops<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
     from_half(workspace.contact_velocity.len(), workspace, |_, _| 0..nv);
 }
 
-/// Gives `velocity` (dq/dt by coordinate) the impulses of the loops that close them: v := v - M^-1 K^T W^-1 K v, or as
-/// `closed` says a change of it or an acceleration. Gives the amplitude of each constraint for [`loop_impulse`] and
-/// [`spent_energy`].
+/// Corrects `velocity` (dq/dt by coordinate) by the impulses that close the loops: v := v - M^-1 K^T W^-1 K v. `closed`
+/// tells if it is a velocity, a change of velocity or an acceleration. Returns the amplitude of each constraint, for
+/// [`loop_impulse`] and [`spent_energy`].
 pub fn close<T: Real>(
     plan: &Plan<T>,
     loops: &[Loop<T>],
@@ -266,10 +269,10 @@ pub fn close<T: Real>(
     if let Closed::Acceleration(drifts) = closed {
         openings.iter_mut().zip(drifts).for_each(|(opening, &drift)| *opening += drift);
     }
-    // Whatever rate a kept coordinate has before the impact is what it keeps; and a foot may move in the impact.
+    // The velocity before the impact may have any rate at a kept coordinate. Only there a foot is kept at rest.
     let used = if is_velocity { all } else { kept.len() + rows.len() };
     if used == 0 {
-        // Nothing is to be closed, and of a robot without loops there need be no factor.
+        // Nothing is to be closed. A robot without loops may have no factor.
         return Vec::new();
     }
     let own = |i: usize| match (kept.get(i), i.checked_sub(kept.len()).and_then(|row| rows.get(row))) {
@@ -291,7 +294,7 @@ pub fn close<T: Real>(
     for (&coordinate, &change) in plan.coordinates.iter().zip(&change) {
         velocity[coordinate] = match (kept.contains(&coordinate), is_velocity) {
             (false, _) => velocity[coordinate] + change,
-            // What is kept is kept without rounding.
+            // A kept rate stays without rounding.
             (true, true) => velocity[coordinate],
             (true, false) => T::zero(),
         };
@@ -299,11 +302,12 @@ pub fn close<T: Real>(
     amplitudes
 }
 
-/// The impulse \[N s\] on a of each loop, in the world's axes, that [`close`] gave; zero along rows that were left out.
+/// Returns the impulse on a of each loop in the world's axes \[N s\], from the amplitudes that [`close`] returned. It
+/// is zero along rows that depend on others.
 pub fn loop_impulse<T: Real>(loops: usize, amplitudes: &[T], workspace: &Workspace<T>) -> Vec<Vector<T>> {
     let LoopRows { kept, rows, squares, coupling, .. } = &workspace.loops;
     let mut impulse = vec![[T::zero(); 2]; loops];
-    // K^T l = -Z a with K = C Z, from the last row back.
+    // Solves K^T l = -Z a with K = C Z, from the last row to the first.
     let mut solved = vec![T::zero(); rows.len()];
     for (own, row) in rows.iter().enumerate().rev() {
         let at = kept.len() + own;
@@ -315,18 +319,18 @@ pub fn loop_impulse<T: Real>(loops: usize, amplitudes: &[T], workspace: &Workspa
     impulse.into_iter().map(Vector::from).collect()
 }
 
-/// The kinetic energy \[J\] of the part of the velocity that [`close`] took away.
+/// Returns the kinetic energy \[J\] of the part of the velocity that [`close`] removed.
 pub fn spent_energy(amplitudes: &[f64], workspace: &Workspace) -> f64 {
     let terms = amplitudes.iter().zip(&workspace.loops.squares);
     0.5 * terms.map(|(amplitude, square)| amplitude * amplitude * square).sum::<f64>()
 }
 
-/// No velocity, for walks that need the motions only.
+/// Zero velocity, for walks that use only the motions.
 fn still<T: Real>(plan: &Plan<T>) -> Vec<T> {
     vec![T::zero(); plan.places]
 }
 
-/// Takes its part along another row from `left`.
+/// Removes from `left` its component along `own`.
 fn subtract_along<T: Real>(left: &mut [T], own: &[T]) {
     subtract(left, own, dot(left, own) / dot(own, own));
 }

@@ -1,12 +1,12 @@
-//! The factor of M = L^T D L along the branches of the tree, without fill-in.
+//! The factorization M = L^T D L along the branches of the tree, without fill-in.
 //!
-//! Source: Featherstone 2008, section 6.5 (LTDL), with lambda the parent columns of the plan's elimination tree. It
-//! needs no root, so any [`Real`] works. Cost: O(nv depth^2), and O(nv depth) per solve.
+//! Source: Featherstone 2008, section 6.5 (LTDL), with lambda taken from the plan's elimination tree. It needs no
+//! square root, so any [`Real`] works. Cost: O(nv depth^2), and O(nv depth) per solve.
 
 use super::plan::Plan;
 use crate::scalar::{Real, subtract};
 
-/// L below the diagonal (its own diagonal is one) and D on it, by rows. nv x nv
+/// L below the diagonal, with an implicit unit diagonal, and D on the diagonal, by rows. nv x nv
 #[derive(Debug, Clone, Default)]
 pub struct LtlFactor<T = f64> {
     entries: Vec<T>,
@@ -14,7 +14,7 @@ pub struct LtlFactor<T = f64> {
 }
 
 impl<T: Real> LtlFactor<T> {
-    /// Factorizes M (nv x nv by rows, its lower triangle). Callers check for a vanishing [`pivot`](Self::pivot).
+    /// Factorizes M (nv x nv by rows, lower triangle). Callers check whether a [`pivot`](Self::pivot) vanishes.
     pub fn factorize(&mut self, plan: &Plan<T>, mass_matrix: &[T]) {
         let nv = plan.columns();
         self.columns = nv;
@@ -23,7 +23,7 @@ impl<T: Real> LtlFactor<T> {
             let (above, own) = self.entries.split_at_mut(k * nv);
             let own = &mut own[..=k];
             plan.for_ancestors(k, |i| {
-                // u (u / D), never u u (1 / D): the latter underflows for small masses.
+                // Computed as u (u / D), because u u (1 / D) underflows for small masses.
                 let a = own[i] / own[k];
                 let row = &mut above[i * nv..][..=i];
                 row[i] = row[i] - a * own[i];
@@ -34,22 +34,23 @@ impl<T: Real> LtlFactor<T> {
         }
     }
 
-    /// The entries of a row of L below its diagonal.
+    /// Returns the entries of a row of L below its diagonal.
     pub fn row(&self, row: usize) -> &[T] {
         &self.entries[row * self.columns..][..row]
     }
 
-    /// The entry of D in a column.
+    /// Returns the entry of D in a column.
     pub fn pivot(&self, column: usize) -> T {
         self.entries[column * self.columns + column]
     }
 
-    /// D^-1 y.
+    /// Returns D^-1 y.
     pub fn divided<'a>(&'a self, y: &'a [T]) -> impl Iterator<Item = T> + use<'a, T> {
         y.iter().enumerate().map(|(i, &entry)| entry / self.pivot(i))
     }
 
-    /// y := L^-T y of N vectors, which are zero off these `columns`; each column comes before its ancestors.
+    /// Replaces N vectors y by L^-T y. They are zero outside of `columns`, which lists each column before its
+    /// ancestors.
     pub fn half_solve<const N: usize>(&self, plan: &Plan<T>, columns: impl Iterator<Item = usize>, y: &mut [[T; N]]) {
         for i in columns {
             let (above, rest) = y.split_at_mut(i);
@@ -58,7 +59,7 @@ impl<T: Real> LtlFactor<T> {
         }
     }
 
-    /// x := L^-1 x.
+    /// Replaces x by L^-1 x.
     pub fn other_half_solve(&self, plan: &Plan<T>, x: &mut [T]) {
         for i in 0..self.columns {
             let ((above, rest), row) = (x.split_at_mut(i), self.row(i));
@@ -66,7 +67,7 @@ impl<T: Real> LtlFactor<T> {
         }
     }
 
-    /// x := M^-1 x.
+    /// Replaces x by M^-1 x.
     pub fn solve(&self, plan: &Plan<T>, x: &mut [T]) {
         self.half_solve(plan, (0..self.columns).rev(), x.as_chunks_mut::<1>().0);
         for (i, entry) in x.iter_mut().enumerate() {

@@ -1,12 +1,12 @@
-//! Rigid-body dynamics of the planar tree, written once over [`Real`](crate::scalar::Real).
+//! Rigid-body dynamics of the planar tree, generic over the number type [`Real`](crate::scalar::Real).
 //!
 //! ```text
 //!     kinematics --> crba (M) --> ltl (M = L^T D L) ──┐
-//!          ├──────── jacobian (J, c = J v) ───────────┴──> delassus (G = J M^-1 J^T), effect of impulses on v
-//!          ├──────── bias (gravity, terms of v v; sigma) ────> free accelerations of coordinates and contacts
+//!          ├──────── jacobian (J, c = J v) ───────────┴──> delassus (G = J M^-1 J^T), velocity change by impulses
+//!          ├──────── bias (b: gravity, velocity products; sigma) ─> accelerations of coordinates and contacts
 //!          ├──────── springs ──────────────────────────────> torques that imitate virtual springs
-//!          ├──────── loops (K) ──────────────────────────────> G without what loops do not let move, their impulses
-//!          └──────── articulated ──> balance (how far off) ──> the same G and effect, without M, for long robots
+//!          ├──────── loops (K) ──────────────────────────────> G under the loop constraints, loop impulses
+//!          └──────── articulated ──> balance (error bounds) ─> G and velocity change without M, for long robots
 //! ```
 //!
 //! Every function reads a [`Plan`](crate::dynamics::plan::Plan) and writes into a [`Workspace`].
@@ -47,7 +47,7 @@ pub use workspace::{LoopRows, Workspace};
 
 #[cfg(test)]
 mod tests {
-    //! Each algorithm against an independent one, on random branching trees with revolute and prismatic joints.
+    //! Each algorithm is compared with an independent one on random branching trees with revolute and prismatic joints.
 
     use super::jacobian::walk;
     use super::*;
@@ -85,8 +85,8 @@ mod tests {
         }
     }
 
-    /// A tree of so many joints, in which each but the first may mimic another. With `reach` a body is carried by one of
-    /// so many before it, so that branches are long.
+    /// A tree with `joints` joints. With `mimics`, each joint but the first may be a mimic joint. The parent of a body
+    /// is one of the `reach` bodies before it: a small `reach` makes long branches.
     fn tree(joints: Range<usize>, reach: usize, mimics: bool) -> impl Strategy<Value = Robot> {
         let ratio = prop::option::weighted(0.25, (any::<Index>(), -2.0..2.0f64, -1.0..1.0f64));
         let parts = prop::collection::vec((joint_and_body(), ratio), joints);
@@ -131,11 +131,11 @@ mod tests {
         robot: Robot,
         position: Vec<f64>,
         velocity: Vec<f64>,
-        /// Of contact points: the body, and where on it.
+        /// For each contact point: the body, and the point in the body's frame.
         places: Vec<(Index, [f64; 2])>,
     }
 
-    /// A small tree and a state, all of order one.
+    /// A small tree and a state, with all numbers of order one.
     fn case(mimics: bool) -> impl Strategy<Value = Case> {
         case_of(tree(1..8, usize::MAX, mimics))
     }
@@ -171,7 +171,7 @@ mod tests {
             workspace
         }
 
-        /// Everything up to the Delassus matrix.
+        /// Computes everything up to the Delassus matrix.
         fn computed<T: Trigonometry>(&self, plan: &Plan<T>, points: &[ContactPoint<T>]) -> Workspace<T> {
             let mut workspace = self.placed(plan);
             mass_matrix(plan, &mut workspace);
@@ -182,7 +182,7 @@ mod tests {
             workspace
         }
 
-        /// The Delassus matrix by articulated bodies.
+        /// Computes the Delassus matrix by articulated bodies.
         fn by_bodies<T: Trigonometry>(&self, plan: &Plan<T>, points: &[ContactPoint<T>]) -> Workspace<T> {
             let mut workspace = self.placed(plan);
             articulated_inertias(plan, &mut workspace);
@@ -190,7 +190,7 @@ mod tests {
             workspace
         }
 
-        /// The bounds of `points`, before that of the Delassus matrix.
+        /// Computes the bounds of `points` except that of the Delassus matrix.
         fn bounds(&self, plan: &Plan, points: &[ContactPoint]) -> RoundingBounds {
             let (mut bounds, mut configuration) = (RoundingBounds::default(), Configuration::default());
             configuration.set(plan, &self.position);
@@ -201,7 +201,7 @@ mod tests {
         }
     }
 
-    /// How far `found` is from G, relative to what it may be off by entry by entry.
+    /// Returns the largest error of `found` against `exact`, each entry relative to sqrt(G_ii G_jj).
     fn error_of(found: &[f64], exact: &[Interval]) -> f64 {
         let rows = found.len().isqrt();
         let error = |at: usize| {
@@ -214,8 +214,8 @@ mod tests {
     type SpringCase = ([(Index, [f64; 2]); 2], [SpringLaw; 3], bool);
 
     impl Case {
-        /// Loads by column, accelerations by coordinate and of contacts, of bodies that may all be `steady`, under
-        /// gravity and a spring; `solve` takes the loads to accelerations.
+        /// Returns the loads by column, the accelerations by coordinate and those of the contacts, under gravity and
+        /// one spring. If `steady`, all bodies count as not rotating. `solve` replaces the loads by accelerations.
         fn accelerated<T: Real>(
             &self,
             plan: &Plan<T>,
@@ -253,7 +253,7 @@ mod tests {
         DMatrix::from_fn(nv, nv, |i, j| lower[i.max(j) * nv + i.min(j)])
     }
 
-    /// v by column of the plan.
+    /// v in the order of the plan's columns.
     fn by_column(plan: &Plan, v: &[f64]) -> DVector<f64> {
         DVector::from_iterator(plan.columns(), plan.coordinates.iter().map(|&coordinate| v[coordinate]))
     }
@@ -276,7 +276,7 @@ mod tests {
             let mass = dense(&plan, &workspace.mass_matrix);
             let product = lower.transpose() * diagonal * lower;
             prop_assert!((&product - &mass).amax() <= 1e3 * f64::EPSILON * mass.amax(), "{product} {mass}");
-            // Both sum up to some hundred terms of the energy's own size.
+            // Both are sums of some hundred terms as large as the energy.
             prop_assert!((by_matrix - by_bodies).abs() <= 1e3 * f64::EPSILON * by_bodies.max(1.0), "{by_matrix} {by_bodies}");
         }
 
@@ -291,7 +291,7 @@ mod tests {
             let by_matrices = &jacobian * &inverse * jacobian.transpose();
             let found = DMatrix::from_row_slice(rows, rows, &workspace.delassus);
             let values = mass.symmetric_eigenvalues();
-            // The dense inverse loses the condition of M.
+            // The error of the dense inverse grows with the condition number of M.
             let tolerance = 1e2 * f64::EPSILON * (values.max() / values.min()) * by_matrices.amax().max(1.0);
             prop_assert!((&found - &by_matrices).amax() <= tolerance, "{found} {by_matrices}");
             let speeds = &jacobian * by_column(&plan, &case.velocity);
@@ -314,7 +314,8 @@ mod tests {
             let plan = Plan::new(&case.robot, &[], &[]);
             let mut workspace = case.computed(&plan, &[]);
             bias(&plan, &case.velocity, gravity, &[], &mut workspace);
-            // Positions on the straight way q + v t, a little before and after, by which points accelerate.
+            // Positions along q + v t at three times close together; their second difference gives the accelerations of
+            // points.
             let exact_plan = Plan::<Exact>::new(&case.robot, &[], &[]);
             let step = f64::exp2(-27.0);
             let places = |time: f64| {
@@ -338,7 +339,7 @@ mod tests {
                 let second = |entry: Exact| entry.to_f64() / (step * step);
                 (before - at + after - at).map(second)
             };
-            // Terms of order v^2 (v / step)^0, of a few hundred each; the next order of the difference is v^4 step^2.
+            // The difference has terms of order v^2 of a few hundred each. Its error is of order v^4 step^2.
             let tolerance = 1e-9;
             let mut forces = vec![0.0; plan.columns()];
             for (index, body) in case.robot.bodies.iter().enumerate() {
@@ -364,7 +365,7 @@ mod tests {
             rotor in prop_oneof![Just(0.0), 0.01..1.0f64],
             impulse in point(),
         ) {
-            // A link between revolute joints may weigh nothing.
+            // A link between revolute joints may be massless.
             let massless = massless.index(case.robot.bodies.len());
             let beside = |joint: &&Joint| joint.parent == massless || joint.child == massless;
             let mut beside = case.robot.joints.iter().filter(beside);
@@ -384,7 +385,7 @@ mod tests {
             let diagonal: Vec<f64> = (0..nv).map(|i| by_mass.factor.pivot(i)).collect();
             let condition = (0..nv).map(|i| (by_mass.mass_matrix[i * nv + i] / diagonal[i]).abs()).fold(1.0, f64::max);
             prop_assume!(condition < 1e10);
-            // Either way loses a few hundred roundings, magnified by what cancels in the pivots.
+            // Both algorithms lose a few hundred roundings, magnified by the cancellation in the pivots.
             let near = |a: &[f64], b: &[f64]| {
                 let size = a.iter().fold(1.0, |size: f64, entry| size.max(entry.abs()));
                 a.len() == b.len()
@@ -413,7 +414,7 @@ mod tests {
             let points = case.points(0.0, Rotation::identity());
             let exact = case.computed::<Exact>(&Plan::new(&case.robot, &[], &[]), &points);
             let rows = 2 * contacts.len();
-            // How far the f64 may be from the exact number, and at least is.
+            // A lower bound on the distance between the f64 and the exact number.
             let off = |found: f64, exact: Exact| ((exact - Exact::from_f64(found)).to_f64()).abs() - exact.error();
             for i in 0..rows {
                 for j in 0..rows {
@@ -426,7 +427,7 @@ mod tests {
             }
         }
 
-        /// Of trees with mimic joints and a virtual spring, against balls of double-doubles.
+        /// Uses trees with mimic joints and a virtual spring, and compares with balls of double-doubles.
         #[test]
         fn f64_accelerations_keep_within_their_bounds(
             case in case(true),

@@ -4,48 +4,50 @@
 //!     Robot + braked joints + rotor inertias --> Plan<T>
 //! ```
 //!
-//! Moving coordinates are the *columns* of the plan. They are numbered from the root outward, so that a column's parent
-//! (the nearest moving joint below it in the tree, lambda in Featherstone 2008) comes before it; the coordinates of the
-//! user's q keep the file's order. A braked joint keeps its place in the chain of bodies and loses its column.
+//! Moving coordinates are the *columns* of the plan. They are numbered from the root outward, so that the parent of a
+//! column (the nearest moving joint between it and the root, lambda in Featherstone 2008) has a smaller number. The
+//! coordinates of the user's q keep the file's order. A braked joint keeps its place in the chain of bodies but has no
+//! column.
 //!
-//! A mimic joint shares the column of the mimicked one, and its motion is that for a unit rate of that joint:
+//! A mimic joint shares the column of its mimicked joint. Its motion is given for a unit rate of the mimicked joint:
 //!
 //! ```text
 //!     v_joints = T v,   M = T^T M_joints T,   J = J_joints T         a row of T has one entry: 1, or the multiplier
 //! ```
 //!
-//! T is never formed: what several bodies bring to one entry is added up. A column then belongs to more than one
-//! branch, and its parent is that of the elimination tree: the factorization fills in nothing beyond its ancestors.
+//! T is never formed: the contributions of several bodies to one entry are added up. A column then belongs to more than
+//! one branch. Its parent is its parent in the elimination tree of M, so the factorization fills in only ancestors of a
+//! column.
 
 use crate::planar::{Inertia, Rotation, Vector};
 use crate::robot::{Axis, Base, MimicJoint, ParentJoint, Robot};
 use crate::scalar::{Real, Trigonometry};
 
-/// From how many columns on in one branch a plan is long.
+/// A plan is long if one of its branches has at least this many columns.
 const LONG: usize = 12;
 
-/// The parent of a column that has none.
+/// Marks a column that has no parent.
 const NONE: usize = usize::MAX;
 
-/// A robot compiled in numbers of kind `T`.
+/// A robot compiled for one set of braked joints, in numbers of type `T`.
 #[derive(Debug, Clone, Default)]
 pub struct Plan<T = f64> {
     /// Bodies from the root outward.
     pub(crate) bodies: Vec<PlanBody<T>>,
-    /// Parent of each column in the elimination tree of M, [`NONE`] if it has none; without mimic joints the nearest moving
-    /// joint below it.
+    /// Parent of each column in the elimination tree of M, or [`NONE`]. Without mimic joints it is the nearest moving
+    /// joint between the column's joint and the root.
     parents: Vec<usize>,
     /// The coordinate (index into q) of each column, from the root outward.
     pub(crate) coordinates: Vec<usize>,
-    /// Entries of a [`Configuration`]: coordinates and mimic joints.
+    /// Number of entries of a [`Configuration`]: one per coordinate and per mimic joint.
     pub(crate) places: usize,
     pub(crate) floating: bool,
-    /// Whether some column moves more than one joint.
+    /// Whether any column moves more than one joint.
     pub(crate) has_mimics: bool,
-    /// Whether a joint slides, braked or not.
+    /// Whether any joint is prismatic, including braked ones.
     pub(crate) has_slides: bool,
-    /// Whether a branch has so many columns that what grows faster than their number costs more than it saves: M and its
-    /// factor, walks from each body to the root.
+    /// Whether a branch has at least [`LONG`] columns. Then algorithms whose cost grows faster than the number of
+    /// columns are too slow: M and its factor, and walks from each body to the root.
     pub(crate) is_long: bool,
 }
 
@@ -56,21 +58,23 @@ pub(crate) struct PlanBody<T> {
     /// Origin of the joint in the parent's frame \[m\].
     pub origin: Vector<T>,
     pub motion: JointMotion<T>,
-    /// The joint's coordinate, or that of the joint it mimics; of no meaning for the root and for fixed joints.
+    /// The joint's coordinate, or that of its mimicked joint. Meaningless for the root and for fixed joints.
     pub coordinate: usize,
-    /// Where a [`Configuration`] has the joint's angle or displacement.
+    /// Index of the joint's angle or displacement in a [`Configuration`].
     pub place: usize,
-    /// How it follows, if it does.
+    /// Ratio to the mimicked joint, if this is a mimic joint.
     pub mimic: Option<MimicRatio>,
-    /// The joint's column, or for the root the last of the base (pitch); `None` if it is braked or bolted.
+    /// The joint's column; for the root, the last column of the base (pitch). `None` if the joint is braked or fixed,
+    /// or if the base is fixed.
     pub column: Option<usize>,
-    /// About the body's origin, in its own axes.
+    /// Inertia about the body's origin, in the body's axes.
     pub inertia: Inertia<T>,
-    /// Added to the mass matrix's diagonal, as seen by the coordinate \[kg m^2\].
+    /// Rotor inertia as seen by the coordinate, added to the diagonal of the mass matrix \[kg m^2\].
     pub rotor: T,
 }
 
-/// The joint's motion in numbers of the plan; `rate` is its motion for a unit rate of its coordinate.
+/// A joint's motion. `rate` is the motion for a unit rate of its coordinate, which includes the multiplier of a mimic
+/// joint.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum JointMotion<T> {
     Root,
@@ -79,25 +83,26 @@ pub(crate) enum JointMotion<T> {
     Fixed,
 }
 
-/// A mimic joint's coordinate: multiplier q + offset, with q that of the mimicked joint.
+/// The ratio of a mimic joint: its coordinate is multiplier q + offset, with q that of the mimicked joint.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct MimicRatio {
     pub multiplier: f64,
     pub offset: f64,
 }
 
-/// Turns and displacements of a configuration: one entry per coordinate of q, then one per mimic joint of the robot: of
-/// pitch and turning joints the turn, of x, z and sliding joints the displacement \[m\].
+/// Rotations and displacements at a configuration. Each list has one entry per coordinate of q, then one per mimic
+/// joint of the robot.
 #[derive(Debug, Clone, Default)]
 pub struct Configuration<T = f64> {
-    /// Cosines and sines; of sliding coordinates the identity.
+    /// Cosines and sines of pitch and of revolute joints; the identity for x, z and prismatic joints.
     pub turns: Vec<Rotation<T>>,
-    /// Displacements \[m\]; of turning coordinates zero.
+    /// Displacements of x, z and prismatic joints \[m\]. An entry of pitch or of a revolute joint is its angle in q,
+    /// and zero for a revolute mimic joint.
     pub displacement: Vec<T>,
 }
 
 impl<T: Trigonometry> Configuration<T> {
-    /// Takes the cosines and sines of exactly `position` (q), in f64 the same bits on every platform.
+    /// Sets all entries from exactly `position` (q). In f64, the result has the same bits on every platform.
     pub fn set(&mut self, plan: &Plan<T>, position: &[f64]) {
         self.displacement.clear();
         self.displacement.extend(position.iter().map(|&entry| T::from_f64(entry)));
@@ -118,37 +123,39 @@ impl<T: Trigonometry> Configuration<T> {
 }
 
 impl MimicRatio {
-    /// The turn by exactly multiplier `angle` + offset, as f64 angles that add up to it.
+    /// Returns the rotation by exactly multiplier * `angle` + offset, composed of rotations by f64 angles with this
+    /// sum.
     ///
-    /// A product whose rounding error lies below the range of f64 (|multiplier angle| < 1e-290) is taken as rounded.
+    /// The rounding error of the product is neglected if it lies below the range of f64 (|multiplier angle| < 1e-290).
     fn turn<T: Trigonometry>(self, angle: f64) -> Rotation<T> {
         let product = self.multiplier * angle;
         let error = libm::fma(self.multiplier, angle, -product);
-        // A part that is zero turns nothing, in any number.
+        // Zero angles are skipped, because they rotate nothing in any number type.
         let parts = [error, self.offset].into_iter().filter(|&part| part != 0.0);
         parts.fold(Rotation::by(product), |turn, part| turn.then(Rotation::by(part)))
     }
 }
 
 impl Plan {
-    /// The turn of a body at `position` (q), in numbers of any kind.
+    /// Returns the rotation of a body at `position` (q), in numbers of any type.
     pub(crate) fn rotation<N: Trigonometry>(&self, body: usize, position: &[f64]) -> Rotation<N> {
         let turns = self.way_to_root(body).filter_map(|(_, body)| {
             let turn = self.turn(body, position)?;
             let is_back = matches!(body.motion, JointMotion::Revolute { sign, .. } if sign < 0.0);
             Some(if is_back { turn.back() } else { turn })
         });
-        // Turns of the plane commute.
+        // Rotations of the plane commute.
         turns.fold(Rotation::identity(), Rotation::then)
     }
 }
 
 impl<T: Real> Plan<T> {
-    /// Compiles `robot` with the joints `braked` (indices into [`Robot::joints`]) kept at their rate, and
-    /// `rotor_inertia` per joint and then per mimic joint (empty for none) \[kg m^2\].
+    /// Compiles `robot` for one set of braked joints, which keep their rates: `braked` holds indices into
+    /// [`Robot::joints`]. `rotor_inertia` \[kg m^2\] has one entry per joint and then one per mimic joint; an empty
+    /// slice means no rotors.
     ///
-    /// A joint that mimics a braked one does not move either. A rotor at a mimic joint turns at that joint's rate, so
-    /// that it adds multiplier^2 of its inertia to the mimicked joint's coordinate.
+    /// A joint that mimics a braked joint does not change its rate either. A rotor at a mimic joint turns at the rate
+    /// of that joint, so the coordinate of the mimicked joint sees multiplier^2 times its inertia.
     pub fn new(robot: &Robot, braked: &[usize], rotor_inertia: &[f64]) -> Self {
         let base = robot.base_dofs();
         let floating = robot.base == Base::Floating;
@@ -162,7 +169,7 @@ impl<T: Real> Plan<T> {
             has_slides: false,
             is_long: false,
         };
-        // The column of each joint that has one, and of each body the greatest one on its way to the root.
+        // The column of each joint, if it has one. For each body, the greatest column between it and the root.
         let mut columns = vec![None; robot.joints.len()];
         let mut greatest: Vec<Option<usize>> = Vec::with_capacity(robot.bodies.len());
         let number = |entry: f64| T::from_f64(entry);
@@ -185,8 +192,8 @@ impl<T: Real> Plan<T> {
                 });
                 continue;
             };
-            // The joint whose coordinate moves the body, and the body's own place in lists per joint and mimic joint;
-            // `None` for a fixed joint. And its ratio.
+            // The joint whose coordinate moves the body, and the body's own index in lists of joints and mimic joints;
+            // `None` for a fixed joint. With it the ratio of a mimic joint.
             let (moved, mimic) = match mover {
                 ParentJoint::Joint(index) => (Some((index, index)), None),
                 ParentJoint::Mimic(index) => {
@@ -210,7 +217,7 @@ impl<T: Real> Plan<T> {
                 origin: origin.map(number),
                 motion: match axis {
                     None => JointMotion::Fixed,
-                    // Exactly: the sign is one or minus one.
+                    // The product is exact, because the sign is 1 or -1.
                     Some(Axis::Revolute { sign }) => {
                         JointMotion::Revolute { sign: number(sign), rate: number(sign * multiplier) }
                     }
@@ -233,7 +240,7 @@ impl<T: Real> Plan<T> {
         plan
     }
 
-    /// By what a body's joint turns at `position` (q), before its sign; `None` if it does not turn.
+    /// Returns the rotation of a body's joint at `position` (q), without its sign; `None` if the joint does not rotate.
     fn turn<N: Trigonometry>(&self, body: &PlanBody<T>, position: &[f64]) -> Option<Rotation<N>> {
         let turns = match body.motion {
             JointMotion::Root => self.floating,
@@ -244,7 +251,7 @@ impl<T: Real> Plan<T> {
         turns.then(|| body.mimic.map_or_else(|| Rotation::by(value), |mimic| mimic.turn(value)))
     }
 
-    /// The column of a coordinate, which may be known already from another joint that it moves.
+    /// Returns the column of a coordinate. `known` is its column if another joint with this coordinate has one already.
     fn column(&mut self, known: &mut Option<usize>, coordinate: usize) -> usize {
         self.has_mimics |= known.is_some();
         *known.get_or_insert_with(|| {
@@ -254,11 +261,12 @@ impl<T: Real> Plan<T> {
         })
     }
 
-    /// Makes all columns on the way from a new body to the root each other's ancestors in the elimination tree, as they
-    /// are without the body's own `column`; `greatest` of them is on the body's parent. Gives the greatest of all.
+    /// Adds `column`, that of a new body, to the columns between its `parent` and the root, so that all of them lie on
+    /// one branch of the elimination tree. The other columns already do; `greatest` is the greatest of them. Returns
+    /// the greatest of all.
     fn join_branch(&mut self, column: usize, parent: usize, greatest: Option<usize>) -> Option<usize> {
         match greatest {
-            // Whatever comes before the greatest is its ancestor already, as x and z are the pitch's.
+            // The columns before the greatest are its ancestors already, as x and z are ancestors of pitch.
             Some(other) if other < column => self.join(column, other),
             Some(_) => {
                 let others: Vec<usize> = self.way_to_root(parent).filter_map(|(_, body)| body.column).collect();
@@ -271,8 +279,8 @@ impl<T: Real> Plan<T> {
         Some(greatest.map_or(column, |other| other.max(column)))
     }
 
-    /// Makes `ancestor` an ancestor of `column` in the elimination tree, for an entry of M that both share
-    /// (J. W. H. Liu, "The role of elimination trees in sparse factorization", SIAM J. Matrix Anal. Appl. 11, 1990).
+    /// Makes `ancestor` an ancestor of `column` in the elimination tree, because M has an entry for both (J. W. H. Liu,
+    /// "The role of elimination trees in sparse factorization", SIAM J. Matrix Anal. Appl. 11, 1990).
     fn join(&mut self, mut column: usize, mut ancestor: usize) {
         while column != ancestor {
             match self.parents[column] {
@@ -289,13 +297,13 @@ impl<T: Real> Plan<T> {
         }
     }
 
-    /// Takes what one body brings to an entry; where a column moves several, the entry is their sum.
+    /// Writes the contribution of one body to an entry. If a column moves several joints, contributions are summed.
     #[inline]
     pub(crate) fn bring(&self, entry: &mut T, part: T) {
         *entry = if self.has_mimics { *entry + part } else { part };
     }
 
-    /// A column, if there is one, and its ancestors in the elimination tree, the nearest first.
+    /// Returns `column` and its ancestors in the elimination tree, nearest first; nothing if `column` is `None`.
     #[inline]
     pub(crate) fn branch(&self, column: Option<usize>) -> impl Iterator<Item = usize> {
         std::iter::successors(column, |&column| self.parent(column))
@@ -306,8 +314,8 @@ impl<T: Real> Plan<T> {
         Some(self.parents[column]).filter(|&parent| parent != NONE)
     }
 
-    /// Visits the ancestors of a column in the elimination tree, the nearest first. All come before it, which is all that
-    /// ends the walk: slices of `column` entries are indexed without a check.
+    /// Visits the ancestors of a column in the elimination tree, nearest first. The walk ends at the first index that
+    /// is not less than `column`, which lets the compiler omit the bounds checks of slices with `column` entries.
     #[inline]
     pub(crate) fn for_ancestors(&self, column: usize, mut visit: impl FnMut(usize)) {
         let parents = &self.parents[..=column];
@@ -318,7 +326,7 @@ impl<T: Real> Plan<T> {
         }
     }
 
-    /// The greatest column that two branches share, which have these at their ends.
+    /// Returns the greatest column that the branches ending in `a` and `b` share.
     pub(crate) fn shared(&self, a: Option<usize>, b: Option<usize>) -> Option<usize> {
         let (mut a, mut b) = (a?, b?);
         while a != b {
@@ -328,18 +336,18 @@ impl<T: Real> Plan<T> {
         Some(a)
     }
 
-    /// A body and those between it and the root, with their indices.
+    /// Returns a body and the bodies between it and the root, with their indices.
     pub(crate) fn way_to_root(&self, body: usize) -> impl Iterator<Item = (usize, &PlanBody<T>)> {
         std::iter::successors(Some(body), |&body| self.bodies[body].parent).map(|body| (body, &self.bodies[body]))
     }
 
-    /// As [`Plan::way_to_root`], without the bodies that carry `other`, too.
+    /// As [`Plan::way_to_root`], without the bodies that also carry `other`.
     pub(crate) fn way_beyond(&self, body: usize, other: usize) -> impl Iterator<Item = (usize, &PlanBody<T>)> {
         let carries_both = move |at: usize| self.way_to_root(other).any(|(shared, _)| shared == at);
         self.way_to_root(body).take_while(move |&(at, _)| !carries_both(at))
     }
 
-    /// Number of columns: the coordinates whose joints are not braked.
+    /// Returns the number of columns: of the base's coordinates and of joints that are not braked.
     pub fn columns(&self) -> usize {
         self.coordinates.len()
     }

@@ -1,12 +1,13 @@
-//! Virtual model control: what a spring and damper between two points would do, by the torques of the joints between.
+//! Virtual model control: the torques with which the joints imitate a spring and damper between two points.
 //!
 //! ```text
 //!     F = force + stiffness (target - (p_a - p_b)) - damping (v_a - v_b)        tau = J_ab^T F,  J_ab = J_a - J_b
 //! ```
 //!
-//! along x and z of the world, and about the normal for the angles of both bodies. F acts on a and, reversed, on b. What
-//! J_ab^T F asks of a floating base no joint gives. Source: Pratt, Chew, Torres, Dilworth, Pratt, "Virtual model control:
-//! an intuitive approach for bipedal locomotion", IJRR 20, 2001. Cost: O(depth).
+//! The law applies along x and z of the world, and about the normal for the angles of both bodies. F acts on a, and -F
+//! acts on b. No joint can supply the part of J_ab^T F that belongs to a floating base. Source: Pratt, Chew, Torres,
+//! Dilworth, Pratt, "Virtual model control: an intuitive approach for bipedal locomotion", IJRR 20, 2001. Cost:
+//! O(depth).
 
 use super::articulated_inertia::Wrench;
 use super::jacobian::{point_velocity, spin};
@@ -19,32 +20,33 @@ use crate::state::SpringLaw;
 /// A virtual spring between two points.
 #[derive(Debug, Clone, Copy)]
 pub struct Spring<T = f64> {
-    /// a and b.
+    /// The ends a and b.
     pub ends: [SpringPoint<T>; 2],
-    /// Along x, along z, and about the normal.
+    /// The laws along x, along z, and about the normal.
     pub laws: [SpringLaw; 3],
 }
 
 /// An end of a virtual spring.
 #[derive(Debug, Clone, Copy)]
 pub enum SpringPoint<T> {
-    /// A point in a body's frame \[m\].
+    /// A body's index, and a point in its frame \[m\].
     Body(usize, Vector<T>),
-    /// A place in the world \[m\].
+    /// A fixed point in the world \[m\].
     World(Vector<T>),
 }
 
-/// What a virtual spring asks for.
+/// Force and joint torques that a virtual spring requires.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpringLoad<T = f64> {
-    /// The force on a along x and z of the world, and the moment \[N, N m\].
+    /// The force on a along x and z of the world, and the moment \[N, N, N m\].
     pub force: [T; 3],
-    /// J_ab^T F by coordinate \[N, N m\]: of a joint its torque; of a floating base what no joint gives.
+    /// J_ab^T F by coordinate \[N, N m\]: the torque or force of a joint. The entries of a floating base are
+    /// unrealized.
     pub generalized: Vec<T>,
 }
 
 impl<T: Real> Spring<T> {
-    /// What the spring asks for in a `position` (q) and with a `velocity` (dq/dt), after the kinematics.
+    /// Computes the load at `position` (q) and `velocity` (dq/dt). Requires the results of the kinematics.
     pub fn load(&self, plan: &Plan<T>, position: &[f64], velocity: &[T], workspace: &Workspace<T>) -> SpringLoad<T> {
         let [(place_a, rate_a), (place_b, rate_b)] =
             self.ends.map(|end| end.motion(plan, position, velocity, workspace));
@@ -65,7 +67,7 @@ impl<T: Real> Spring<T> {
 }
 
 impl<T: Real> SpringPoint<T> {
-    /// Where the end is and how it moves: x, z and pitch, and their rates.
+    /// Returns the pose [x, z, pitch] of the end, and its rate.
     fn motion(self, plan: &Plan<T>, position: &[f64], velocity: &[T], workspace: &Workspace<T>) -> ([T; 3], [T; 3]) {
         let (body, point) = match self {
             Self::World(Vector { x, z }) => return ([x, z, T::zero()], [T::zero(); 3]),
@@ -87,7 +89,7 @@ impl<T: Real> SpringPoint<T> {
                 }
                 _ => {}
             }
-            // The root has none.
+            // The root has no arm.
             if body.parent.is_some() {
                 place += workspace.arm[index];
             }
@@ -97,8 +99,8 @@ impl<T: Real> SpringPoint<T> {
     }
 }
 
-/// Passes a `wrench` on `body` inward, and reports its part along every coordinate on the way, those of braked joints
-/// included.
+/// Passes a `wrench` on `body` toward the root, and reports its component along every coordinate on the path, including
+/// those of braked joints.
 fn inward<T: Real>(
     plan: &Plan<T>,
     body: usize,

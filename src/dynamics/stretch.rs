@@ -1,25 +1,26 @@
-//! Lengths and moments with every arm stretched: what no sum of their terms exceeds.
+//! Lengths and moments with every arm stretched: upper bounds on the sums of the terms of kinematics and mass matrix.
 
 use crate::dynamics::plan::{Configuration, JointMotion, Plan};
 use crate::planar::Vector;
 
 pub(super) const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
-/// How many roundings there likely are in place of those that a bound counts per level, body and column. Over 1,500
-/// trees and chains of ten links with masses of 1e-4 to 1e4 kg the error of G was at most 2.7 of them, that of c 2.4.
+/// Number of roundings in a likely error; a bound counts roundings per level, body and column. Over 1,500 trees and
+/// chains of ten links with masses of 1e-4 to 1e4 kg, the error of G was at most 2.7 roundings, and that of c at most
+/// 2.4.
 pub(super) const LIKELY: f64 = 3.0;
-/// Beyond this the terms of second order are no longer covered.
+/// Largest error at which a factor of two still covers the terms of second order.
 pub(super) const SMALL: f64 = 0.1;
 
 /// A contact with its arm stretched.
 #[derive(Debug, Clone, Copy)]
 pub struct Arm {
-    /// The body that it ends on.
+    /// The body that the contact is on.
     pub body: usize,
-    /// At least its distance from the body's origin, and the sum of all terms that it was added up from \[m\].
+    /// Upper bound on the distance from the body's origin, and on the sum of the terms that it was computed from \[m\].
     pub length: f64,
 }
 
-/// A body and all that it carries, with every arm stretched.
+/// Bounds of a body and all bodies that it carries, with every arm stretched.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Stretched {
     /// Length of the arm from the parent's origin \[m\].
@@ -30,12 +31,12 @@ pub(super) struct Stretched {
     pub depth: usize,
 }
 
-/// At least the length of a vector.
+/// Upper bound on the length of a vector.
 pub(super) fn length(Vector { x, z }: Vector<f64>) -> f64 {
     x.abs() + z.abs()
 }
 
-/// Takes the lengths of a configuration, the root first.
+/// Computes the bounds of all bodies at a configuration, the root first.
 pub(super) fn stretch(plan: &Plan, configuration: &Configuration, bodies: &mut Vec<Stretched>) {
     bodies.clear();
     for body in &plan.bodies {

@@ -1,30 +1,31 @@
-//! Memory of the dynamics, reused from state to state.
+//! Memory of the dynamics, reused for each state.
 
 use super::articulated_inertia::{ArticulatedInertia, Wrench};
 use super::ltl::LtlFactor;
 use crate::planar::{Inertia, Pair, Rotation, Vector};
 
-/// Everything that the dynamics of one state computes; nb bodies, nv columns of the plan, n contacts.
+/// All results of the dynamics of one state. The last words of a field's comment are its size: nb bodies, nv columns of
+/// the plan, n contacts.
 #[derive(Debug, Clone, Default)]
 pub struct Workspace<T = f64> {
     // Computed by `kinematics`.
-    /// Turn of each body from the world's axes. nb
+    /// Rotation of each body relative to the world's axes. nb
     pub rotation: Vec<Rotation<T>>,
-    /// Position of each body's origin from its parent's, in the world's axes \[m\]. nb
+    /// Vector from the origin of each body's parent to the body's origin, in the world's axes \[m\]. nb
     pub arm: Vec<Vector<T>>,
-    /// Motion of each prismatic joint for a unit rate of its column, in the world's axes; of no meaning for others. nb
+    /// Motion of each prismatic joint for a unit rate of its column, in the world's axes; zero for other joints. nb
     pub direction: Vec<Vector<T>>,
 
     // Computed by `mass_matrix` and `mass_diagonal`.
-    /// Inertia of each body and all that it carries, about its origin in the world's axes. nb
+    /// Inertia of each body with all bodies that it carries, about its origin in the world's axes. nb
     pub composite: Vec<Inertia<T>>,
 
     // Computed by `mass_diagonal`.
-    /// M's diagonal. nv
+    /// Diagonal of M. nv
     pub diagonal: Vec<T>,
 
     // Computed by `mass_matrix`.
-    /// M by rows, its lower triangle along the tree's branches; the rest is zero. nv x nv
+    /// M by rows: the lower triangle along the branches of the tree; other entries are zero. nv x nv
     pub mass_matrix: Vec<T>,
 
     // Computed by `factorize`.
@@ -32,35 +33,36 @@ pub struct Workspace<T = f64> {
     pub factor: LtlFactor<T>,
 
     // Computed by `articulated_inertias`.
-    /// Inertia that each body shows at its origin while the joints beyond it give way. nb
+    /// Articulated-body inertia of each body at its origin. nb
     pub articulated: Vec<ArticulatedInertia<T>>,
-    /// D of M = L^T D L, without M. nv
+    /// D of M = L^T D L, computed without M. nv
     pub pivots: Vec<T>,
 
     // Computed by `contact_jacobian`.
     /// J by contacts and columns, [tangential, normal]. n x nv
     pub contact_jacobian: Vec<Pair<T>>,
-    /// The greatest column that moves each contact; all others that do are its ancestors. n
+    /// The greatest column that moves each contact; the other columns that move it are ancestors of this one. n
     pub(crate) branch: Vec<Option<usize>>,
-    /// Contact velocities c = J v, braked joints' rates included \[m/s\]. n
+    /// Contact velocities c = J v, including the rates of braked joints \[m/s\]. n
     pub contact_velocity: Vec<Pair<T>>,
 
     // Computed by `demands`.
-    /// Rate of turn of each body \[rad/s\]. nb
+    /// Angular velocity of each body \[rad/s\]. nb
     pub spin: Vec<T>,
-    /// Its square, zero of a body that was said not to turn \[rad^2/s^2\]. nb
+    /// Square of `spin`; zero for bodies marked as not rotating \[rad^2/s^2\]. nb
     pub(super) squared_spin: Vec<T>,
     /// Acceleration of each body's origin while no coordinate accelerates, in the world's axes \[m/s^2\]. nb
     pub drift: Vec<Vector<T>>,
-    /// What each body demands for that, against gravity as well, about its origin; spent by what sums it up. nb
+    /// Wrench about its origin that each body requires for its drift and against gravity. Overwritten when it is summed
+    /// up. nb
     pub(super) demand: Vec<Wrench<T>>,
 
     // Computed by `bias`.
-    /// Forces that keep the coordinates from accelerating, against gravity as well \[N, N m\]. nv
+    /// Forces that keep the coordinates from accelerating, including those against gravity \[N, N m\]. nv
     pub bias: Vec<T>,
 
     // Computed by `orthogonalize`.
-    /// The rows of loops and of joints that keep their rates.
+    /// The rows of the loops, and of joints with a column that keep their rates.
     pub loops: LoopRows<T>,
 
     // Computed by `delassus` or `articulated_delassus`.
@@ -68,12 +70,12 @@ pub struct Workspace<T = f64> {
     pub half: Vec<Pair<T>>,
     /// D^-1 Y in the same order. n x nv
     pub half_by_d: Vec<Pair<T>>,
-    /// G by rows \[1/kg\], after `eliminate_loops` without what the loops do not let move. 2n x 2n
+    /// G by rows \[1/kg\]; after `eliminate_loops`, G under the loop constraints. 2n x 2n
     pub delassus: Vec<T>,
 }
 
 impl<T: Copy> Workspace<T> {
-    /// A row of J by columns: tangential (2i) or normal (2i + 1) of contact i, which there must be.
+    /// Returns a row of J by columns: tangential (2i) or normal (2i + 1) of contact i. There must be a contact.
     #[cfg(any(test, feature = "accuracy"))]
     pub(crate) fn jacobian_row(&self, row: usize) -> impl Iterator<Item = T> + '_ {
         let nv = self.contact_jacobian.len() / self.contact_velocity.len();
@@ -81,20 +83,20 @@ impl<T: Copy> Workspace<T> {
     }
 }
 
-/// The constraints of joints that keep their rates, one row each, and of all loops, two rows (x and z in the world's
-/// axes) per loop, as `orthogonalize` leaves them.
+/// The constraints, orthogonalized by `orthogonalize`: one row per joint that keeps its rate, and two rows per loop (x
+/// and z in the world's axes).
 #[derive(Debug, Clone, Default)]
 pub struct LoopRows<T = f64> {
-    /// Coordinates that keep their rates; their rows come first.
+    /// Coordinates that keep their rates. Their rows come first.
     pub(super) kept: Vec<usize>,
-    /// Rows of K in the order of their elimination: 2 loop + axis; without those that depend on others.
+    /// Rows of K (2 loop + axis) in the order of elimination, without rows that depend on others.
     pub(super) rows: Vec<usize>,
-    /// Z by columns, those of a foot at rest behind those of the loops. nv each
+    /// Z, one row of nv entries per constraint. The rows of a foot at rest come last.
     pub(super) basis: Vec<T>,
-    /// D^-1 Z by columns.
+    /// D^-1 Z in the same order.
     pub(super) basis_by_d: Vec<T>,
-    /// Z^T D^-1 Z, which is diagonal.
+    /// The diagonal of Z^T D^-1 Z; its other entries are zero.
     pub(super) squares: Vec<T>,
-    /// C below its unit diagonal, by rows of the full square.
+    /// C below its unit diagonal, stored by rows as a full square.
     pub(super) coupling: Vec<T>,
 }
