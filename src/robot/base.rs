@@ -1,11 +1,11 @@
-//! How the root is attached, judged after fixed and frozen joints are merged.
+//! Decides how the root is attached, after links on fixed and frozen joints are merged.
 //!
 //! ```text
-//!     root still massless over a whole chain of x, z and pitch joints, or a planar or floating joint
-//!                                      -> that is the floating base itself: the robot begins behind it
-//!     root still massless over one joint or an incomplete chain (a rail), or named `world` otherwise
-//!                                      -> bolted to the world
-//!     root with mass, or massless over several joints
+//!     root still massless before a complete chain of x, z and pitch joints, or a planar or floating joint
+//!                                      -> this is the floating base itself: the robot begins behind it
+//!     root still massless before a single joint or an incomplete chain (a rail), or else named `world`
+//!                                      -> fixed to the world
+//!     root with mass, or massless before several joints
 //!                                      -> floats
 //! ```
 
@@ -14,23 +14,23 @@ use super::role::Role;
 use super::{Axis, Base, FreezeReason};
 use crate::description::{Description, UrdfJoint};
 
-/// The share of the robot's mass up to which a link looks as if it only had to be given one.
+/// A link with at most this fraction of the robot's mass may have a mass only because some programs require one.
 const LIGHT: f64 = 1e-2;
 
-/// How the root is attached.
+/// The decision on how the root is attached.
 pub(super) struct Judgment {
     pub(super) base: Base,
-    /// Where the robot begins: a link of the file.
+    /// The link of the file that is the root of the robot.
     pub(super) root: usize,
-    /// Why, as it follows the root's name.
+    /// The reason, worded to follow the root's name.
     pub(super) because: String,
-    /// The joints that are the floating base itself, from the root on.
+    /// The joints that form the floating base, from the root on.
     pub(super) chain: Vec<usize>,
-    /// What makes the choice doubtful.
+    /// Why the decision is doubtful, if it is.
     pub(super) caution: Option<String>,
 }
 
-/// Judges the base, unless it is `asked` for. Planar and floating joints that are not the base become frozen ones.
+/// Decides on the base, unless `asked` gives it. Planar and floating joints that are not the base become frozen.
 pub(super) fn judge(description: &Description, roles: &mut [Role], asked: Option<Base>) -> Judgment {
     let root = description.root;
     let welded = Welded::new(description, roles);
@@ -91,11 +91,11 @@ pub(super) fn judge(description: &Description, roles: &mut [Role], asked: Option
     }
 }
 
-/// The links of the file in groups that no moving joint separates.
+/// Links of the file in groups that no moving joint separates.
 struct Welded {
     group: Vec<usize>,
     masses: Vec<f64>,
-    /// How many moving joints have their parent in each group, and the last of them.
+    /// For each group, the number of moving joints that have their parent in it, and the last of these joints.
     exits: Vec<(usize, usize)>,
     world: Option<usize>,
     total: f64,
@@ -129,7 +129,7 @@ impl Welded {
         self.masses[self.group[link]]
     }
 
-    /// Whether the group of `link` weighs at most `light`; what the world weighs does not count.
+    /// Returns whether the group of `link` has at most the mass `light`. The group of the world counts as massless.
     fn is_massless(&self, link: usize, light: f64) -> bool {
         self.mass(link) <= light || self.world.is_some_and(|world| self.group[world] == self.group[link])
     }
@@ -139,8 +139,8 @@ impl Welded {
         (count == 1).then_some(joint)
     }
 
-    /// The three joints, from the root on, that let their descendants move freely in the plane, if all that they move
-    /// before weighs at most `light`.
+    /// Returns three consecutive joints, from the root on, that let their descendants move freely in the plane; `None`
+    /// if there are none, or if the links that carry them weigh more than `light`.
     fn chain(&self, description: &Description, roles: &[Role], light: f64) -> Option<[usize; 3]> {
         let mut link = description.root;
         let mut chain = [0; 3];
@@ -157,7 +157,7 @@ impl Welded {
             }
             link = description.joints[*joint].child;
         }
-        // Two of three slide, so that one turns.
+        // Two of the three joints are prismatic, so one is revolute.
         match slides[..] {
             [a, b] if (a.x * b.z - a.z * b.x).abs() > PARALLEL => Some(chain),
             _ => None,

@@ -1,4 +1,4 @@
-//! What a user must know before trusting a reduced robot, each with its remedy.
+//! Cautions: facts that a user must know before trusting a reduced robot, each with a remedy.
 
 use super::composite::is_physical;
 use super::legs::OBLIQUE;
@@ -13,50 +13,52 @@ use crate::description::{
 use crate::error::{rounded, shortest_within};
 use std::f64::consts::TAU;
 
-/// An axis up to this far off the normal \[rad\] may have been meant to be parallel to it.
+/// An axis that is off the normal by at most this angle \[rad\] may have been meant to be parallel to it.
 const NEARLY: f64 = 0.35;
-/// An axis up to this far off is so by the digits of the file \[rad\].
+/// An axis that is off by at most this angle is so because the file has few digits \[rad\].
 const SLIGHTLY: f64 = 0.02;
 /// No part of a legged robot is longer than this \[m\].
 pub(crate) const LONGEST: f64 = 10.0;
-/// A ball of steel of radius 1 m weighs no more \[kg\].
+/// Mass of a steel ball with a radius of 1 m \[kg\]: an upper bound.
 const DENSEST: f64 = 33_000.0;
-/// No radius of gyration is greater than this many sizes of the robot.
+/// A radius of gyration is at most this many times the size of the robot.
 const WIDEST: f64 = 2.0;
-/// A moment of less than this part of the robot's mass times its size squared does not matter: that of a dummy link.
+/// An inertia below this fraction of the robot's mass times its squared size does not matter, nor does a mass below
+/// this fraction of the robot's mass: it belongs to a dummy link.
 const SLIGHT: f64 = 1e-3;
-/// A moment of less than this part of the link's largest is what rotations rounded off.
+/// A moment below this fraction of the link's largest moment is a rounding error of rotations.
 const ROUNDED: f64 = 1e-9;
-/// A link of a planar model with a smaller radius of gyration \[m\] is a point.
+/// A link of a planar model with a smaller radius of gyration is a point \[m\].
 const POINT: f64 = 1e-4;
-/// No material is denser \[kg/m^3\].
+/// No material has a higher density \[kg/m^3\].
 const HEAVIEST: f64 = 23_000.0;
-/// The geometry of a mesh is not smaller than this \[m\].
+/// The geometry of a mesh is at least this large \[m\].
 const SMALLEST: f64 = 1e-3;
-/// Limits that exclude zero by no more than this are taken to hold it \[rad or m\].
+/// Limits count as containing zero if they miss it by at most this \[rad or m\].
 const AT_ZERO: f64 = 0.02;
-/// So many hinges are tried that could bring an axis into line.
+/// Number of hinges that are tried as the one that could align an axis.
 const TRIED: usize = 3;
-/// The most joints or links that are named.
+/// Largest number of joints or links that a caution names.
 const NAMED: usize = 3;
 
-/// The description in its pose and plane.
+/// The description with its reference pose and plane.
 pub(super) struct Seen<'a> {
     pub(super) description: &'a Description,
     pub(super) pose: &'a ReferencePose,
     pub(super) plane: Plane,
-    /// Whether each joint leads to one of the lowest links.
+    /// For each joint, whether it leads to one of the lowest links.
     pub(super) legs: &'a [bool],
 }
 
 impl Seen<'_> {
-    /// The joints between a joint and the root.
+    /// Returns the joints between a joint and the root, the nearest first.
     fn before(&self, joint: usize) -> impl Iterator<Item = usize> {
         let link = |joint: usize| self.description.links[self.description.joints[joint].parent].joint;
         std::iter::successors(link(joint), move |&joint| link(joint))
     }
 
-    /// How far off the plane's normal, or of a slide off the plane, an axis of a joint is \[rad\].
+    /// Returns the angle between an `axis` of a joint and the plane's normal, or the plane for a prismatic joint
+    /// \[rad\].
     fn off(&self, joint: usize, axis: [f64; 3]) -> f64 {
         match self.description.joints[joint].kind {
             JointKind::Prismatic => self.plane.off_plane(axis),
@@ -65,7 +67,7 @@ impl Seen<'_> {
     }
 }
 
-/// The cautions about joints that are frozen, each with its place in the file, where `kept` others stay.
+/// Returns the cautions about frozen joints, each given with its index in the file. `kept` joints remain movable.
 pub(super) fn about_frozen(seen: &Seen, frozen: &[(usize, FrozenJoint)], kept: usize) -> Vec<String> {
     use FreezeReason::{Asked, Base, Fixed, Kind, OffPlane};
     let with = |wanted: fn(&FreezeReason) -> bool| frozen.iter().filter(move |(_, joint)| wanted(&joint.reason));
@@ -99,7 +101,8 @@ pub(super) fn about_frozen(seen: &Seen, frozen: &[(usize, FrozenJoint)], kept: u
     cautions
 }
 
-/// The caution about links of the base that could touch the ground; the root's shapes are the ground's or the rail's.
+/// Returns the caution about links of the base that could touch the ground. Shapes of the root itself belong to the
+/// ground or the rail, and are ignored.
 pub(super) fn about_outside(description: &Description, outside: &[&UrdfLink]) -> Option<String> {
     let root = &description.links[description.root].name;
     let touching = outside.iter().filter(|link| link.name != *root && !link.collisions.is_empty());
@@ -110,12 +113,12 @@ pub(super) fn about_outside(description: &Description, outside: &[&UrdfLink]) ->
     ))
 }
 
-/// The caution about names in the file that are perhaps misspelt.
+/// Returns the caution about possibly misspelt names in the file.
 pub(super) fn about_spelling(description: &Description) -> Option<String> {
     Some(format!("not read, and perhaps misspelt: {}", names(&description.misspelt)?))
 }
 
-/// The caution about rotor inertia in the file, of joints that move.
+/// Returns the caution about rotor inertia in the file, for joints that move.
 pub(super) fn about_rotors(description: &Description, roles: &[Role]) -> Option<String> {
     let moves = |(joint, role): &(&UrdfJoint, &Role)| {
         matches!(role, Role::Moves { .. }) && description.rotors.contains(&joint.name)
@@ -127,26 +130,26 @@ pub(super) fn about_rotors(description: &Description, roles: &[Role]) -> Option<
     ))
 }
 
-/// The caution about elements that close loops, which a tree of joints has no place for.
+/// Returns the caution about elements that close loops, which a tree of joints cannot represent.
 pub(super) fn about_loops(description: &Description) -> Option<String> {
     let closing = description.ignored.iter().filter(|own| closes_loops(own.parent, &own.tag));
     let closing = names(closing.map(|own| &own.tag))?;
     Some(format!("what closes loops in the file is left out ({closing}): close them by `loops` in each state"))
 }
 
-/// Whether an element of this tag closes a loop, as extensions of URDF have it.
+/// Returns whether an element with this tag closes a loop in an extension of URDF.
 pub(super) fn closes_loops(parent: &str, tag: &str) -> bool {
     parent == "robot" && matches!(tag, "loop" | "loop_joint" | "linear_bushing_rpy")
 }
 
-/// The caution about joints that move, but whose `<axis>` the file leaves out.
+/// Returns the caution about movable joints without an `<axis>` in the file.
 pub(super) fn about_axes(description: &Description) -> Option<String> {
     let without = description.joints.iter().filter(|joint| joint.kind.has_axis() && !joint.has_axis);
     let names = names(without.map(|joint| format!("{} on line {}", joint.name, joint.location.line)))?;
     Some(format!("without an <axis>, and so about or along x: {names}; name the axis, as in <axis xyz=\"0 1 0\"/>"))
 }
 
-/// The caution about planar joints whose axis is off the normal, but nearer to it than to the plane.
+/// Returns the caution about planar joints whose axis is off the normal, but close enough to count as parallel.
 pub(super) fn about_planar(description: &Description, pose: &ReferencePose, plane: Plane) -> Option<String> {
     let off = |(joint, axis): &(&UrdfJoint, &[f64; 3])| {
         let angle = plane.off_normal(**axis);
@@ -159,7 +162,7 @@ pub(super) fn about_planar(description: &Description, pose: &ReferencePose, plan
     ))
 }
 
-/// The cautions about lengths that no legged robot has, as millimeters taken for meters or meters for millimeters.
+/// Returns the cautions about lengths that no legged robot has, for example millimeters taken for meters or vice versa.
 pub(super) fn about_lengths(description: &Description) -> Vec<String> {
     const SHAPE: &str = "a shape of";
     let span = |points: &[[f64; 3]], at: usize| {
@@ -210,7 +213,8 @@ pub(super) fn about_lengths(description: &Description) -> Vec<String> {
     large.into_iter().chain(small).collect()
 }
 
-/// The caution about a mass \[kg\] that no robot of this size \[m\] has, as grams taken for kilograms.
+/// Returns the caution about a mass \[kg\] that is too large for the robot's size \[m\], for example grams taken for
+/// kilograms.
 pub(super) fn about_mass(mass: f64, size: f64) -> Option<String> {
     (mass > DENSEST * size * size * size).then(|| {
         let [mass, size] = [mass, size].map(rounded);
@@ -220,7 +224,8 @@ pub(super) fn about_mass(mass: f64, size: f64) -> Option<String> {
     })
 }
 
-/// The cautions about joints that are held where they cannot be, as in degrees, or frozen at zero, where they cannot be.
+/// Returns the cautions about joints held beyond their limits, for example in degrees, or frozen at zero beyond their
+/// limits.
 pub(super) fn about_held(description: &Description, frozen: &[(usize, FrozenJoint)]) -> impl Iterator<Item = String> {
     let (mut held, mut at_zero) = (Vec::new(), Vec::new());
     for (index, joint) in frozen {
@@ -249,7 +254,8 @@ pub(super) fn about_held(description: &Description, frozen: &[(usize, FrozenJoin
     held.into_iter().chain(at_zero)
 }
 
-/// The caution about joints that follow one that moves, but turn or slide out of the plane.
+/// Returns the caution about mimic joints that are frozen because they leave the plane although their mimicked joint
+/// moves.
 pub(super) fn about_followers(description: &Description, pose: &ReferencePose, roles: &[Role]) -> Option<String> {
     let moves = |joint: usize| matches!(roles[joint], Role::Moves { .. });
     let followers = pose.mimicked.iter().enumerate().filter_map(|(index, mimicked)| {
@@ -265,7 +271,7 @@ pub(super) fn about_followers(description: &Description, pose: &ReferencePose, r
     ))
 }
 
-/// The caution about rotations of more than a turn, as degrees taken for radians.
+/// Returns the caution about rotations by more than a full turn, for example degrees taken for radians.
 pub(super) fn about_angles(description: &Description) -> Option<String> {
     let of_links = description.links.iter().flat_map(|link| {
         let inertial = link.inertial.iter().map(|inertial| &inertial.origin);
@@ -273,7 +279,7 @@ pub(super) fn about_angles(description: &Description) -> Option<String> {
         inertial.chain(collisions).map(|origin| (&link.name, origin.rpy))
     });
     let of_joints = description.joints.iter().map(|joint| (&joint.name, joint.origin.rpy));
-    // A whole turn may be rounded.
+    // A full turn may be rounded.
     let is_wide = |angle: &f64| angle.abs() > 1.001 * TAU;
     let (name, [roll, pitch, yaw]) = of_joints.chain(of_links).find(|(_, rpy)| rpy.iter().any(is_wide))?;
     Some(format!(
@@ -282,7 +288,8 @@ pub(super) fn about_angles(description: &Description) -> Option<String> {
     ))
 }
 
-/// The caution about limits of rotations that are multiples of 5 up to 360, one of 30 or more, as in degrees.
+/// Returns the caution about limits of revolute joints that look like degrees: multiples of 5 up to 360, at least one
+/// of 30 or more.
 pub(super) fn about_limits(description: &Description) -> Option<String> {
     let in_degrees = |limit: &f64| limit.rem_euclid(5.0) == 0.0 && limit.abs() <= 360.0;
     let is_odd = |joint: &&UrdfJoint| {
@@ -293,8 +300,8 @@ pub(super) fn about_limits(description: &Description) -> Option<String> {
     Some(format!("with limits as in degrees: {odd}; angles are in radians"))
 }
 
-/// The cautions about inertias that are half given or wrong, of these links, each with its moment about the plane's normal
-/// \[kg m^2\], of a robot of this `whole` mass \[kg\] and size \[m\].
+/// Returns the cautions about incomplete or wrong inertias. Each link has its moment about the plane's normal \[kg
+/// m^2\]; the robot has the mass `whole` \[kg\] and the `size` \[m\].
 pub(super) fn about_inertias<'l>(
     links: impl Iterator<Item = (&'l UrdfLink, f64)>,
     (whole, size): (f64, f64),
@@ -307,14 +314,14 @@ pub(super) fn about_inertias<'l>(
         ("with a single moment of inertia, which is not about the plane's normal", "only that about the normal counts"),
         ("with more mass than the densest metal has in a ball of this inertia", "inertia is in kg m^2, mass in kg"),
     ];
-    // A single moment may be that of a long body about its length.
+    // A single moment may be that of a long body about its length, and is then smaller than that of a ball.
     let least = |mass: f64, is_planar: bool| if is_planar { POINT * POINT * mass } else { of_ball(mass) };
     let mut found = kinds.map(|_| Vec::new());
     for (link, moment) in links {
         let Some(Inertial { mass, inertia, .. }) = &link.inertial else { continue };
         let moments = inertia.map(|inertia| [inertia[0][0], inertia[1][1], inertia[2][2]]).unwrap_or_default();
         let largest = moments.into_iter().fold(0.0, f64::max);
-        // Planar models give a single moment.
+        // Planar models give only one moment.
         let is_planar = moments.iter().filter(|&&moment| moment == 0.0).count() == 2;
         let kind = match inertia {
             None if *mass > 0.0 => 0,
@@ -331,20 +338,21 @@ pub(super) fn about_inertias<'l>(
     found.filter_map(|(links, (what, remedy))| Some(format!("{what}: {}; {remedy}", names(links)?))).collect()
 }
 
-/// The moment \[kg m^2\] of the smallest ball of this mass \[kg\]: no body's largest moment is less.
+/// Returns the moment of a ball of this mass \[kg\] with the highest density \[kg m^2\]: a lower bound on the largest
+/// moment of any body.
 fn of_ball(mass: f64) -> f64 {
     let radius = libm::cbrt(mass / (2.0 / 3.0 * TAU * HEAVIEST));
     0.4 * mass * radius * radius
 }
 
-/// The caution about bodies that move without mass, although they reach from joint to joint or touch the ground, or carry
-/// nothing that weighs.
+/// Returns the caution about bodies without mass that a joint moves, if they extend from joint to joint, touch the
+/// ground or carry no mass.
 pub(super) fn about_massless(robot: &Robot) -> Option<String> {
     let weighs_nothing = |body: &Body| body.mass == 0.0 && body.moment == 0.0;
-    // Of each rigid body whether it reaches from joint to joint or touches the ground, and whether a part of it weighs.
+    // For each rigid body: whether it extends from joint to joint or touches the ground, and whether any part has mass.
     let rigid: Vec<usize> = (0..robot.bodies.len()).map(|body| robot.rigid_body(body)).collect();
     let [mut has_length, mut weighs] = [vec![false; rigid.len()], vec![false; rigid.len()]];
-    // The same as `weighs`, together with all that it carries.
+    // Like `weighs`, but including all bodies that it carries.
     let mut carries = vec![false; rigid.len()];
     for (index, body) in robot.bodies.iter().enumerate().rev() {
         weighs[rigid[index]] |= !weighs_nothing(body);
@@ -355,7 +363,7 @@ pub(super) fn about_massless(robot: &Robot) -> Option<String> {
         }
     }
     robot.links.iter().for_each(|link| has_length[rigid[link.body]] |= !link.shapes.is_empty());
-    // What follows a joint may weigh something.
+    // A mimic joint of this joint may move a mass.
     let is_alone = |joint: usize| !robot.mimic_joints.iter().any(|mimic| mimic.mimicked == joint);
     let is_massless = |&(index, body): &(usize, &Body)| match body.joint {
         _ if weighs[index] => false,
@@ -369,7 +377,7 @@ pub(super) fn about_massless(robot: &Robot) -> Option<String> {
     ))
 }
 
-/// The cautions about collision meshes that could not be read, and shapes that URDF does not have.
+/// Returns the cautions about collision meshes that could not be read, and about shapes that URDF does not have.
 pub(super) fn about_shapes(description: &Description) -> impl Iterator<Item = String> {
     let (mut meshes, mut unknown) = (Vec::new(), Vec::new());
     for link in &description.links {
@@ -395,8 +403,8 @@ pub(super) fn about_shapes(description: &Description) -> impl Iterator<Item = St
     })
 }
 
-/// The caution about joints whose axes are nearly parallel to the normal, out of `all` that could move; with them each
-/// joint `stays` that is kept.
+/// Returns the caution about frozen joints whose axes are nearly in line. `all` joints could move; `stays` marks the
+/// joints that are kept if these are.
 fn about_tilted(seen: &Seen, nearly: &[&(usize, FrozenJoint)], (all, stays): (usize, &[bool])) -> String {
     let angles = nearly.iter().filter_map(|(_, joint)| match joint.reason {
         FreezeReason::OffPlane { angle, .. } => Some(angle),
@@ -408,7 +416,7 @@ fn about_tilted(seen: &Seen, nearly: &[&(usize, FrozenJoint)], (all, stays): (us
     let range = if least == most { most } else { format!("{least} to {most}") };
     let slightly = angles.filter(|&angle| angle <= SLIGHTLY).fold(0.0, f64::max);
     let mut remedies: Vec<Remedy> = Vec::new();
-    // A slide has none of its own, but lies behind a hinge that may have.
+    // A prismatic joint has no remedy of its own, but one for a hinge before it may serve it too. So hinges come first.
     let slides = |joint: usize| seen.description.joints[joint].kind == JointKind::Prismatic;
     let joints = nearly.iter().map(|(joint, _)| *joint);
     for joint in joints.clone().filter(|&joint| !slides(joint)).chain(joints.filter(|&joint| slides(joint))) {
@@ -416,12 +424,12 @@ fn about_tilted(seen: &Seen, nearly: &[&(usize, FrozenJoint)], (all, stays): (us
         let remedy = if seen.off(joint, seen.pose.axes[joint]) <= SLIGHTLY {
             ("axis_tolerance", 0, format!("`axis_tolerance: {:.1e}`", 1.1 * slightly))
         } else if seen.before(joint).any(is_held) {
-            // That serves it, too.
+            // That remedy serves this joint too.
             continue;
         } else {
             remedy(seen, joint, stays)
         };
-        // One for each joint: a hinge has one value.
+        // One remedy per joint, because a hinge has one value.
         if !remedies.iter().any(|(kind, of, _)| (*kind, *of) == (remedy.0, remedy.1)) {
             remedies.push(remedy);
         }
@@ -436,11 +444,11 @@ fn about_tilted(seen: &Seen, nearly: &[&(usize, FrozenJoint)], (all, stays): (us
     )
 }
 
-/// What keeps a joint whose axis is off the normal: what is to be set, of which joint, and in words how.
+/// A remedy that keeps a joint with a tilted axis: the setting, the joint that it applies to, and the text.
 type Remedy = (&'static str, usize, String);
 
-/// What brings the axis of a joint into line: a frozen hinge before it that can turn it there and whatever `stays`
-/// beyond it, or else the joint whose origin tilts it.
+/// Returns the remedy that aligns the axis of a joint: holding a frozen hinge before it, if this aligns all joints
+/// beyond that `stays` marks, or else correcting the joint whose origin tilts it.
 fn remedy(seen: &Seen, joint: usize, stays: &[bool]) -> Remedy {
     let Seen { description, pose, plane, .. } = seen;
     let axis = pose.axes[joint];
@@ -449,7 +457,7 @@ fn remedy(seen: &Seen, joint: usize, stays: &[bool]) -> Remedy {
         let mimics = |(own, mimicked): (usize, &Option<Mimic>)| {
             mimicked.as_ref().is_some_and(|mimicked| own == before || mimicked.joint == before)
         };
-        // One that is nearly in line is to be kept itself.
+        // A hinge that is nearly in line should itself be kept.
         matches!(kind, JointKind::Revolute | JointKind::Continuous)
             && description.joints[joint].kind != JointKind::Prismatic
             && pose.frozen[before].is_none()
@@ -472,7 +480,7 @@ fn remedy(seen: &Seen, joint: usize, stays: &[bool]) -> Remedy {
         let joint = &description.joints[*at];
         in_line(&pose.rotations[joint.parent]) && !in_line(&pose.rotations[joint.child])
     };
-    // Where what is beyond it is in line again, the axis alone is off.
+    // If joints beyond are aligned again, only this axis is off.
     let is_undone = |tilted: &usize| {
         let beyond = description.outward(description.joints[*tilted].child);
         beyond.into_iter().any(|other| stays[other] && pose.frozen[other].is_none() && is_in_line(seen, other))
@@ -497,7 +505,7 @@ fn remedy(seen: &Seen, joint: usize, stays: &[bool]) -> Remedy {
     }
 }
 
-/// Whether a joint that is kept needs no remedy.
+/// Returns whether a kept joint needs no remedy.
 fn is_in_line(seen: &Seen, joint: usize) -> bool {
     seen.description.joints[joint].kind.has_axis() && seen.off(joint, seen.pose.axes[joint]) <= seen.pose.tolerance
 }
@@ -506,8 +514,8 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Whether a turn of a hinge by this angle leaves whatever `stays` beyond it in line, or brings it there; what is off by
-/// the digits of the file may be so as before.
+/// Returns whether a rotation of a hinge by this angle aligns every joint beyond it that `stays` marks. A joint that
+/// was off only by the digits of the file may remain so.
 fn serves_all(seen: &Seen, (hinge, angle): (usize, f64), stays: &[bool]) -> bool {
     let Seen { description, pose, .. } = seen;
     let turned = turn(pose.axes[hinge], angle);
@@ -518,21 +526,21 @@ fn serves_all(seen: &Seen, (hinge, angle): (usize, f64), stays: &[bool]) -> bool
     })
 }
 
-/// The angle \[rad\] by which a turn about `hinge` brings `axis` to the plane's normal, if one does; both of length
-/// one.
+/// Returns the angle \[rad\] by which a rotation about `hinge` aligns `axis` with the plane's normal; `None` if no
+/// rotation does. Both are unit vectors.
 fn angle_into_line(axis: [f64; 3], hinge: [f64; 3], plane: Plane, tolerance: f64) -> Option<f64> {
     let [_, normal, _] = plane.axes();
     let cross =
         |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3]);
     let aim = if dot(axis, normal) < 0.0 { normal.map(|entry| -entry) } else { normal };
-    // What of both lies across the hinge.
+    // The components of both vectors across the hinge.
     let across = |vector: [f64; 3]| [0, 1, 2].map(|k| vector[k] - dot(vector, hinge) * hinge[k]);
     let (from, to) = (across(axis), across(aim));
     let angle = libm::atan2(dot(cross(from, to), hinge), dot(from, to));
     (plane.off_normal(apply(&turn(hinge, angle), axis)) <= tolerance).then_some(angle)
 }
 
-/// The first names; `None` if there are none.
+/// Returns the first [`NAMED`] names and the number of others; `None` if there are none.
 fn names<S: AsRef<str>>(names: impl IntoIterator<Item = S>) -> Option<String> {
     let mut names = names.into_iter();
     let first: Vec<S> = names.by_ref().take(NAMED).collect();

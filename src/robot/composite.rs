@@ -1,22 +1,23 @@
-//! Inertias of welded links -> that of their body.
+//! Inertias of welded links -> inertia of their body.
 //!
 //! ```text
 //!     m = sum m_i,   c = sum m_i c_i / m,   I = sum (n' R_i I_i R_i' n + m_i |c_i - c|^2)
 //! ```
 //!
-//! with distances in the plane alone and the normal n = +y (Featherstone 2008, sections 2.8 and 2.13).
+//! Distances are taken in the plane, and the normal is n = +y (Featherstone 2008, sections 2.8 and 2.13).
 
 use crate::description::Matrix;
 use crate::error::Reason;
 use crate::planar::Vector;
 
-/// Below this share of its terms a negative moment is rounding of a turned inertia.
+/// A negative moment below this fraction of its terms is a rounding error of a rotated inertia.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
-/// Files give a few digits: a moment may be greater than the other two together by this share.
+/// Files give few digits: a moment may exceed the sum of the other two by this fraction of the largest entry.
 const ROUNDED: f64 = 1e-3;
 
-/// Whether some body has this inertia about its CoG: no principal moment is greater than the other two together, so
-/// that none is negative (Featherstone 2008, section 2.13). That is, no principal minor of `tr(I) / 2 - I` is negative.
+/// Returns whether a rigid body can have this inertia about its center of mass: no principal moment exceeds the sum of
+/// the other two, which also excludes negative ones (Featherstone 2008, section 2.13). Equivalently, no principal minor
+/// of `tr(I) / 2 - I` is negative.
 pub(super) fn is_physical(inertia: &Matrix) -> bool {
     let largest = inertia.as_flattened().iter().map(|entry| entry.abs()).fold(0.0, f64::max);
     if largest == 0.0 {
@@ -33,12 +34,12 @@ pub(super) fn is_physical(inertia: &Matrix) -> bool {
     minors.into_iter().all(|minor| minor >= -ROUNDED)
 }
 
-/// The inertia that a link brings to its body, in the body's frame.
+/// The contribution of a link to the inertia of its body, in the body's frame.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct LinkInertia {
     mass: f64,
     com: Vector<f64>,
-    /// About the normal through the CoG \[kg m^2\].
+    /// Moment of inertia about the normal through the center of mass \[kg m^2\].
     pub(super) moment: f64,
 }
 
@@ -48,9 +49,9 @@ impl LinkInertia {
         Self { mass, com, moment: 0.0 }
     }
 
-    /// The part with the three-dimensional `inertia` about its CoG, whose axes are the columns of `rotation` in the
-    /// body's frame; a point mass without one. A moment about the normal that is negative by more than rounding is
-    /// refused.
+    /// Projects the three-dimensional `inertia` about the center of mass, whose axes are the columns of `rotation` in
+    /// the body's frame. Without `inertia` the result is a point mass. Returns an error if the moment about the normal
+    /// is negative by more than rounding.
     pub(super) fn projected(
         mass: f64,
         com: Vector<f64>,
@@ -77,16 +78,16 @@ impl LinkInertia {
         Ok(Self { mass, com, moment })
     }
 
-    /// Takes a negative moment, which is rounding, as zero; returns it.
+    /// Replaces a negative moment, which is rounding, by zero and returns it; `None` if the moment is not negative.
     pub(super) fn without_negative_moment(&mut self) -> Option<f64> {
         (self.moment < 0.0).then(|| std::mem::replace(&mut self.moment, 0.0))
     }
 }
 
-/// Mass, CoG and moment about the CoG of each of so many `bodies`, by the parts, each with its body's index.
+/// Returns mass, center of mass and moment about it for each of `bodies` bodies. Each part has the index of its body.
 pub(super) fn composites(bodies: usize, mut parts: Vec<(usize, LinkInertia)>) -> Vec<(f64, Vector<f64>, f64)> {
     let mut wholes = vec![composite(&[]); bodies];
-    // Those of one body keep their order, and so the sums their digits.
+    // The sort is stable: parts of one body keep their order, so sums keep their digits.
     parts.sort_by_key(|(body, _)| *body);
     for parts in parts.chunk_by(|(a, _), (b, _)| a == b) {
         wholes[parts[0].0] = composite(parts);
@@ -94,10 +95,10 @@ pub(super) fn composites(bodies: usize, mut parts: Vec<(usize, LinkInertia)>) ->
     wholes
 }
 
-/// Mass, CoG and moment about the CoG of all `parts` as one; a single one with mass keeps its digits.
+/// Returns mass, center of mass and moment about it of all `parts` together. If only one has mass, its digits are kept.
 fn composite(parts: &[(usize, LinkInertia)]) -> (f64, Vector<f64>, f64) {
     let parts = parts.iter().map(|(_, part)| part);
-    // The sum of nothing is -0.
+    // The empty sum is -0.
     let mass = 0.0 + parts.clone().map(|part| part.mass).sum::<f64>();
     let mut massive = parts.clone().filter(|part| part.mass > 0.0);
     let com = match (massive.next(), massive.next()) {
@@ -126,8 +127,8 @@ mod tests {
 
     #[test]
     fn an_inertia_gives_the_moment_about_the_normal() {
-        // Unturned and pitched, its middle entry bit for bit. Rolled by a: n in the link's axes is (0, cos a, -sin a).
-        // Yawed by a: n is (sin a, cos a, 0).
+        // Without rotation and with pitch, the moment is the middle entry bit for bit. Rolled by a, n in the link's
+        // axes is (0, cos a, -sin a). Yawed by a, n is (sin a, cos a, 0).
         let (sin, cos) = libm::sincos(0.4);
         for (rpy, expected, off) in [
             ([0.0; 3], 0.1, 0.0),
@@ -145,14 +146,14 @@ mod tests {
     fn only_some_inertias_belong_to_a_body() {
         let diagonal = |x, y, z| [[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z]];
         assert!(is_physical(&INERTIA));
-        // A ball, a rod, a plate, a point; digits that were rounded away.
+        // A ball, a rod, a plate, a point, and a plate with rounded digits.
         for [x, y, z] in [[1.0; 3], [0.0, 1.0, 1.0], [1.0, 1.0, 2.0], [0.0; 3], [1.0, 1.0, 2.001]] {
             assert!(is_physical(&diagonal(x, y, z)), "{x} {y} {z}");
         }
         for [x, y, z] in [[0.0, 1.0, 0.0], [1.0, 1.0, 2.1], [-1.0, 1.0, 1.0], [-1.0; 3]] {
             assert!(!is_physical(&diagonal(x, y, z)), "{x} {y} {z}");
         }
-        // Its principal moments are 3, 1 and 1; at any size.
+        // The principal moments are 3, 1 and 1, at any scale.
         for size in [1.0, 1e300, 1e-300] {
             let sized = |inertia: Matrix| inertia.map(|row| row.map(|entry| size * entry));
             assert!(!is_physical(&sized([[2.0, 1.0, 0.0], [1.0, 2.0, 0.0], [0.0, 0.0, 1.0]])));

@@ -1,15 +1,15 @@
-//! The legs: the joints on the way from the root to the lowest links.
+//! Legs: the joints on the paths from the root to the lowest links.
 
 use super::reference_pose::ReferencePose;
 use crate::description::Description;
 
-/// Links no higher above the lowest one than this part of the robot's height are feet.
+/// A link is a foot if its height above the lowest link is at most this fraction of the robot's height.
 const FOOT: f64 = 0.1;
 
-/// An axis of a leg up to this far off the normal turns more in the plane than out of it \[rad\].
+/// A leg's axis that is off the normal by at most this angle rotates more in the plane than out of it \[rad\].
 pub(super) const OBLIQUE: f64 = 0.9;
 
-/// Whether each joint leads to a link that is among the lowest, in the root link's axes with z up.
+/// Returns for each joint whether it leads to one of the lowest links, in the root link's axes with z up.
 pub(super) fn legs(description: &Description, pose: &ReferencePose) -> Vec<bool> {
     let joints = &description.joints;
     let heights = || pose.places.iter().map(|place| place[2]);

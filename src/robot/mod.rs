@@ -4,13 +4,14 @@
 //!     Description (links and joints of the file, 3-D) --reduce--> Robot (bodies and joints, planar)
 //! ```
 //!
-//! Links joined by fixed and frozen joints are one [`Body`]. A body's frame has its origin at its joint's origin (the
-//! root body: at the root link's origin) and, at zero joint coordinates, the axes of the plane. So no constant rotation
-//! stands between a body and its parent, and where the file turns nothing its numbers are kept bit for bit.
+//! Links connected by fixed and frozen joints are one [`Body`]. The frame of a body has its origin at the origin of its
+//! joint (the frame of the root body: at the root link's origin) and, at zero joint coordinates, the axes of the plane.
+//! So there is no constant rotation between a body and its parent, and numbers of the file that need no rotation keep
+//! their bits.
 //!
 //! ```text
 //!     Description --pose--> axes in the pose --plane--> plane --role--> revolute, prismatic or fixed
-//!     --base--> where the robot begins --tree--> bodies, places of links --composite, outline--> inertias, feet
+//!     --base--> root of the robot --tree--> bodies, poses of links --composite, outline--> inertias, feet
 //! ```
 
 mod composite;
@@ -41,13 +42,13 @@ use composite::{LinkInertia, composites};
 /// How the root body is attached.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Base {
-    /// It moves freely: q = [x, z, pitch, joints...].
+    /// The root body moves freely: q = [x, z, pitch, joints...].
     Floating,
-    /// It is bolted to the world: q = [joints...].
+    /// The root body is fixed to the world: q = [joints...].
     Fixed,
 }
 
-/// A robot reduced to its plane. It never changes; threads share it.
+/// A robot reduced to its plane. It is immutable, and threads can share it.
 ///
 /// ```
 /// # fn main() -> heelstrike::Result<()> {
@@ -69,7 +70,7 @@ pub struct Robot {
     pub(crate) reading: Reading,
 }
 
-/// Links that no moving joint separates.
+/// A rigid body: links that no moving joint separates.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Body {
     /// The link that carries the body's frame.
@@ -78,9 +79,9 @@ pub struct Body {
     pub joint: Option<ParentJoint>,
     /// Mass \[kg\].
     pub mass: f64,
-    /// CoG in the body's frame \[m\].
+    /// Center of mass in the body's frame \[m\].
     pub com: Vector<f64>,
-    /// Moment of inertia about the plane's normal through the CoG \[kg m^2\].
+    /// Moment of inertia about the plane's normal through the center of mass \[kg m^2\].
     pub moment: f64,
 }
 
@@ -88,113 +89,113 @@ pub struct Body {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[allow(missing_docs, reason = "the text of each variant names its fields")]
 pub enum ParentJoint {
-    /// A joint with a coordinate of its own: an index into [`Robot::joints`].
+    /// A joint with its own coordinate: an index into [`Robot::joints`].
     Joint(usize),
     /// A mimic joint: an index into [`Robot::mimic_joints`].
     Mimic(usize),
-    /// A fixed joint: the body is rigid on its parent (an index into [`Robot::bodies`]), with its origin there in the
-    /// parent's frame \[m\], and kept apart only on request (see [`Reductions`](crate::reductions::Reductions)).
+    /// A fixed joint to `parent` (an index into [`Robot::bodies`]); `origin` is the body's origin in the parent's frame
+    /// \[m\]. Such bodies are separate only on request (see [`Reductions`](crate::reductions::Reductions)).
     Fixed { parent: usize, origin: Vector<f64> },
 }
 
 /// A joint that moves in the plane.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Joint {
-    /// Its name in the file.
+    /// The joint's name in the file.
     pub name: String,
     /// The parent body (an index into [`Robot::bodies`]).
     pub parent: usize,
-    /// The body it moves.
+    /// The child body, which the joint moves.
     pub child: usize,
-    /// Its origin in the parent body's frame, at coordinate zero \[m\].
+    /// The joint's origin in the parent body's frame, at coordinate zero \[m\].
     pub origin: Vector<f64>,
     /// How it moves the child.
     pub axis: Axis,
-    /// The least and the greatest coordinate, as the file has them \[rad or m\]. They do not enter an impact.
+    /// The smallest and the largest coordinate in the file \[rad or m\]. They do not affect an impact.
     pub limits: Option<[f64; 2]>,
 }
 
 /// A mimic joint: q = multiplier q_mimicked + offset (URDF's `<mimic>`).
 #[derive(Debug, Clone, PartialEq)]
 pub struct MimicJoint {
-    /// The joint itself.
+    /// The joint; its coordinate is not in q.
     pub joint: Joint,
-    /// The joint that it mimics (an index into [`Robot::joints`]).
+    /// The mimicked joint (an index into [`Robot::joints`]).
     pub mimicked: usize,
-    /// How much it moves for a unit of the mimicked joint \[1, m/rad, rad/m\].
+    /// Change of the coordinate per unit of the mimicked joint's coordinate \[1, m/rad, rad/m\].
     pub multiplier: f64,
-    /// Its coordinate where that of the mimicked joint is zero \[rad, m\].
+    /// The coordinate if that of the mimicked joint is zero \[rad, m\].
     pub offset: f64,
 }
 
-/// The motion of a joint for a coordinate that grows.
+/// The motion of a joint as its coordinate increases.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[allow(missing_docs, reason = "the text of each variant names its fields")]
 pub enum Axis {
-    /// It rotates the child about the plane's normal; `sign` is +1 where the URDF's axis points along the normal, -1
-    /// where against it.
+    /// The joint rotates the child about the plane's normal. `sign` is +1 if the URDF's axis points along the normal,
+    /// and -1 if it points against the normal.
     Revolute { sign: f64 },
-    /// It moves the child along a unit vector of the parent body's frame.
+    /// The joint moves the child along a unit vector in the parent body's frame.
     Prismatic { direction: Vector<f64> },
 }
 
 impl Axis {
-    /// Whether the coordinate is an angle.
+    /// Returns whether the coordinate is an angle.
     pub fn is_revolute(&self) -> bool {
         matches!(self, Self::Revolute { .. })
     }
 }
 
-/// A link of the file and its place in the reduced tree.
+/// A link of the file, and its pose in the reduced tree.
 #[derive(Debug, Clone)]
 pub struct Link {
-    /// Its name in the file.
+    /// The link's name in the file.
     pub name: String,
-    /// The body it belongs to.
+    /// The body that contains the link (an index into [`Robot::bodies`]).
     pub body: usize,
-    /// The plane's two rows of the link's pose in the body's frame: `[rotation row (3), translation]` for forward and
-    /// up.
+    /// The rows of the link's pose in the body's frame for forward and up, the two directions of the plane: `[rotation
+    /// row (3), translation]`.
     pub pose: [[f64; 4]; 2],
     /// Collision shapes in the body's frame.
     pub shapes: Vec<FootShape>,
-    /// True where the file gives the link an `<inertial>`.
+    /// Whether the file gives the link an `<inertial>`.
     pub has_inertial: bool,
-    /// The line of the file on which it begins; `None` for a robot of no file.
+    /// The line of the file on which the link begins; `None` if the robot does not come from a file.
     pub line: Option<usize>,
 }
 
-/// Something of the file that does not enter the analysis, as in `joint "left_ankle"`, and why, as in `fixed: welded
-/// into left_shank`.
+/// A part of the file that does not enter the analysis, for example `joint "left_ankle"`, with the reason, for example
+/// `fixed: welded into left_shank`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LeftOutPart {
     /// The part, by kind and name.
     pub what: String,
-    /// The reason, and what became of it.
+    /// The reason, and what happened to the part.
     pub why: String,
 }
 
 impl Link {
-    /// A point of the link's own 3-D frame in its body's planar frame \[m\].
+    /// Returns the position in the body's planar frame of a point given in the link's 3-D frame \[m\].
     pub fn point<T: Real>(&self, offset: [f64; 3]) -> Vector<T> {
         let [x, y, z] = offset.map(T::from_f64);
         let [forward, up] = self.pose.map(|row| {
             let [a, b, c, d] = row.map(T::from_f64);
-            // Unturned links keep the given digits: adding a product with zero changes nothing.
+            // Links that are not rotated keep the given digits: adding a product with zero changes nothing.
             a * x + b * y + c * z + d
         });
         Vector::new(forward, up)
     }
 
-    /// What the coordinates of [`Link::point`] are added up from, by magnitude \[m\].
+    /// Returns the sum of the magnitudes of all terms in the coordinates of [`Link::point`] \[m\].
     pub fn stretch(&self, [x, y, z]: [f64; 3]) -> f64 {
         let terms = self.pose.iter().flat_map(|row| row.iter().zip([x, y, z, 1.0]));
         terms.map(|(a, b)| (a * b).abs()).sum()
     }
 
-    /// The point of the link's own 3-D frame, in the plane through its origin, that lies at `point` in its body's
-    /// planar frame \[m\], up to rounding.
+    /// Inverts [`Link::point`] up to rounding: returns the point in the link's 3-D frame that lies at `point` of the
+    /// body's planar frame \[m\], in the plane through the link's origin.
     pub fn offset(&self, point: Vector<f64>) -> [f64; 3] {
-        // The rows are orthonormal, so that their transpose turns back.
+        // The rows are orthonormal, so the transpose inverts the rotation.
         let [[.., x], [.., z]] = self.pose;
         let [along, up] = [point.x - x, point.z - z];
         std::array::from_fn(|axis| self.pose[0][axis] * along + self.pose[1][axis] * up)
@@ -202,47 +203,47 @@ impl Link {
 }
 
 impl Robot {
-    /// The robot's name in the file.
+    /// Returns the robot's name in the file.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// How the root is attached.
+    /// Returns how the root body is attached.
     pub fn base(&self) -> Base {
         self.base
     }
 
-    /// Rigid bodies; a parent comes before its children, the root is 0.
+    /// Returns the rigid bodies. Each parent comes before its children, and the root has index 0.
     pub fn bodies(&self) -> &[Body] {
         &self.bodies
     }
 
-    /// Joints that move independently, in the file's order: joint `k` is coordinate `base_dofs + k`.
+    /// Returns the joints that move independently, in the file's order. Joint `k` has coordinate `base_dofs + k`.
     pub fn joints(&self) -> &[Joint] {
         &self.joints
     }
 
-    /// Joints that mimic one of these, in the file's order; they have no coordinate of their own.
+    /// Returns the mimic joints, in the file's order. They have no coordinates of their own.
     pub fn mimic_joints(&self) -> &[MimicJoint] {
         &self.mimic_joints
     }
 
-    /// The links of the file, in its order; without those that are the base itself.
+    /// Returns the links of the file, in its order, without the links that belong to the base.
     pub fn links(&self) -> &[Link] {
         &self.links
     }
 
-    /// What of the file does not enter the analysis, and why.
+    /// Returns the parts of the file that do not enter the analysis, with reasons.
     pub fn left_out(&self) -> &[LeftOutPart] {
         &self.left_out
     }
 
-    /// How the file was read.
+    /// Returns how the file was read.
     pub fn reading(&self) -> &Reading {
         &self.reading
     }
 
-    /// Number of coordinates of the base: 3 if it floats, else 0.
+    /// Returns the number of coordinates of the base: 3 if it floats, else 0.
     pub fn base_dofs(&self) -> usize {
         match self.base {
             Base::Floating => 3,
@@ -250,12 +251,12 @@ impl Robot {
         }
     }
 
-    /// Number of coordinates: those of the base and one per joint.
+    /// Returns the number of coordinates: those of the base, and one per joint.
     pub fn dofs(&self) -> usize {
         self.base_dofs() + self.joints.len()
     }
 
-    /// The units of each coordinate and of its rate, in the order of q.
+    /// Returns the units of each coordinate and of its rate, in the order of q.
     pub fn units(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
         const LENGTH: (&str, &str) = ("m", "m/s");
         const ANGLE: (&str, &str) = ("rad", "rad/s");
@@ -266,15 +267,15 @@ impl Robot {
         [LENGTH, LENGTH, ANGLE].into_iter().take(self.base_dofs()).chain(joints)
     }
 
-    /// Names of the coordinates in the order of q: x, z, pitch (if the base floats), then the joints in the file's
-    /// order.
+    /// Returns the names of the coordinates in the order of q: x, z, pitch (if the base floats), then the joints in the
+    /// file's order.
     pub fn coordinates(&self) -> impl Iterator<Item = &str> {
         let base = ["x", "z", "pitch"].into_iter().take(self.base_dofs());
         base.chain(self.joints.iter().map(|joint| joint.name.as_str()))
     }
 
-    /// The parent body of a joint, the joint's origin in that body's frame at coordinate zero \[m\], and its motion
-    /// (`None` for a fixed joint).
+    /// Returns the parent body of a joint, the joint's origin in that body's frame at coordinate zero \[m\], and its
+    /// motion (`None` for a fixed joint).
     pub fn hinge(&self, mover: ParentJoint) -> (usize, Vector<f64>, Option<Axis>) {
         let joint = match mover {
             ParentJoint::Joint(joint) => &self.joints[joint],
@@ -284,17 +285,17 @@ impl Robot {
         (joint.parent, joint.origin, Some(joint.axis))
     }
 
-    /// Mass of all that can move: of a bolted robot without the root body \[kg\].
+    /// Returns the mass of all bodies that can move \[kg\]: with a fixed base, not the root and bodies fixed to it.
     pub fn mass(&self) -> f64 {
         (0..self.bodies.len()).filter(|&body| self.moves(body)).map(|body| self.bodies[body].mass).sum()
     }
 
-    /// The index in [`Robot::links`] of the link of this name.
+    /// Returns the index in [`Robot::links`] of the link with this name; `None` if there is none.
     pub fn link(&self, name: &str) -> Option<usize> {
         self.links.iter().position(|link| link.name == name)
     }
 
-    /// Why no link has that name.
+    /// Returns the reason why no link has this name.
     pub fn no_link(&self, name: &str) -> Reason {
         if self.reading.outside.iter().any(|outside| outside == name) {
             return Reason::Inconsistent(format!("link \"{name}\" is part of the base, not of the robot"));
@@ -302,18 +303,19 @@ impl Robot {
         Reason::UnknownName { what: "link", name: name.to_owned() }
     }
 
-    /// The moving joint of that name.
+    /// Returns the index in [`Robot::joints`] of the joint with this name; `None` if there is none.
     pub fn joint(&self, name: &str) -> Option<usize> {
         self.joints.iter().position(|joint| joint.name == name)
     }
 
-    /// The joint of that name in the file that has no coordinate in the reduced robot: it is frozen, or part of the
-    /// base.
+    /// Returns the joint of the file with this name if it has no coordinate in the reduced robot, because it is frozen
+    /// or part of the base; else `None`.
     pub fn frozen(&self, name: &str) -> Option<&FrozenJoint> {
         self.reading.frozen.iter().find(|frozen| frozen.name == name)
     }
 
-    /// The body that `body` is rigid on in the end: itself, if it is not kept apart from another.
+    /// Follows fixed joints from `body` toward the root and returns the last body, which is `body` itself if it has
+    /// none.
     pub(crate) fn rigid_body(&self, body: usize) -> usize {
         let mut at = body;
         while let Some(ParentJoint::Fixed { parent, .. }) = self.bodies[at].joint {
@@ -322,16 +324,16 @@ impl Robot {
         at
     }
 
-    /// Whether a body can move: not the root of a bolted robot, nor what is fixed to it.
+    /// Returns whether a body can move. The root of a fixed base cannot, nor can bodies on fixed joints to it.
     fn moves(&self, body: usize) -> bool {
         self.base == Base::Floating || self.bodies[self.rigid_body(body)].joint.is_some()
     }
 
-    /// The CoG of each body together with all that is fixed to it, in its frame \[m\]; `None` for a body that is fixed
-    /// to another.
+    /// Returns the center of mass of each body together with all bodies fixed to it, in its frame \[m\]; `None` for a
+    /// body that is fixed to another.
     pub(crate) fn centers(&self) -> Vec<Option<Vector<f64>>> {
         let mut parts = Vec::with_capacity(self.bodies.len());
-        // The body that each is rigid on in the end, and its own origin there.
+        // For each body, the result of `rigid_body`, and the body's origin in that body's frame.
         let mut grounds: Vec<(usize, Vector<f64>)> = Vec::with_capacity(self.bodies.len());
         for (index, body) in self.bodies.iter().enumerate() {
             let (ground, place) = match body.joint {
@@ -345,8 +347,8 @@ impl Robot {
         wholes.map(|(index, (_, center, _))| (grounds[index].0 == index).then_some(center)).collect()
     }
 
-    /// The greatest distance from the root's origin to a CoG or to one of these shapes of bodies, with all joints at
-    /// zero \[m\]; of a robot that is one point 1 m.
+    /// Returns the greatest distance from the root's origin to a center of mass or to one of these shapes of bodies,
+    /// with all joints at zero \[m\]; 1 m if the robot is a single point.
     pub(crate) fn size<'s>(&self, shapes: impl Iterator<Item = (usize, &'s FootShape)>) -> f64 {
         let mut origins = vec![Vector::zero(); self.bodies.len()];
         for (index, body) in self.bodies.iter().enumerate() {

@@ -1,40 +1,40 @@
-//! How a file was read: what was chosen, why, and what became of joints that have no coordinate.
+//! Report of how a file was read: the choices with reasons, and the joints that have no coordinate.
 
 use super::plane::Plane;
 use crate::description::JointKind;
 use std::fmt;
 
-/// How a file was read.
+/// Report of how a file was read.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub struct Reading {
     /// The plane that the robot was reduced to.
     pub plane: Plane,
-    /// Why that plane was taken.
+    /// Why this plane was chosen.
     pub plane_because: PlaneReason,
-    /// The plane that would keep most joints and how many, where that is more than in this one.
+    /// The plane that would keep the most joints, and their number, if they are more than in this plane.
     pub better_plane: Option<(Plane, usize)>,
     /// Why the base is floating or fixed.
     pub base_because: String,
-    /// Joints of the file without a coordinate, in its order.
+    /// Joints of the file that have no coordinate, in the file's order.
     pub frozen: Vec<FrozenJoint>,
-    /// Links of the file that are not part of the robot but of the base, in its order.
+    /// Links of the file that belong to the base and not to the robot, in the file's order.
     pub outside: Vec<String>,
-    /// What a user must know before trusting the reduced robot, each with its remedy.
+    /// Facts that a user must know before trusting the reduced robot, each with a remedy.
     pub cautions: Vec<String>,
 }
 
-/// Why a plane was taken.
+/// Why a plane was chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum PlaneReason {
-    /// It was asked for.
+    /// The user asked for it.
     Asked,
     /// All axes of revolute and continuous joints are parallel to its normal.
     CommonAxis,
-    /// More revolute and continuous joints on the way to the lowest links turn in it than in another.
+    /// Of x-z and y-z, more revolute and continuous joints on the paths to the lowest links rotate in it; x-z if equal.
     Legs,
-    /// It is URDF's usual sagittal plane, and the axes do not suggest another.
+    /// It is the usual sagittal plane of URDF, and the axes do not suggest another.
     #[default]
     Usual,
 }
@@ -42,13 +42,13 @@ pub enum PlaneReason {
 /// A joint of the file that has no coordinate in the reduced robot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrozenJoint {
-    /// Its name in the file.
+    /// The joint's name in the file.
     pub name: String,
     /// Why it has no coordinate.
     pub reason: FreezeReason,
-    /// The body that its child is welded into; for a joint of the base the robot's root link.
+    /// The body that the joint's child is welded into. For a joint of the base, the robot's root link.
     pub body: String,
-    /// False where its child is kept apart as a body of its own, `body`.
+    /// False if the joint's child is a separate body, which is then `body`.
     pub welded: bool,
 }
 
@@ -57,23 +57,23 @@ pub struct FrozenJoint {
 #[allow(missing_docs, reason = "the text of each variant names its fields")]
 #[non_exhaustive]
 pub enum FreezeReason {
-    /// It is fixed.
+    /// The joint is fixed.
     Fixed,
-    /// The user froze it at this value \[rad or m\].
+    /// The user froze the joint at this value \[rad or m\].
     Asked { value: f64 },
-    /// It would lead out of the plane, and is frozen at zero: the angle from a revolute joint's axis to the plane's
-    /// normal, or from a prismatic one's (which `slides`) to the plane \[rad\].
+    /// The joint would leave the plane, and is frozen at zero. `angle` is that between a revolute axis and the plane's
+    /// normal, or between a prismatic axis (`slides`) and the plane \[rad\].
     OffPlane { angle: f64, slides: bool },
-    /// It mimics a joint that is frozen, which puts it at this value \[rad or m\].
+    /// The joint mimics a frozen joint, which puts it at this value \[rad or m\].
     Follows { mimicked: String, value: f64 },
-    /// A joint of this kind is frozen at zero unless it is the base.
+    /// The joint is of a kind that is frozen at zero unless it is the base.
     Kind(JointKind),
-    /// It is part of the floating base itself, whose coordinates are x, z and pitch.
+    /// The joint is part of the floating base, whose coordinates are x, z and pitch.
     Base,
 }
 
 impl Reading {
-    /// Why the plane was taken, and whether another one would keep more joints.
+    /// Returns why the plane was chosen, and whether another one would keep more joints.
     pub fn plane_in_words(&self) -> String {
         let because = match self.plane_because {
             PlaneReason::Asked => "as asked",
@@ -89,7 +89,7 @@ impl Reading {
 }
 
 impl FrozenJoint {
-    /// Why it has no coordinate and what became of its child, in words.
+    /// Returns why the joint has no coordinate, and what happened to its child.
     pub fn why(&self) -> String {
         let Self { body, reason, .. } = self;
         match reason {

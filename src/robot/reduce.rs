@@ -1,5 +1,5 @@
-//! Description -> robot: the tree placed at zero coordinates, projected into its plane, and welded at joints that leave
-//! it.
+//! Description -> robot: places the tree at zero coordinates, projects it into its plane, and welds joints that leave
+//! the plane.
 
 use super::composite::{LinkInertia, composites};
 use super::legs::{OBLIQUE, legs};
@@ -14,53 +14,55 @@ use crate::description::{self, Description, Inertial, JointKind, UrdfLink, produ
 use crate::error::{Error, Reason, Result, finite};
 use crate::reductions::Reductions;
 
-/// What a user may say about the reduction; plane and base are found where they are not given.
+/// Options of the reduction. Plane and base are found automatically if they are not given.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Reduction {
-    /// The plane; found from the axes of the joints if it is not given.
+    /// The plane; by default it is found from the axes of the joints.
     pub plane: Option<Plane>,
-    /// Joints (indices into [`Description::joints`]) that are welded at these values \[rad or m\]; in this pose the
-    /// axes are judged.
+    /// Joints (indices into [`Description::joints`]) that are welded at these values \[rad or m\]. Axes are tested in
+    /// this pose.
     pub hold: Vec<(usize, f64)>,
-    /// Whether the base floats; found from masses and joints if it is not given.
+    /// Whether the base floats; by default this is found from masses and joints.
     pub base: Option<Base>,
-    /// The greatest angle by which an axis may be off the plane's normal (of a prismatic joint, off the plane), and is
-    /// taken as exactly in line \[rad\]; by default 1e-3.
+    /// The greatest angle between a revolute axis and the plane's normal, or between a prismatic axis and the plane, at
+    /// which the joint is kept \[rad\]. Its axis then counts as exact. The default is 1e-3.
     pub axis_tolerance: Option<f64>,
     /// Which links are welded.
     pub reductions: Reductions,
 }
 
 impl Reduction {
-    /// The greatest [`axis_tolerance`](Self::axis_tolerance): a hinge farther off lies rather in the plane \[rad\].
+    /// The greatest allowed [`axis_tolerance`](Self::axis_tolerance) \[rad\]. At greater angles, a hinge is closer to
+    /// lying in the plane.
     pub const WIDEST_TOLERANCE: f64 = 0.5;
 }
 
-/// No legged robot without shapes is taken to be smaller \[m\].
+/// The size that a robot without shapes has at least \[m\].
 const USUAL: f64 = 1.0;
 
 impl Robot {
-    /// Reads the text of a URDF file and reduces it to its plane.
+    /// Reads a URDF text and reduces the robot to its plane.
     ///
     /// # Errors
-    /// Those of [`Description::from_urdf`] and [`Robot::reduce`].
+    /// Returns an error in the cases of [`Description::from_urdf`] and [`Robot::reduce`].
     pub fn from_urdf(text: &str) -> Result<Self> {
         Self::reduce(&Description::from_urdf(text)?, &Reduction::default())
     }
 
     /// Reduces `description` to a plane of its root link.
     ///
-    /// The plane is the one whose normal all revolute and continuous axes are parallel to, else that of x-z and y-z
-    /// which more of those on the way to the lowest links are normal to. Joints that turn about the normal or slide in
-    /// the plane, both within the tolerance, stay; all others are frozen at zero, with the inertia that their links
-    /// have then. The base floats, is bolted to the world, or is a chain of the file's own joints. [`Robot::reading`]
-    /// reports what was found and why, [`Robot::left_out`] what does not enter the analysis.
+    /// The plane is the one whose normal is parallel to all revolute and continuous axes. If there is none, it is x-z
+    /// or y-z, whichever is normal to more of these axes on the paths to the lowest links. Joints that rotate about the
+    /// normal or slide in the plane, both within the tolerance, are kept. All others are frozen at zero, with the
+    /// inertia that their links have there. The base floats, is fixed to the world, or is a chain of the file's own
+    /// joints. [`Robot::reading`] reports these choices with reasons, and [`Robot::left_out`] lists what does not enter
+    /// the analysis.
     ///
     /// # Errors
-    /// [`Reason::Inconsistent`] for joints that follow each other in a circle, for a joint that cannot be frozen at a
-    /// value, and where nothing that moves has mass; [`Reason::OutOfRange`] for a negative moment of inertia about the
-    /// normal, and for an axis tolerance beyond [`Reduction::WIDEST_TOLERANCE`]; [`Reason::NotFinite`] where sizes or
-    /// masses add up to more than an f64 holds.
+    /// Returns [`Reason::Inconsistent`] if mimic joints form a cycle, if a joint cannot be frozen at a value, or if
+    /// nothing that moves has mass. Returns [`Reason::OutOfRange`] for a negative moment of inertia about the normal,
+    /// and for an axis tolerance beyond [`Reduction::WIDEST_TOLERANCE`]. Returns [`Reason::NotFinite`] if sums of sizes
+    /// or masses exceed the range of f64.
     pub fn reduce(description: &Description, reduction: &Reduction) -> Result<Self> {
         let tolerance = reduction.axis_tolerance.unwrap_or(PARALLEL);
         if !(0.0..=Reduction::WIDEST_TOLERANCE).contains(&tolerance) {
@@ -147,14 +149,14 @@ impl Robot {
         robot.left_out.extend(left_out::passed_over(description));
         let mut shapes =
             robot.links.iter().flat_map(|link| link.shapes.iter().map(|shape| (link.body, shape))).peekable();
-        // Without shapes only the centers of gravity are known.
+        // Without shapes, only the centers of mass are known.
         let least = if shapes.peek().is_some() { 0.0 } else { USUAL };
         let size = robot.size(shapes).max(least);
         let moving = description.links.iter().zip(moments).zip(&tree.places);
         let moving = moving.filter(|(_, place)| place.as_ref().is_some_and(|place| robot.moves(place.body)));
         let cautions = caution::about_inertias(moving.map(|(link, _)| link), (robot.mass(), size));
         robot.reading.cautions.extend(cautions);
-        // What slides may reach farther than at zero.
+        // With prismatic joints, the robot may reach farther than at zero.
         let slides = robot.joints.iter().any(|joint| !joint.axis.is_revolute());
         robot.reading.cautions.extend(caution::about_mass(robot.mass(), size).filter(|_| !slides));
         robot.reading.cautions.extend(caution::about_massless(&robot));
@@ -171,7 +173,7 @@ impl Robot {
     }
 }
 
-/// The plane that is `asked` for, or that all hinges lie along, or that most hinges of the `legs` lie along.
+/// Returns the plane that is `asked` for, else the plane of all hinges, else the plane of most hinges of the `legs`.
 fn find_plane(
     description: &Description,
     pose: &ReferencePose,
@@ -198,7 +200,8 @@ fn find_plane(
     }
 }
 
-/// The plane in which most joints move, if that is more than in this one, where they have the roles `here`.
+/// Returns the plane that keeps the most joints, with their number; `None` if none keeps more than the current plane,
+/// in which the joints have the roles `here`.
 fn better_plane(description: &Description, pose: &ReferencePose, here: (Plane, &[Role])) -> Option<(Plane, usize)> {
     let can_move = |kind| matches!(kind, JointKind::Revolute | JointKind::Continuous | JointKind::Prismatic);
     let moving = |roles: &[Role]| {
@@ -212,11 +215,11 @@ fn better_plane(description: &Description, pose: &ReferencePose, here: (Plane, &
     }
     let others = Plane::ALL.into_iter().filter(|&other| other != plane);
     let others = others.map(|other| (other, moving(&roles(description, pose, other))));
-    // Of equally good ones the first.
+    // Of equally good planes the first is taken.
     others.rev().max_by_key(|&(_, moving)| moving).filter(|&(_, most)| most > here)
 }
 
-/// The joints without a coordinate, each with its place in the file, in this order.
+/// Returns the joints without a coordinate, in the file's order, each with its index in the file.
 fn frozen(description: &Description, roles: &[Role], tree: &Tree, found: &base::Judgment) -> Vec<(usize, FrozenJoint)> {
     let joints = description.joints.iter().zip(roles).enumerate();
     let frozen = joints.filter_map(|(index, (joint, role))| {
@@ -226,7 +229,7 @@ fn frozen(description: &Description, roles: &[Role], tree: &Tree, found: &base::
                 let welded = !matches!(body.joint, Some(ParentJoint::Fixed { .. }));
                 Some((index, FrozenJoint { name, reason: reason.clone(), body: body.name.clone(), welded }))
             }
-            // A weld among links of the base says nothing about the robot.
+            // A frozen joint between links of the base says nothing about the robot.
             (role, outside) if found.chain.contains(&index) || outside.is_none() && matches!(role, Role::Frozen(_)) => {
                 let root = description.links[found.root].name.clone();
                 Some((index, FrozenJoint { name, reason: FreezeReason::Base, body: root, welded: true }))
@@ -237,7 +240,7 @@ fn frozen(description: &Description, roles: &[Role], tree: &Tree, found: &base::
     frozen.collect()
 }
 
-/// What is left out of joints, in the file's order, and of links that are not part of the robot.
+/// Returns what is left out about joints, in the file's order, and the links that are not part of the robot.
 fn joints_left_out(description: &Description, roles: &[Role], tree: &Tree, reading: &Reading) -> Vec<LeftOutPart> {
     let mut frozen = reading.frozen.iter().peekable();
     let mut all = Vec::new();
@@ -255,7 +258,7 @@ fn joints_left_out(description: &Description, roles: &[Role], tree: &Tree, readi
     all
 }
 
-/// `link` with its collision shapes, in its body's frame.
+/// Returns `link` with its collision shapes in its body's frame.
 fn reduce_link(link: &UrdfLink, place: &Place, left_out: &mut Vec<LeftOutPart>) -> Link {
     let pose = [0, 2].map(|row| {
         let [a, b, c] = place.rotation[row];
@@ -279,7 +282,7 @@ fn reduce_link(link: &UrdfLink, place: &Place, left_out: &mut Vec<LeftOutPart>) 
     }
 }
 
-/// Refuses a robot whose sums have left the range of f64.
+/// Returns an error if a sum exceeds the range of f64.
 fn refuse_overflow(robot: &Robot) -> Result<()> {
     for body in &robot.bodies {
         let inertia = [body.mass, body.com.x, body.com.z, body.moment];

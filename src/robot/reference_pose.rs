@@ -1,32 +1,33 @@
-//! The pose in which axes are judged: frozen joints, and those that follow them, at their values, all others at zero.
+//! The pose in which axes are tested: frozen joints and their mimic joints at their values, all others at zero.
 //!
 //! ```text
 //!     R_child = R_parent R_origin turn(a, q)          axis in the root's axes = R_parent R_origin a
-//!     p_child = p_parent + R_parent xyz + R_parent R_origin a q, of a slide
+//!     p_child = p_parent + R_parent xyz + R_parent R_origin a q, for a prismatic joint
 //! ```
 
 use crate::description::{Description, JointKind, Matrix, Mimic, Pose, UrdfJoint, apply, product, turn, unit};
 use crate::error::{Reason, Result};
 
-/// Every joint's axis, and where frozen joints are.
+/// Axes of all joints and poses of all links, with the values of frozen joints.
 pub(super) struct ReferencePose {
-    /// The value at which a joint is to be frozen \[rad or m\], by the joint's index; those that mimic it are frozen
+    /// For each joint, the value at which it is to be frozen \[rad or m\]. Mimic joints of a frozen joint are frozen
     /// too.
     pub(super) frozen: Vec<Option<f64>>,
-    /// The joint that a joint mimics in the end, by its index.
+    /// For each joint, the joint that it finally mimics, after chains of mimic joints are resolved.
     pub(super) mimicked: Vec<Option<Mimic>>,
-    /// Each joint's axis, of length one, in the root link's axes.
+    /// For each joint, its axis as a unit vector in the root link's axes.
     pub(super) axes: Vec<[f64; 3]>,
-    /// Each link's axes, as columns, in those of the root link.
+    /// For each link, its axes as columns, in the root link's axes.
     pub(super) rotations: Vec<Matrix>,
-    /// Each link's origin in the root link's frame \[m\].
+    /// For each link, its origin in the root link's frame \[m\].
     pub(super) places: Vec<[f64; 3]>,
-    /// The greatest angle by which an axis may be off the plane's normal and counts as parallel to it \[rad\].
+    /// The greatest angle between an axis and the plane's normal at which they count as parallel \[rad\].
     pub(super) tolerance: f64,
 }
 
 impl ReferencePose {
-    /// The pose with these joints frozen at these values, no joint twice, and none without a coordinate of its own.
+    /// Creates the pose with the joints in `hold` frozen at these values. Returns an error if a joint appears twice or
+    /// has no coordinate of its own, or if a value is not finite.
     pub(super) fn new(description: &Description, hold: &[(usize, f64)], tolerance: f64) -> Result<Self> {
         let joints = &description.joints;
         let mut frozen = vec![None; joints.len()];
@@ -54,7 +55,7 @@ impl ReferencePose {
         Ok(pose)
     }
 
-    /// Finds axes, rotations and places.
+    /// Computes axes, rotations and places.
     fn turn(&mut self, description: &Description) {
         let Self { frozen, axes, rotations, places, .. } = self;
         for index in description.outward(description.root) {
@@ -69,10 +70,10 @@ impl ReferencePose {
         }
     }
 
-    /// Moves joints that follow one which is frozen at zero to where that puts them; whether there are any.
+    /// Freezes mimic joints at their offset if their mimicked joint is frozen at zero. Returns whether there were any.
     ///
-    /// Only those that `stay` frozen with the joint that they follow, which is their second argument; the third says
-    /// whether they turn it, being on the way to it.
+    /// This applies only if `stay(mimic joint, mimicked joint, turns)` is true. `turns` tells whether the mimic joint
+    /// is on the path from the root to the mimicked joint, and so rotates it.
     pub(super) fn follow(&mut self, description: &Description, stay: impl Fn(usize, usize, bool) -> bool) -> bool {
         let mut moved = false;
         for (index, mimicked) in self.mimicked.iter().enumerate() {
@@ -92,7 +93,7 @@ impl ReferencePose {
     }
 }
 
-/// How a joint that is frozen at `value` turns its child.
+/// Returns the rotation of the child by a joint that is frozen at `value`.
 pub(super) fn frozen_turn(joint: &UrdfJoint, value: f64) -> Matrix {
     match joint.kind {
         JointKind::Revolute | JointKind::Continuous => turn(unit(joint.axis), value),
@@ -100,7 +101,7 @@ pub(super) fn frozen_turn(joint: &UrdfJoint, value: f64) -> Matrix {
     }
 }
 
-/// How a joint that is frozen at `value` shifts its child, in the joint's frame \[m\].
+/// Returns the displacement of the child by a joint that is frozen at `value`, in the joint's frame \[m\].
 pub(super) fn frozen_shift(joint: &UrdfJoint, value: f64) -> [f64; 3] {
     match joint.kind {
         JointKind::Prismatic => unit(joint.axis).map(|component| component * value),

@@ -1,9 +1,9 @@
-//! What each joint of the file is in the plane: revolute, prismatic, or fixed.
+//! The role of each joint of the file in the plane: revolute, prismatic, base or frozen.
 //!
 //! ```text
-//!     revolute:   angle(a, n) <= tolerance      ->  it turns about ±n exactly         else frozen
-//!     prismatic:  angle(a, plane) <= tolerance  ->  it slides along a in the plane    else frozen
-//!     planar:     angle(a, n) <= 0.9            ->  the base itself                   else it slides along n x a
+//!     revolute:   angle(a, n) <= tolerance      ->  rotates about ±n exactly          else frozen
+//!     prismatic:  angle(a, plane) <= tolerance  ->  slides along a in the plane       else frozen
+//!     planar:     angle(a, n) <= 0.9            ->  the base itself                   else slides along n x a
 //! ```
 
 use super::legs::OBLIQUE;
@@ -13,26 +13,26 @@ use super::{Axis, FreezeReason};
 use crate::description::{Description, JointKind, Mimic, UrdfJoint, apply, unit};
 use crate::planar::Vector;
 
-/// An axis this near to the normal is off by rounding alone \[rad\].
+/// An axis this close to the normal is off by rounding only \[rad\].
 const ROUNDING: f64 = 1e-9;
 
-/// What a joint is in the plane.
+/// The role of a joint in the plane.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Role {
-    /// It moves: about or along this axis, by itself or as a mimic joint.
+    /// The joint moves about or along this axis, independently or as a mimic joint.
     Moves {
         axis: Axis,
         mimicked: Option<Mimic>,
-        /// By how much its axis had to be turned into line \[rad\]; 0 for less than rounding.
+        /// The angle by which the axis was corrected \[rad\]; 0 if it is only rounding.
         tilt: f64,
     },
-    /// Planar or floating: the base itself where it joins the robot to the world.
+    /// A planar or floating joint. It is the base if it connects the robot to the world.
     Free,
-    /// It keeps its value in the pose.
+    /// The joint keeps its value in the reference pose.
     Frozen(FreezeReason),
 }
 
-/// The role of every joint.
+/// Returns the role of every joint.
 pub(super) fn roles(description: &Description, pose: &ReferencePose, plane: Plane) -> Vec<Role> {
     let joints = &description.joints;
     let mut roles: Vec<Role> = (0..joints.len()).map(|index| role(&joints[index], index, pose, plane)).collect();
@@ -40,12 +40,12 @@ pub(super) fn roles(description: &Description, pose: &ReferencePose, plane: Plan
         let Some(mimicked) = mimicked else { continue };
         let value = pose.frozen[index].unwrap_or(0.0);
         let follows = || Role::Frozen(FreezeReason::Follows { mimicked: joints[mimicked.joint].name.clone(), value });
-        // The mimicked joint mimics none, so that its own role stays.
+        // A mimicked joint is not a mimic joint itself, so this loop does not change its role.
         let is_followed = matches!(roles[mimicked.joint], Role::Moves { .. });
         match &mut roles[index] {
             Role::Moves { mimicked: followed, .. } if is_followed => *followed = Some(mimicked.clone()),
             role @ Role::Moves { .. } => *role = follows(),
-            // Reported as what it is: frozen at zero whatever the mimicked joint does.
+            // These joints are reported by their own reason: they are frozen at zero whatever the mimicked joint does.
             Role::Free | Role::Frozen(_) => {}
         }
         if pose.frozen[index].is_some() && joints[index].kind != JointKind::Fixed {
@@ -55,10 +55,11 @@ pub(super) fn roles(description: &Description, pose: &ReferencePose, plane: Plan
     roles
 }
 
-/// Whether a joint that follows another one stays frozen with it at its offset, also if it then `turns` that.
+/// Returns whether a mimic joint `follower` stays frozen at its offset together with its frozen mimicked joint
+/// `followed`. If `turns`, the follower is on the path to the mimicked joint and rotates that joint as well.
 ///
-/// A joint that is frozen because of its axis may move after a turn, but not after one in the plane, to which axes belong
-/// that are no farther off than `tolerance`.
+/// A mimicked joint that is frozen because of its axis may become movable by this rotation. A rotation in the plane
+/// cannot do that; an axis counts as in the plane if it is off by at most `tolerance`.
 pub(super) fn stays(roles: &[Role], tolerance: f64, (follower, followed): (usize, usize), turns: bool) -> bool {
     let in_plane = matches!(roles[follower], Role::Frozen(FreezeReason::Follows { .. }));
     let keeps = match roles[followed] {
@@ -69,7 +70,7 @@ pub(super) fn stays(roles: &[Role], tolerance: f64, (follower, followed): (usize
     matches!(roles[follower], Role::Frozen(_)) && (keeps || !turns)
 }
 
-/// A joint's role by itself.
+/// Returns the role of a joint, disregarding mimicry.
 fn role(joint: &UrdfJoint, index: usize, pose: &ReferencePose, plane: Plane) -> Role {
     let kind = joint.kind;
     if let (Some(value), true) = (pose.frozen[index], kind.has_axis()) {
@@ -84,9 +85,9 @@ fn role(joint: &UrdfJoint, index: usize, pose: &ReferencePose, plane: Plane) -> 
     match kind {
         JointKind::Fixed => Role::Frozen(FreezeReason::Fixed),
         JointKind::Spherical => Role::Frozen(FreezeReason::Kind(kind)),
-        // Without an <axis>, or with one that is nearly normal, it is meant in this plane.
+        // Without an <axis>, or with one close to the normal, the joint is taken to move in this plane.
         JointKind::Planar if joint.has_axis && plane.off_normal(axis) > OBLIQUE => {
-            // Its one motion in the plane, counted forward or up.
+            // The joint's only motion in the plane, positive forward or up.
             let [x, z] = if f64::max(z, -x) > f64::max(-z, x) { [z, -x] } else { [-z, x] };
             Role::Moves { axis: along(x, z), mimicked: None, tilt: 0.0 }
         }

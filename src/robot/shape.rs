@@ -1,10 +1,10 @@
 //! The outline of a collision shape in the plane.
 //!
 //! ```text
-//!     outline = convex polygon of corners + rim          (every point of the one added to every point of the other)
+//!     outline = convex polygon of corners + rim          (the sum of each point of one and each of the other)
 //!
 //!     corners  rim      shape                            corners  rim      shape
-//!     one      point    point                            three +  point    box, convex hull of a mesh
+//!     one      point    point                            three +  point    box, cylinder in the plane, mesh
 //!     one      circle   sphere, cylinder along n         two      ellipse  cylinder oblique to the plane
 //!     two      point    flat plate, upright
 //!     two      circle   capsule
@@ -12,21 +12,22 @@
 
 use crate::planar::Vector;
 
-/// A collision shape in the plane, rigid in its body's frame: a convex polygon of corners swept by a rim.
+/// The outline of a collision shape in the plane, rigid in its body's frame: a convex polygon of corners swept by a
+/// rim.
 #[derive(Debug, Clone)]
 pub struct FootShape {
     corners: Vec<Vector<f64>>,
-    /// What stands about each corner.
+    /// The rim about each corner.
     pub rim: Rim,
-    /// The file of the mesh whose hull it is.
+    /// The file name of the mesh, if the outline is the hull of one.
     pub mesh: Option<String>,
 }
 
-/// What stands about each corner of a shape.
+/// The curve about each corner of a shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[allow(missing_docs, reason = "the text of each variant names its fields")]
 pub enum Rim {
-    /// A circle of this radius \[m\]; of radius 0, the corner itself.
+    /// A circle of this radius \[m\]. A radius of 0 means the corner itself.
     Circle { radius: f64 },
     /// The projection of a circle in space: `cos(s) a + sin(s) b` for all s, with two conjugate half diameters a, b in
     /// the body's frame \[m\].
@@ -34,9 +35,10 @@ pub enum Rim {
 }
 
 impl Rim {
-    /// The rim's point that lies farthest along the unit vector `direction`, seen from its center \[m\].
+    /// Returns the rim's point that lies farthest along the unit vector `direction`, relative to the rim's center
+    /// \[m\].
     ///
-    /// Of an ellipse: `(a (a.d) + b (b.d)) / |(a.d, b.d)|`, the gradient of its support function |(a.d, b.d)|.
+    /// For an ellipse this is `(a (a.d) + b (b.d)) / |(a.d, b.d)|`, the gradient of its support function |(a.d, b.d)|.
     pub fn support(&self, direction: Vector<f64>) -> Vector<f64> {
         match *self {
             Self::Circle { radius } => direction * radius,
@@ -48,7 +50,7 @@ impl Rim {
         }
     }
 
-    /// How far it reaches along the unit vector `direction` \[m\].
+    /// Returns how far the rim extends from its center along the unit vector `direction` \[m\].
     pub fn reach(&self, direction: Vector<f64>) -> f64 {
         match *self {
             Self::Circle { radius } => radius,
@@ -56,7 +58,7 @@ impl Rim {
         }
     }
 
-    /// No point of it is farther from its center \[m\].
+    /// Returns an upper bound on the distance of the rim's points from its center \[m\].
     pub fn bound(&self) -> f64 {
         match *self {
             Self::Circle { radius } => radius,
@@ -66,26 +68,26 @@ impl Rim {
 }
 
 impl FootShape {
-    /// A disc; of radius 0, a point. `center` in the body's frame, both in meters.
+    /// Creates a disc, or a point if the radius is 0. `center` is in the body's frame; both are in meters.
     pub fn disc(center: Vector<f64>, radius: f64) -> Self {
         Self { corners: vec![center], rim: Rim::Circle { radius }, mesh: None }
     }
 
-    /// The polygon of `corners` \[m\] in the body's frame, convex and counter-clockwise seen with forward to the right
-    /// and up upward, with `rim` about each; two corners are a line, one is a point. None for no corner, or for
-    /// neighbors that coincide or whose distance exceeds f64.
+    /// Creates the polygon of `corners` \[m\] in the body's frame with `rim` about each. The corners must be convex and
+    /// counter-clockwise, where forward points right and up points up. Two corners are a line, one is a point. `None`
+    /// if there is no corner, or if neighbors coincide or their distance exceeds the range of f64.
     pub fn swept(corners: Vec<Vector<f64>>, rim: Rim) -> Option<Self> {
         let side = |at: usize| (corners[(at + 1) % corners.len()] - corners[at]).length();
         let distinct = corners.len() == 1 || (0..corners.len()).all(|at| side(at) > 0.0 && side(at).is_finite());
         (distinct && !corners.is_empty()).then_some(Self { corners, rim, mesh: None })
     }
 
-    /// The polygon's corners in the body's frame \[m\]; at least one.
+    /// Returns the polygon's corners in the body's frame \[m\]; at least one.
     pub fn corners(&self) -> &[Vector<f64>] {
         &self.corners
     }
 
-    /// Center and radius of a circle about the whole shape, in the body's frame \[m\].
+    /// Returns center and radius of a circle that contains the whole shape, in the body's frame \[m\].
     pub fn bounding_circle(&self) -> (Vector<f64>, f64) {
         let (low, high) = self.corners.iter().fold((self.corners[0], self.corners[0]), |(low, high), &corner| {
             (low.least(corner), high.greatest(corner))
@@ -95,7 +97,7 @@ impl FootShape {
         (center, farthest.fold(0.0, f64::max) + self.rim.bound())
     }
 
-    /// The shape with all lengths times `factor`, which is positive.
+    /// Returns the shape scaled by the positive `factor`; `None` if neighboring corners coincide or overflow.
     pub fn resized(&self, factor: f64) -> Option<Self> {
         let rim = match self.rim {
             Rim::Circle { radius } => Rim::Circle { radius: radius * factor },

@@ -1,13 +1,14 @@
-//! Roles of joints -> bodies and the places of all links: the tree placed at zero, projected, and welded.
+//! Roles of joints -> bodies, and poses of all links: the tree at zero coordinates, projected and welded.
 //!
-//! A link's frame stands in its body's frame at
+//! The pose of a link's frame in its body's frame is
 //!
 //! ```text
-//!     p = p_parent + R_parent xyz,   R = R_parent Rz(yaw) Ry(pitch) Rx(roll)          p = 0 in a body of its own
+//!     p = p_parent + R_parent xyz,   R = R_parent Rz(yaw) Ry(pitch) Rx(roll)          p = 0 for a separate body
 //! ```
 //!
-//! where `xyz` and roll, pitch, yaw are of the joint's origin and R leads to the plane's axes; a joint that is frozen
-//! at a value shifts and turns its child by that once more. Linear in links; nothing recurses.
+//! where `xyz` and roll, pitch, yaw are those of the joint's origin, and R transforms into the plane's axes. A joint
+//! that is frozen at a value then displaces and rotates its child by that value. Cost: linear in the links, without
+//! recursion.
 
 use super::reference_pose::{ReferencePose, frozen_shift, frozen_turn};
 use super::role::Role;
@@ -16,7 +17,7 @@ use crate::description::{self, Description, Inertial, Matrix, Mimic, Pose, apply
 use crate::planar::Vector;
 use crate::reductions::Reductions;
 
-/// A link's frame in its body's frame, in three dimensions and with the plane's axes: forward, normal, up.
+/// Pose of a link's frame in its body's frame, in three dimensions, along the plane's axes forward, normal, up.
 #[derive(Debug, Clone)]
 pub(super) struct Place {
     pub(super) body: usize,
@@ -25,37 +26,37 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// A point of the link's frame in the body's frame.
+    /// Returns the position in the body's frame of a point given in the link's frame.
     pub(super) fn point(&self, point: [f64; 3]) -> [f64; 3] {
         let [x, y, z] = apply(&self.rotation, point);
         [self.offset[0] + x, self.offset[1] + y, self.offset[2] + z]
     }
 
-    /// A frame in the link's frame, in the body's frame.
+    /// Returns the pose in the body's frame of a frame given in the link's frame.
     pub(super) fn frame(&self, pose: &Pose) -> Self {
         let rotation = product(&self.rotation, &pose.rotation());
         Self { body: self.body, rotation, offset: self.point(pose.xyz) }
     }
 
-    /// Forward and up of the origin.
+    /// Returns the forward and up components of the origin.
     pub(super) fn in_plane(&self) -> Vector<f64> {
         let [x, _, z] = self.offset;
         Vector::new(x, z)
     }
 }
 
-/// Bodies and joints, still without inertia, and the places of all links.
+/// Bodies and joints, not yet with inertia, and the poses of all links.
 pub(super) struct Tree {
     pub(super) bodies: Vec<Body>,
     pub(super) joints: Vec<Joint>,
     pub(super) mimic_joints: Vec<MimicJoint>,
-    /// The place of each link; `None` for links outside the robot.
+    /// The pose of each link; `None` for links outside of the robot.
     pub(super) places: Vec<Option<Place>>,
 }
 
 impl Tree {
-    /// Walks from `root`, whose axes are the columns of `rotation`, so that parents come first, and along each branch
-    /// before the next.
+    /// Builds the tree from `root`, whose axes are the columns of `rotation`. The walk is depth-first, so parents come
+    /// before their children.
     pub(super) fn grow(
         description: &Description,
         (pose, roles): (&ReferencePose, &[Role]),
@@ -65,7 +66,7 @@ impl Tree {
     ) -> Self {
         let links = &description.links;
         let outward = description.outward(root);
-        // What each joint of the file moves with: coordinates and mimic joints are numbered in its order.
+        // The coordinate or mimic joint of each joint in the file. Both are numbered in the file's order.
         let mut movers = vec![None; roles.len()];
         let (mut coordinates, mut mimics) = (0.., 0..);
         let mut in_the_tree = outward.clone();
@@ -84,7 +85,7 @@ impl Tree {
         let (mut joints, mut mimic_joints) = (Vec::new(), Vec::new());
         for index in outward {
             let joint = &description.joints[index];
-            // Outward: the parent's place is known.
+            // The walk is outward, so the parent's pose is known.
             let Some(parent) = &places[joint.parent] else { continue };
             let at = parent.frame(&joint.origin);
             let child = match (&roles[index], movers[index]) {
@@ -125,13 +126,13 @@ impl Tree {
     }
 }
 
-/// In the file's order.
+/// Sorts by index, which is the file's order.
 fn in_order<T>(mut joints: Vec<(usize, T)>) -> Vec<T> {
     joints.sort_by_key(|(index, _)| *index);
     joints.into_iter().map(|(_, joint)| joint).collect()
 }
 
-/// Whether nothing of a link is left once it is welded: it has neither inertia nor shapes.
+/// Returns whether a link adds nothing to the body it is welded into: it has neither inertia nor shapes.
 fn vanishes(link: &description::UrdfLink) -> bool {
     let inertia = |inertia: &Matrix| inertia.iter().flatten().all(|&entry| entry == 0.0);
     let massless = |own: &Inertial| own.mass == 0.0 && own.inertia.as_ref().is_none_or(inertia);
@@ -139,7 +140,7 @@ fn vanishes(link: &description::UrdfLink) -> bool {
 }
 
 impl Body {
-    /// A body that still weighs nothing.
+    /// Creates a body that has no mass yet.
     fn of(link: &str, joint: Option<ParentJoint>) -> Self {
         Self { name: link.into(), joint, mass: 0.0, com: Vector::zero(), moment: 0.0 }
     }

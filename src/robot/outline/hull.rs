@@ -1,27 +1,28 @@
-//! The corners of a cloud of points: the vertices of its convex hull, without those that no contact can distinguish
-//! from a straight side.
+//! Corners of a point cloud: the vertices of its convex hull, without those that barely protrude from a straight side.
 //!
-//! ```text
-//!     points --parry, scaled to size one--> convex hull --drop what bulges less than 1e-6 of the size--> corners
+//! ```text points --parry, scaled to size one--> convex hull --drop what bulges less than 1e-6 of the size--> corners
 //! ```
 //!
-//! A real sole has dozens of vertices along one side, which rounding leaves a little off the line. The chain of hull
-//! vertices between two kept ones is replaced by its chord where none of it is farther off than [`FLAT`] (Douglas and
-//! Peucker, 1973); corners are dropped, never moved. In n points with h on the hull: n log h as a rule.
+//! A real sole has dozens of vertices along one side, which rounding moves slightly off the line. A chain of hull
+//! vertices between two kept ones is replaced by its chord if none of them is farther off than [`FLAT`] (Douglas and
+//! Peucker, 1973). Corners are dropped, never moved. Cost: usually O(n log h) for n points with h on the hull.
 
 use crate::planar::Vector;
 use parry2d::math::Vector as ParryVector;
 use parry2d::transformation::convex_hull_idx;
 use std::cmp::Ordering;
 
-/// What a chain may bulge and still be a straight side, as part of the hull's size: as much as the default contact
-/// tolerance is of the robot's size.
+/// Largest distance of a chain from its chord at which it counts as straight, as a fraction of the hull's size. The
+/// default contact tolerance is the same fraction of the robot's size.
 const FLAT: f64 = 1e-6;
-/// Coordinates that differ by less than this part of the largest one are the same point.
+/// Points count as equal if their coordinates differ by less than this fraction of the largest coordinate.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// The corners of the convex hull of `points`, counter-clockwise from the lowest (of several the rearmost); two if the
-/// points lie on a line, one if they coincide. Or why there are none.
+/// Returns the corners of the convex hull of `points`, counter-clockwise from the lowest (the rearmost of several): two
+/// if the points lie on a line, one if they coincide.
+///
+/// # Errors
+/// Returns the reason if there are no corners.
 pub(super) fn corners(points: &[Vector<f64>]) -> Result<Vec<Vector<f64>>, String> {
     let Some(&first) = points.first() else { return Err("it has no vertices".into()) };
     let most = |from: Vector<f64>| {
@@ -29,7 +30,7 @@ pub(super) fn corners(points: &[Vector<f64>]) -> Result<Vec<Vector<f64>>, String
         coordinates.fold(0.0, |most: f64, coordinate| most.max(coordinate.abs()))
     };
     let (largest, size) = (most(Vector::zero()), most(first));
-    // Not finite either where only the distance of two points leaves the range.
+    // The distance of two finite points may also exceed the range of f64.
     if points.iter().flat_map(|point| point.components()).any(|coordinate| !coordinate.is_finite()) || !size.is_finite()
     {
         return Err("its vertices leave the range of f64".into());
@@ -37,7 +38,7 @@ pub(super) fn corners(points: &[Vector<f64>]) -> Result<Vec<Vector<f64>>, String
     if size <= ROUNDING * largest {
         return Ok(vec![first]);
     }
-    // parry compares with fixed tolerances: it is given points of size one, exactly scaled, about the origin.
+    // parry uses fixed tolerances, so it gets points about the origin, scaled to size one by a power of two.
     let unit = |length: f64| libm::scalbn(length, -libm::ilogb(size));
     let about: Vec<Vector<f64>> = points.iter().map(|&point| (point - first).map(unit)).collect();
     let cloud: Vec<ParryVector> = about.iter().map(|&Vector { x, z }| ParryVector::new(x, z)).collect();
@@ -50,9 +51,9 @@ pub(super) fn corners(points: &[Vector<f64>]) -> Result<Vec<Vector<f64>>, String
     Ok(corners)
 }
 
-/// The indices of the points of a closed convex chain that are kept.
+/// Returns the indices of the points of a closed convex chain that are kept.
 fn straightened(chain: &[Vector<f64>]) -> Vec<usize> {
-    // A farthest point from anywhere is no point within a side.
+    // The point farthest from any given point is always a corner.
     let farthest = |from: Vector<f64>| {
         let far = |&at: &usize| (chain[at] - from).length();
         (0..chain.len()).max_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or(0)
@@ -62,7 +63,7 @@ fn straightened(chain: &[Vector<f64>]) -> Vec<usize> {
     let at = |step: usize| (start + step) % chain.len();
 
     let mut kept = vec![start];
-    // Pieces of the chain still to be looked at, the next one last.
+    // Parts of the chain that are still to be examined, the next one last.
     let mut pieces = vec![(opposite, chain.len()), (0, opposite)];
     while let Some((from, to)) = pieces.pop() {
         let (a, b) = (chain[at(from)], chain[at(to)]);
@@ -76,7 +77,7 @@ fn straightened(chain: &[Vector<f64>]) -> Vec<usize> {
     kept
 }
 
-/// How far `point` is from the segment between `a` and `b`.
+/// Returns the distance of `point` from the line through `a` and `b`, or from `a` if these coincide.
 fn bulge(a: Vector<f64>, b: Vector<f64>, point: Vector<f64>) -> f64 {
     let (side, arm) = (b - a, point - a);
     let length = side.length();
@@ -90,7 +91,7 @@ fn bulge(a: Vector<f64>, b: Vector<f64>, point: Vector<f64>) -> f64 {
 mod tests {
     use super::*;
 
-    /// Numbers from -1 to 1 that are the same in every run.
+    /// Pseudorandom numbers from -1 to 1, the same in every run.
     fn numbers(mut seed: u64) -> impl FnMut() -> f64 {
         move || {
             seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -98,7 +99,8 @@ mod tests {
         }
     }
 
-    /// All points lie inside the corners, off by `beyond` at most; corners are points, and turn left.
+    /// Asserts that all points lie inside the corners or at most `beyond` outside, and that the corners are points and
+    /// turn left.
     fn assert_hull(points: &[Vector<f64>], corners: &[Vector<f64>], beyond: f64) {
         assert!(corners.iter().all(|corner| points.contains(corner)));
         for (at, &a) in corners.iter().enumerate() {
@@ -113,7 +115,7 @@ mod tests {
 
     #[test]
     fn finely_meshed_sole_has_four_corners() {
-        // Tilted, so that rounding to f32 and to six decimals leaves every vertex off the line.
+        // The sole is tilted, so that rounding to f32 or to seven decimals moves every vertex off the line.
         let (sin, cos) = 0.3_f64.sin_cos();
         let sole = |round: fn(f64) -> f64| -> Vec<Vector<f64>> {
             let along = (0..=50).map(|step| f64::from(step) / 250.0 - 0.1);
@@ -147,7 +149,7 @@ mod tests {
         let points: Vec<Vector<f64>> =
             (0..100_000).map(turn).map(|(sin, cos)| Vector::new(0.3 * cos, 0.3 * sin)).collect();
         let found = corners(&points).expect("a hull");
-        // A chord over the angle a bulges by r (1 - cos(a / 2)).
+        // A chord over the angle a deviates from the circle by r (1 - cos(a / 2)).
         assert!((500..5_000).contains(&found.len()), "{}", found.len());
         assert_hull(&points[..50_000], &found, 1e-6);
     }
@@ -155,7 +157,7 @@ mod tests {
     #[test]
     fn points_lines_and_copies_have_their_ends_alone() {
         assert_eq!(corners(&[Vector::new(0.3, 0.1); 5]), Ok(vec![Vector::new(0.3, 0.1)]));
-        // Apart by the rounding of where they are.
+        // These points differ only by the rounding of their coordinates.
         assert_eq!(corners(&[Vector::new(1e9, 1e9), Vector::new(1e9 + 1e-7, 1e9)]), Ok(vec![Vector::new(1e9, 1e9)]));
         let line: Vec<Vector<f64>> =
             (0..100).map(|step| f64::from(step % 34)).map(|t| Vector::new(0.1 * t, -0.3 * t)).collect();

@@ -1,7 +1,7 @@
-//! Collision shape -> its outline in the plane: corners and the rim about them (see [`super::shape`]).
+//! Collision shape -> its outline in the plane: corners with a rim (see [`super::shape`]).
 //!
 //! ```text
-//!     ball, capsule                     projected center line + circle
+//!     sphere, capsule                   projected center line + circle
 //!     cylinder along the normal         center + circle
 //!     cylinder in the plane, box        zonogon of the projected half axes
 //!     cylinder oblique to the plane     projected center line + ellipse, the projection of its rims
@@ -15,15 +15,18 @@ use super::{FootShape, Rim};
 use crate::description::{Geometry, Matrix, Mesh, apply};
 use crate::planar::Vector;
 
-/// The outline of `geometry`, whose frame has its origin at `center` and its axes in the columns of `rotation`, both in
-/// the body's frame; `off_axis` is the greatest angle \[rad\] that still counts as parallel. Or why there is none.
+/// Returns the outline of `geometry`. In the body's frame, the shape's frame has its origin at `center` and its axes in
+/// the columns of `rotation`. `off_axis` is the greatest angle \[rad\] at which directions count as parallel.
+///
+/// # Errors
+/// Returns the reason if there is no outline.
 pub(super) fn outline(
     geometry: &Geometry,
     rotation: &Matrix,
     center: Vector<f64>,
     off_axis: f64,
 ) -> Result<FootShape, String> {
-    // The shape's axis `k` in the plane.
+    // The projection of the shape's axis `k` into the plane.
     let axis = |k: usize| Vector::new(rotation[0][k], rotation[2][k]);
     let half = |k: usize, length: f64| axis(k).map(|component| component * (0.5 * length));
     let Vector { x, z } = axis(2);
@@ -40,7 +43,8 @@ pub(super) fn outline(
             projected(center, &[half(2, length), Vector::new(z * radius, -x * radius)], POINT)
         }
         &Geometry::Cylinder { radius, length } => {
-            // The rims are circles about the shape's own z axis; their half diameters along its x and y stay conjugate.
+            // The rims are circles about the shape's z axis. Their half diameters along its x and y remain conjugate
+            // when projected.
             let half_diameters = [half(0, 2.0 * radius), half(1, 2.0 * radius)];
             projected(center, &[half(2, length)], Rim::Ellipse { half_diameters })
         }
@@ -64,14 +68,14 @@ pub(super) fn outline(
     }
 }
 
-/// A rim that is its corner.
+/// A rim that consists of the corner alone.
 const POINT: Rim = Rim::Circle { radius: 0.0 };
 
 fn projected(center: Vector<f64>, half_sides: &[Vector<f64>], rim: Rim) -> Result<FootShape, String> {
     swept(zonogon::corners(center, half_sides), rim)
 }
 
-/// With corners that f64 cannot tell apart as one.
+/// Merges neighboring corners that are equal in f64.
 fn swept(mut corners: Vec<Vector<f64>>, rim: Rim) -> Result<FootShape, String> {
     corners.dedup();
     while corners.len() > 1 && corners.first() == corners.last() {
@@ -95,7 +99,8 @@ mod tests {
         outline(geometry, &Pose { xyz: [0.0; 3], rpy }.rotation(), CENTER, 1e-3).expect("an outline")
     }
 
-    /// The outline has these corners, in this order up to rounding by `off`, and a circle of this radius about each.
+    /// Asserts that the outline has these corners, in this order and up to `off`, and a circle of this radius about
+    /// each.
     #[track_caller]
     fn assert_outline(geometry: &Geometry, rpy: [f64; 3], off: f64, corners: &[Vector<f64>], radius: f64) {
         let shape = outline_of(geometry, rpy);
@@ -105,7 +110,7 @@ mod tests {
         assert_eq!(shape.rim, Rim::Circle { radius });
     }
 
-    /// The corners of a rectangle of these half sizes.
+    /// Returns the corners of a rectangle with these half sizes.
     fn rectangle(x: f64, z: f64) -> [Vector<f64>; 4] {
         [[0.1 - x, -0.3 - z], [0.1 + x, -0.3 - z], [0.1 + x, -0.3 + z], [0.1 - x, -0.3 + z]].map(Vector::from)
     }
@@ -114,7 +119,7 @@ mod tests {
         Geometry::Mesh { file: "package://p/sole.stl".into(), scale, mesh: Mesh::Vertices(vertices.into()) }
     }
 
-    /// The corners of a box of these half sizes.
+    /// Returns the corners of a box with these half sizes.
     fn eight(half: [f64; 3]) -> Vec<[f64; 3]> {
         (0..8).map(|bits| [0, 1, 2].map(|k| if bits >> k & 1 == 0 { -half[k] } else { half[k] })).collect()
     }
@@ -124,7 +129,7 @@ mod tests {
         let (unturned, rolled) = ([0.0; 3], [FRAC_PI_2, 0.0, 0.0]);
         let line = |a: [f64; 2], b: [f64; 2]| [a, b].map(Vector::from);
         assert_outline(&SOLE, unturned, 0.0, &rectangle(0.1, 0.02), 0.0);
-        // Roll: the y side stands upright. Yaw: y lies forward.
+        // With roll, the y side is vertical. With yaw, y points forward.
         assert_outline(&SOLE, rolled, 1e-15, &rectangle(0.1, 0.05), 0.0);
         assert_outline(&SOLE, [0.0, 0.0, FRAC_PI_2], 1e-15, &rectangle(0.05, 0.02), 0.0);
         assert_outline(&ROD, rolled, 0.0, &[CENTER], 0.05);
@@ -132,20 +137,20 @@ mod tests {
         assert_outline(&ROD, unturned, 0.0, &rectangle(0.05, 0.2), 0.0);
         assert_outline(&CAPSULE, rolled, 0.0, &[CENTER], 0.05);
         assert_outline(&CAPSULE, unturned, 0.0, &line([0.1, -0.5], [0.1, -0.3 + 0.2]), 0.05);
-        // Rolled by 60 degrees the center line is seen at half its length.
+        // Rolled by 60 degrees, the center line appears at half its length.
         assert_outline(&CAPSULE, [FRAC_PI_3, 0.0, 0.0], 1e-15, &line([0.1, -0.4], [0.1, -0.2]), 0.05);
         let flat = |x, z| Geometry::Box { size: [x, 0.1, z] };
         assert_outline(&flat(0.2, 0.0), unturned, 0.0, &line([0.1 - 0.1, -0.3], [0.1 + 0.1, -0.3]), 0.0);
         assert_outline(&flat(0.0, 0.4), unturned, 0.0, &line([0.1, -0.5], [0.1, -0.3 + 0.2]), 0.0);
-        // Thinner than what a mesh's side may bulge: the side below is the sole.
+        // The box is thinner than a mesh's side may bulge; its lower side is the sole.
         assert_outline(&flat(0.2, 2e-8), unturned, 0.0, &rectangle(0.1, 1e-8), 0.0);
         assert_outline(&flat(0.0, 0.0), unturned, 0.0, &[CENTER], 0.0);
-        // So short that both ends are the same in f64.
+        // The shape is so short that both ends are equal in f64.
         assert_outline(&Geometry::Capsule { radius: 0.05, length: 1e-17 }, unturned, 0.0, &[CENTER], 0.05);
         assert_outline(&flat(1e-18, 0.4), unturned, 0.0, &line([0.1, -0.5], [0.1, -0.3 + 0.2]), 0.0);
         assert_outline(&Geometry::Sphere { radius: 0.0 }, [1.0, 2.0, 3.0], 0.0, &[CENTER], 0.0);
 
-        // Pitch: x and z change places; which of the two level corners comes first is a matter of rounding.
+        // Pitch exchanges x and z. Rounding decides which of the two level corners comes first.
         let mut corners = outline_of(&SOLE, [0.0, FRAC_PI_2, 0.0]).corners().to_vec();
         corners.sort_by(|a, b| (a.z + 0.01 * a.x).total_cmp(&(b.z + 0.01 * b.x)));
         let expected = [[0.08, -0.4], [0.12, -0.4], [0.08, -0.2], [0.12, -0.2]].map(Vector::from);
@@ -161,7 +166,7 @@ mod tests {
         assert_outline(&sole, [0.4, 0.3, 0.9], 1e-15, turned.corners(), 0.0);
         assert_eq!(outline_of(&sole, [0.0; 3]).mesh.as_deref(), Some("sole.stl"));
 
-        // A wedge whose tip points forward and down, seen from the side; as seen after the factors.
+        // A wedge whose tip points forward and down, seen from the side after scaling.
         let wedge = [[0.0, 0.0, 0.0], [1.0, 0.0, -1.0], [0.0, 0.5, 1.0]];
         let cases: [([f64; 3], &[[f64; 2]]); 4] = [
             ([1.0; 3], &[[1.1, -1.3], [0.1, 0.7], [0.1, -0.3]]),
@@ -177,7 +182,7 @@ mod tests {
 
     #[test]
     fn outlines_reach_as_far_as_the_surface_in_space() {
-        // The rims of a cylinder by their angle: 1 - cos of half a step is what sampling misses.
+        // The rims of a cylinder, sampled by angle: the sampling error is 1 - cos of half a step.
         let turns = || (0..4000).map(|step| (f64::from(step) * TAU / 4000.0).sin_cos());
         let rims = [-0.2, 0.2].into_iter().flat_map(|z| turns().map(move |(sin, cos)| [0.05 * cos, 0.05 * sin, z]));
         let shapes =
@@ -194,7 +199,7 @@ mod tests {
                     let sampled = seen.clone().max_by(farther).expect("a point");
                     let off = (farthest - sampled).dot(direction).abs();
                     assert!(off < 1e-7, "{geometry:?} {rpy:?} {direction:?}: {off}");
-                    // The point is one of the surface, not merely as high as one.
+                    // The point lies on the surface itself, and is not only equally far along the direction.
                     let nearest = seen.clone().map(|at| (farthest - at).length()).fold(f64::MAX, f64::min);
                     assert!(nearest < 1e-4, "{geometry:?} {rpy:?} {direction:?}: {nearest}");
                 }

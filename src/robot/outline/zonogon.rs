@@ -1,20 +1,20 @@
-//! The projection of a box: `{c + sum of s_i g_i, |s_i| <= 1}` with the projected half axes g_i, a polygon with
+//! Projection of a box: `{c + sum of s_i g_i, |s_i| <= 1}` with the projected half axes g_i. It is a polygon with
 //! parallel sides (a zonogon).
 //!
-//! Walking along the half sides in the order of their angles gives the corners, so those of a shape that is not turned
-//! come from its center and half sizes by one sum each.
+//! A walk along the half sides, ordered by angle, gives the corners. So each corner of an unrotated shape is computed
+//! from its center and half sizes by a single sum.
 
 use crate::planar::Vector;
 
-/// Half sides shorter than this part of the longest, or as nearly parallel, are rounding (a quarter turn, whose cosine
-/// is 6e-17 in f64, leaves them) and would tear one corner into two.
+/// Half sides that are shorter than this fraction of the longest, or parallel to within this angle, are rounding errors
+/// (of a quarter turn, whose cosine is 6e-17 in f64). They would split one corner into two.
 const ROUNDING: f64 = 1e-12;
 
-/// The corners about `center` with these half sides, counter-clockwise from the lowest: one if all vanish, two if all
-/// are parallel.
+/// Returns the corners about `center` for these half sides, counter-clockwise from the lowest: one corner if all sides
+/// vanish, two if all are parallel.
 pub(super) fn corners(center: Vector<f64>, half_sides: &[Vector<f64>]) -> Vec<Vector<f64>> {
     let sides = distinct(half_sides);
-    // From the lowest corner up along all sides, and back down along them.
+    // The walk goes up from the lowest corner along all sides, and back down along all sides.
     let count = sides.len();
     let corner = |step: usize| {
         let forward = |index: usize| index < step && step <= index + count;
@@ -24,8 +24,8 @@ pub(super) fn corners(center: Vector<f64>, half_sides: &[Vector<f64>]) -> Vec<Ve
     (0..(2 * count).max(1)).map(|step| center + corner(step)).collect()
 }
 
-/// The half sides that remain when rounding is dropped and parallel ones are joined, all pointing up (or level and
-/// forward), by rising angle from level.
+/// Drops half sides that are rounding errors and joins parallel ones. The result points up (or forward, if level) and
+/// is sorted by the angle from level.
 fn distinct(half_sides: &[Vector<f64>]) -> Vec<Vector<f64>> {
     let longest = half_sides.iter().map(|side| side.length()).fold(0.0, f64::max);
     let mut sides: Vec<Vector<f64>> = Vec::with_capacity(half_sides.len());
@@ -49,8 +49,8 @@ fn distinct(half_sides: &[Vector<f64>]) -> Vec<Vector<f64>> {
     sides
 }
 
-/// Sine of the angle from `a` to `b`; positive where `b` points to the left of `a`, seen with forward to the right and
-/// up upward.
+/// Returns the sine of the angle from `a` to `b`. It is positive if `b` points to the left of `a`, where forward points
+/// right and up points up.
 fn sine(a: Vector<f64>, b: Vector<f64>) -> f64 {
     let (la, lb) = (a.length(), b.length());
     (a.x / la) * (b.z / lb) - (a.z / la) * (b.x / lb)
