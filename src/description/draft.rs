@@ -1,4 +1,4 @@
-//! XML elements -> links and joints: checked and located.
+//! Converts XML elements to links and joints, checked and with their locations.
 
 use super::elements::{ByName, EXPAND, IgnoredCount, WORLD, limits, misspelt, rotors, undefined_world};
 use super::repair::Repaired;
@@ -8,13 +8,12 @@ use crate::error::{Location, Reason, Result};
 use memchr::memmem;
 use roxmltree::{Document, Node};
 
-/// The most joints that move: where M is needed, a chain of n of them takes n^3 / 3 steps to factorize.
+/// Largest number of moving joints: the factorization of M takes n^3 / 3 steps for a chain of n joints.
 const MOST_MOVING: usize = 2000;
-/// What Drake calls a spherical joint.
+/// Drake's name for a spherical joint.
 const DRAKES_SPHERICAL: &str = "ball";
 
-/// The description of `text`, its links and joints not yet connected; see [`Description::from_urdf`] for what is
-/// refused.
+/// Reads the description of `text` without connecting links and joints; see [`Description::from_urdf`] for the errors.
 pub(super) fn read(text: &str) -> Result<Description> {
     let mut repaired = Repaired::new(text);
     loop {
@@ -90,7 +89,7 @@ fn read_document(document: &Document<'_>) -> Result<Description> {
     Ok(Description { ignored: ignored.kinds, ..description })
 }
 
-/// Before the costly part: a tree has fewer joints than links, but this is no tree yet.
+/// Refuses too many joints before the expensive steps. A tree has fewer joints than links, but this may not be a tree.
 fn refuse_many_joints(joints: &ByName) -> Result<()> {
     let mut all = joints.elements.iter().map(|&(_, element, _)| element);
     let mut moving = all.clone().filter(|element| element.attribute("type") != Some("fixed"));
@@ -121,8 +120,8 @@ fn require_urdf(root: Node<'_, '_>) -> Result<()> {
     Err(xml::refuse(root, Reason::Missing("<robot>".into())).at(format!("<{tag}>")).hint(hint))
 }
 
-/// Refuses macros that are still to be expanded, by their namespace or as they were written before there was one; a
-/// file that only declares the namespace is plain URDF.
+/// Refuses unexpanded macros, recognized by their namespace or by the old syntax without a namespace. A file that only
+/// declares the namespace is plain URDF.
 fn refuse_xacro(robot: Node<'_, '_>) -> Result<()> {
     let is_macro = |element: &Node| {
         let of_xacro = |uri: &str| uri.contains("xacro") || element.lookup_prefix(uri) == Some("xacro");
@@ -132,13 +131,13 @@ fn refuse_xacro(robot: Node<'_, '_>) -> Result<()> {
         xml::refuse(element, Reason::Unsupported(format!("{what} is not URDF"))).hint(EXPAND)
     };
     let holds = |part: &str| memmem::find(robot.document().input_text().as_bytes(), part.as_bytes()).is_some();
-    // Where none is declared, no element has a namespace but XML's own.
+    // Without a namespace declaration, elements can only have XML's own namespace.
     if holds("xmlns")
         && let Some(element) = robot.descendants().find(|node| node.is_element() && is_macro(node))
     {
         return Err(refused(element, format!("<xacro:{}>", element.tag_name().name())));
     }
-    // A dollar sign may also be written by its number.
+    // A dollar sign may also be written as a character reference.
     let has_dollar = holds("$") || holds("&#");
     for element in robot.children().filter(Node::is_element) {
         let place: fn(&str) -> String = match tag(robot, element) {
@@ -147,7 +146,7 @@ fn refuse_xacro(robot: Node<'_, '_>) -> Result<()> {
             }
             Some("link") => link_place,
             Some("joint") => joint_place,
-            // What other programs read may hold anything.
+            // Elements for other programs may contain anything.
             _ => continue,
         };
         if !has_dollar {
@@ -165,13 +164,13 @@ fn refuse_xacro(robot: Node<'_, '_>) -> Result<()> {
     Ok(())
 }
 
-/// The tag of a child of `robot`, if it is of the same namespace.
+/// Returns the tag of a child of `robot` if both have the same namespace.
 fn tag<'a>(robot: Node<'_, '_>, element: Node<'a, '_>) -> Option<&'a str> {
     (element.tag_name().namespace() == robot.tag_name().namespace()).then(|| element.tag_name().name())
 }
 
 fn read_link(name: &str, element: Node<'_, '_>, location: Location, ignored: &mut IgnoredCount) -> Result<UrdfLink> {
-    // An empty one says no more than none.
+    // An <inertial> without child elements counts as missing.
     let [inertial] = xml::named(element, ["inertial"]);
     let inertial = inertial?.filter(|inertial| inertial.children().any(|child| child.is_element()));
     let inertial = inertial.map(values::inertial).transpose()?;
@@ -218,7 +217,7 @@ fn read_joint(
     Ok(UrdfJoint { name: name.into(), kind, parent, child, origin, axis, has_axis, mimic, limits, location })
 }
 
-/// The joint's type.
+/// Reads the joint's type.
 fn joint_kind(element: Node<'_, '_>) -> Result<JointKind> {
     let word = xml::required_attribute(element, "type")?;
     let known = |kind: &JointKind| kind.name() == word || (*kind, word) == (JointKind::Spherical, DRAKES_SPHERICAL);

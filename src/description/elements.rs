@@ -1,13 +1,13 @@
-//! Elements of a file by name, and the count of those that are ignored.
+//! Elements of a file by name, and counts of the elements that are not read.
 
 use super::{Ignored, xml};
 use crate::error::{Location, Reason, Result};
 use roxmltree::Node;
 use std::collections::HashMap;
 
-/// The link that joints may name as their parent without its being defined.
+/// The link that joints may name as their parent although it is not defined.
 pub(super) const WORLD: &str = "world";
-/// The remedy for a file with macros.
+/// The hint for a file with macros.
 pub(super) const EXPAND: &str = "expand the file first: xacro FILE > robot.urdf";
 
 /// Elements of one kind by name.
@@ -31,7 +31,7 @@ impl<'a, 'input> ByName<'a, 'input> {
         Ok(())
     }
 
-    /// The index of the thing that `attribute` of `element` names.
+    /// Returns the index of the element that `attribute` of `element` names.
     pub(super) fn find(&self, element: Node<'_, '_>, attribute: &str) -> Result<usize> {
         let name = xml::required_attribute(element, attribute)?;
         self.by_name.get(name).copied().ok_or_else(|| {
@@ -41,7 +41,7 @@ impl<'a, 'input> ByName<'a, 'input> {
     }
 }
 
-/// The joint whose parent link `world` no element defines, as in many files: the world needs no description.
+/// Returns the location of a joint with the parent link `world` if no element defines that link, as in many files.
 pub(super) fn undefined_world(links: &ByName, joints: &ByName) -> Option<Location> {
     if links.by_name.contains_key(WORLD) {
         return None;
@@ -51,7 +51,7 @@ pub(super) fn undefined_world(links: &ByName, joints: &ByName) -> Option<Locatio
     joints.elements.iter().find(|(_, element, _)| is_its_child(*element)).map(|&(_, _, location)| location)
 }
 
-/// The most kinds of ignored elements.
+/// Largest number of kinds of ignored elements.
 const MOST_IGNORED: usize = 1000;
 
 /// Counts of ignored elements.
@@ -62,7 +62,7 @@ pub(super) struct IgnoredCount {
 }
 
 impl IgnoredCount {
-    /// Counts `element`, a child of a `parent`.
+    /// Counts `element`, a child of an element `parent`.
     pub(super) fn count(&mut self, parent: &'static str, element: Node<'_, '_>) -> Result<()> {
         let tag = element.tag_name().name();
         let kind = *self.by_tag.entry((parent, tag.into())).or_insert(self.kinds.len());
@@ -78,7 +78,7 @@ impl IgnoredCount {
     }
 }
 
-/// What is read of elements: their attributes and their children.
+/// The elements that are read, each with its attributes and child elements.
 const READ: [(&str, &[&str], &[&str]); 19] = [
     ("robot", &["name"], &["link", "joint"]),
     ("link", &["name"], &["inertial", "collision", "visual"]),
@@ -101,15 +101,15 @@ const READ: [(&str, &[&str], &[&str]); 19] = [
     ("mesh", &["filename", "scale"], &[]),
 ];
 
-/// The ends of a `<limit>`, of which one that is not given is 0. They are no part of the mechanics, so that what is no
-/// number is no limit.
+/// Returns the lower and the upper end of a `<limit>`; a missing end is 0. Limits are not part of the mechanics, so
+/// there is no error if an end is not a number: the result is then `None`.
 pub(super) fn limits(limit: Node<'_, '_>) -> Option<[f64; 2]> {
     let end = |name| limit.attribute(name).map_or(Some(0.0), |text| text.trim().parse().ok());
     let limits: [f64; 2] = [end("lower")?, end("upper")?];
     (!limits.iter().any(|end| end.is_nan())).then_some(limits)
 }
 
-/// The joints whose transmissions have a rotor inertia, as Drake reads it.
+/// Returns the joints whose transmissions have a rotor inertia in Drake's format.
 pub(super) fn rotors(robot: Node<'_, '_>) -> Vec<String> {
     let tagged = |tag: &'static str| move |node: &Node<'_, '_>| node.tag_name().name() == tag;
     let has_rotor = |transmission: &Node<'_, '_>| {
@@ -125,18 +125,18 @@ pub(super) fn rotors(robot: Node<'_, '_>) -> Vec<String> {
     joints.filter_map(|joint| joint.attribute("name").map(str::to_owned)).collect()
 }
 
-/// The most misspelt names that are kept.
+/// Largest number of misspelt names that are kept.
 const MOST_MISSPELT: usize = 100;
 
-/// The names of attributes and elements in a robot that are not read, but a letter away from one that is
-/// and that is not there, and limits that cannot be.
+/// Returns attributes and elements of a robot that are not read and may be misspelt: they differ by one letter from a
+/// name that is read and missing, or stand in the wrong element. Impossible limits are included.
 pub(super) fn misspelt(robot: Node<'_, '_>) -> Vec<String> {
     let (mut waiting, mut found) = (vec![robot], Vec::new());
     while let Some(element) = waiting.pop().filter(|_| found.len() < MOST_MISSPELT) {
         let tag = element.tag_name().name();
         let line = |node: Node| node.document().text_pos_at(node.range().start).row;
         if tag == "visual" {
-            // Nothing in it is read, but what would be elsewhere.
+            // Nothing in <visual> is read, but these elements would be read in <link>.
             let named = xml::children(element).map(|child| (child, child.tag_name().name()));
             let of_link = named.filter(|(_, name)| matches!(*name, "inertial" | "collision"));
             let odd = of_link.map(|(child, name)| format!("<{name}> in <visual> on line {} (in <link>?)", line(child)));
@@ -147,10 +147,10 @@ pub(super) fn misspelt(robot: Node<'_, '_>) -> Vec<String> {
         let elements = || element.children().filter(Node::is_element).map(|child| (child, child.tag_name().name()));
         let tags = || elements().map(|(_, name)| name);
         let given = || element.attributes().filter(|own| own.namespace().is_none()).map(|own| own.name());
-        // Numbers between the tags, not in an attribute.
+        // The element has numbers between its tags, but they belong in an attribute.
         let text = element.text().filter(|text| children.is_empty() && !text.trim().is_empty());
         let text = text.map(|_| format!("text in <{tag}> on line {} ({}?)", line(element), attributes.join(" or ")));
-        // In most elements everything is read: no name to compare with others.
+        // In most elements everything is read, and no names need to be compared.
         let is_read = given().all(|name| attributes.contains(&name)) && tags().all(|tag| children.contains(&tag));
         if is_read && tag != "limit" {
             found.extend(text);
@@ -160,7 +160,7 @@ pub(super) fn misspelt(robot: Node<'_, '_>) -> Vec<String> {
         let misread = given().filter_map(|name| {
             meant(name).map(|meant| format!("{name} of <{tag}> on line {} ({meant}?)", line(element)))
         });
-        // Exporters write an <axis> like an <origin>.
+        // Exporters write <axis> like <origin>, with an rpy.
         let misplaced = given().filter(|&name| !attributes.contains(&name) && (tag, name) != ("axis", "rpy"));
         let misplaced = misplaced.filter_map(|name| {
             owner(name, children).map(|owner| format!("{name} of <{tag}> on line {} (<{owner}>?)", line(element)))
@@ -188,7 +188,8 @@ pub(super) fn misspelt(robot: Node<'_, '_>) -> Vec<String> {
     found
 }
 
-/// The element that has an attribute of this name, or one of these children that has itself the name. All may have names.
+/// Returns the element that an attribute with this name belongs to, or the child element with this name. Any element
+/// may have the names of the first line.
 fn owner(name: &str, children: &[&'static str]) -> Option<&'static str> {
     if matches!(name, "name" | "type" | "joint") {
         return None;
@@ -199,14 +200,15 @@ fn owner(name: &str, children: &[&'static str]) -> Option<&'static str> {
     child.or_else(|| Some(of_attribute().or_else(of_element)?.0))
 }
 
-/// Which of the `known` names another name may be meant as, if that one is not `given`.
+/// Returns a function that finds the name in `known` which another name may stand for, among those that are not
+/// `given`.
 fn meant<'a>(
     given: impl Iterator<Item = &'a str>,
     known: &'static [&'static str],
 ) -> impl Fn(&str) -> Option<&'static str> {
     let is_near = |name: &str, known: &str| {
         let [own, other] = [name, known].map(str::as_bytes);
-        // As MJCF, SDF and others call them.
+        // Names in MJCF, SDF and other formats.
         let others = match known {
             "xyz" => "pos position translation",
             "rpy" => "euler rotation quat quaternion rpydeg rpy_deg ypr orientation rot angle",
@@ -218,7 +220,7 @@ fn meant<'a>(
         };
         others.split_whitespace().any(|other| other == name)
             || name.eq_ignore_ascii_case(known)
-            // Known names have three letters and more, so that one slip leaves the first or the last of them.
+            // Known names have at least three letters, so one slip keeps the first or the last letter.
             || name.len().abs_diff(known.len()) <= 1
                 && (own.first() == other.first() || own.last() == other.last())
                 && strsim::osa_distance(name, known) == 1

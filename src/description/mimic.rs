@@ -8,17 +8,17 @@ use super::{Description, Mimic};
 use crate::error::{Reason, Result};
 
 impl Description {
-    /// For each mimic joint the joint at the end of its chain, which mimics none, with the multiplier and offset of the
-    /// whole chain. Linear in the number of joints.
+    /// Returns for each mimic joint the joint at the end of its chain, which is not a mimic joint, with multiplier and
+    /// offset of the whole chain; `None` for other joints. Takes linear time.
     ///
     /// # Errors
-    /// [`Reason::Inconsistent`] for joints that mimic each other in a circle.
+    /// Returns [`Reason::Inconsistent`] if joints mimic each other in a cycle.
     pub fn mimicked(&self) -> Result<Vec<Option<Mimic>>> {
         let joints = &self.joints;
         let mut ends: Vec<Option<Mimic>> = vec![None; joints.len()];
         let mut on_the_way = vec![false; joints.len()];
         for start in 0..joints.len() {
-            // To a joint that is resolved already, and back.
+            // Walks to a joint that is already resolved, and back.
             let (mut way, mut at) = (Vec::new(), start);
             while let (Some(mimic), None) = (&joints[at].mimic, &ends[at]) {
                 if on_the_way[at] {
@@ -51,7 +51,7 @@ mod tests {
 
     #[test]
     fn circles_are_refused() {
-        // The joint that each of four mimics.
+        // For each of four joints, the joint that it mimics.
         for mimicked in [[Some(0), None, None, None], [None, Some(2), Some(1), None], [Some(1), Some(2), Some(1), None]]
         {
             let joint = |(k, mimicked): (usize, Option<usize>)| {

@@ -1,13 +1,14 @@
-//! Reads URDF text into a checked description: links and joints in three dimensions, as the file gives them, forming
-//! one tree. The only user of urdf-rs and roxmltree.
+//! Reads URDF text into a checked description: the links and joints of the file, in three dimensions, as one tree. This
+//! is the only module that uses urdf-rs and roxmltree.
 //!
 //! ```text
 //!     text --repair, xml--> elements --draft: values in urdf-rs's types--> links, joints --tree--> Description
 //! ```
 //!
-//! urdf-rs's own reader is too trusting and too strict: it drops non-numbers from a vector, reads a missing `<inertial>`
-//! as a mass of zero, and refuses an incomplete `<limit>`. So every element is checked with its place in the text.
-//! Nothing here opens a file, starts a process or recurses, and time and memory grow linearly with the text.
+//! urdf-rs's own reader accepts too much in some places and too little in others: it drops non-numbers from a vector,
+//! reads a missing `<inertial>` as a mass of zero, and rejects an incomplete `<limit>`. So this module checks every
+//! element itself and reports its location in the text. It opens no files, starts no processes and does not recurse.
+//! Time and memory grow linearly with the text.
 
 mod pose;
 mod xml;
@@ -24,7 +25,7 @@ pub use pose::{Matrix, Pose, apply, product, turn, unit};
 
 use crate::error::{Error, Location, Result};
 
-/// A robot as its file gives it: checked, and joined into one tree.
+/// A robot as described by its file, checked and connected to one tree.
 ///
 /// ```
 /// # fn main() -> heelstrike::Result<()> {
@@ -37,47 +38,46 @@ use crate::error::{Error, Location, Result};
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Description {
-    /// The robot's name; empty where the file gives none.
+    /// The robot's name; empty if the file gives none.
     pub name: String,
-    /// The links in the file's order; at least one, no name twice.
+    /// The links in the file's order. There is at least one, and names are unique.
     pub links: Vec<UrdfLink>,
-    /// The joints in the file's order; no name twice, but a joint may be named like a link.
+    /// The joints in the file's order. Names are unique among joints; a joint may have the name of a link.
     pub joints: Vec<UrdfJoint>,
     /// The link that is no joint's child (an index into [`Description::links`]).
     pub root: usize,
-    /// Elements that were passed over, in the order in which they first occur.
+    /// Elements that are not read, in the order of their first occurrence.
     pub ignored: Vec<Ignored>,
-    /// Attributes and elements that are not read and perhaps misspelt, and limits that cannot be, each with its
-    /// line.
+    /// Attributes and elements that are not read and may be misspelt, and impossible limits, each with its line.
     pub misspelt: Vec<String>,
-    /// The joints whose transmissions in the file have a rotor inertia, which is not read.
+    /// The joints whose transmissions have a rotor inertia in the file. It is not read.
     pub rotors: Vec<String>,
 }
 
 /// A link of the file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct UrdfLink {
-    /// Its name, which no other link has.
+    /// The link's name, unique among links.
     pub name: String,
-    /// Its inertia; `None` if the file has no `<inertial>`, which differs from a mass of zero.
+    /// The link's inertia; `None` if the file has no `<inertial>`, which differs from a mass of zero.
     pub inertial: Option<Inertial>,
-    /// Its collision shapes in the file's order.
+    /// The link's collision shapes in the file's order.
     pub collisions: Vec<Collision>,
-    /// The joint whose child it is (an index into [`Description::joints`]); `None` for the root.
+    /// The joint whose child is this link (an index into [`Description::joints`]); `None` for the root.
     pub joint: Option<usize>,
-    /// Where its element begins.
+    /// Where the link's element begins.
     pub location: Location,
 }
 
-/// Mass, CoG and inertia of a link.
+/// Mass, center of mass and inertia of a link.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Inertial {
-    /// The CoG and the axes of the inertia, in the link's frame.
+    /// The center of mass and the axes of the inertia, in the link's frame.
     pub origin: Pose,
-    /// Mass \[kg\], never negative.
+    /// Mass \[kg\], at least zero.
     pub mass: f64,
-    /// Inertia about the CoG in the axes of `origin`, symmetric \[kg m^2\]; `None` if the file has no `<inertia>`.
-    /// Finite, but otherwise as the file has it: many files give one that no body can have.
+    /// Inertia about the center of mass in the axes of `origin`, symmetric \[kg m^2\]; `None` if the file has no
+    /// `<inertia>`. It is finite, but otherwise unchecked: in many files no rigid body can have it.
     pub inertia: Option<Matrix>,
 }
 
@@ -90,50 +90,50 @@ pub struct Collision {
     pub geometry: Geometry,
 }
 
-/// A shape about the origin of its own frame; all sizes are finite and none is negative \[m\].
+/// A shape about the origin of its own frame. All sizes are finite and at least zero \[m\].
 #[derive(Debug, Clone, PartialEq)]
 #[allow(missing_docs, reason = "the text of each variant names its fields")]
 #[non_exhaustive]
 pub enum Geometry {
-    /// A box with sides of these whole lengths along x, y and z.
+    /// A box with these full side lengths along x, y and z.
     Box { size: [f64; 3] },
     /// A cylinder about the z axis.
     Cylinder { radius: f64, length: f64 },
-    /// A cylinder about the z axis with a half ball on each end, which `length` does not count.
+    /// A cylinder about the z axis with a half ball at each end. `length` excludes the half balls.
     Capsule { radius: f64, length: f64 },
-    /// A ball; a radius of 0 is a point.
+    /// A sphere; a radius of 0 means a point.
     Sphere { radius: f64 },
-    /// A mesh: the file's name as given, factors along x, y and z (a negative one mirrors), and what was read of the
-    /// file, before the factors.
+    /// A mesh: the file name as given, the scale factors along x, y and z (negative ones mirror), and the vertices read
+    /// from the file, without scaling.
     Mesh { file: String, scale: [f64; 3], mesh: Mesh },
-    /// A shape that URDF does not know, by its element's tag.
+    /// A shape that URDF does not have, by the tag of its element.
     Unknown { tag: String },
 }
 
 /// A joint of the file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct UrdfJoint {
-    /// Its name, which no other joint has.
+    /// The joint's name, unique among joints.
     pub name: String,
     /// How it moves.
     pub kind: JointKind,
-    /// Its parent link (an index into [`Description::links`]).
+    /// The parent link (an index into [`Description::links`]).
     pub parent: usize,
-    /// Its child link, whose frame is the joint's.
+    /// The child link, whose frame is that of the joint.
     pub child: usize,
     /// The joint's frame in the parent link's frame, at coordinate zero.
     pub origin: Pose,
-    /// Its axis in the joint's frame, of any length; not zero where `kind` has an axis. (1, 0, 0) where the file has
-    /// none.
+    /// The axis in the joint's frame, of any length, and nonzero if `kind` has an axis. It is (1, 0, 0) if the file
+    /// gives none.
     pub axis: [f64; 3],
-    /// Whether the file has an axis.
+    /// Whether the file gives an axis.
     pub has_axis: bool,
-    /// The joint that it mimics, if any.
+    /// The mimicked joint, if this is a mimic joint.
     pub mimic: Option<Mimic>,
-    /// The least and the greatest coordinate \[rad or m\], perhaps infinite; `None` if the file has none, or none that leave
-    /// room.
+    /// The smallest and largest coordinate \[rad or m\], which may be infinite. `None` if the file gives no limits, or
+    /// the lower one is not below the upper one.
     pub limits: Option<[f64; 2]>,
-    /// Where its element begins.
+    /// Where the joint's element begins.
     pub location: Location,
 }
 
@@ -151,7 +151,7 @@ pub enum JointKind {
     Prismatic,
     /// Translates and rotates in the plane normal to its axis.
     Planar,
-    /// Leaves all six degrees of freedom.
+    /// Leaves all six degrees of freedom free.
     Floating,
     /// Rotates about every axis (a later addition to URDF).
     Spherical,
@@ -161,12 +161,12 @@ impl JointKind {
     pub(crate) const ALL: [Self; 7] =
         [Self::Fixed, Self::Revolute, Self::Continuous, Self::Prismatic, Self::Planar, Self::Floating, Self::Spherical];
 
-    /// Whether the joint's motion depends on its axis.
+    /// Returns whether the joint's motion depends on its axis.
     pub fn has_axis(self) -> bool {
         matches!(self, Self::Revolute | Self::Continuous | Self::Prismatic | Self::Planar)
     }
 
-    /// Its name in URDF.
+    /// Returns the kind's name in URDF.
     pub fn name(self) -> &'static str {
         ["fixed", "revolute", "continuous", "prismatic", "planar", "floating", "spherical"][self as usize]
     }
@@ -177,44 +177,46 @@ impl JointKind {
 pub struct Mimic {
     /// The mimicked joint (an index into [`Description::joints`]).
     pub joint: usize,
-    /// The factor, 1 if the file has none; in m, rad and their quotients.
+    /// The factor, by default 1; its unit is m, rad or a quotient of these.
     pub multiplier: f64,
-    /// The summand, 0 if the file has none \[rad or m\].
+    /// The summand, by default 0 \[rad or m\].
     pub offset: f64,
 }
 
-/// Elements of one tag that were ignored, below elements of the tag `parent`: `robot`, `link` or `joint`.
+/// Elements with the same tag that are not read, inside elements with the tag `parent`: `robot`, `link` or `joint`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Ignored {
-    /// The tag of the element around them.
+    /// The tag of the enclosing element.
     pub parent: &'static str,
-    /// Their own tag.
+    /// The tag of the elements.
     pub tag: String,
-    /// How many there are.
+    /// Number of the elements.
     pub count: usize,
 }
 
 impl Description {
     /// Reads and checks the text of a URDF file.
     ///
-    /// Elements that are no part of URDF's mechanics (`gazebo`, `transmission`, `limit`, ...) are ignored and counted
-    /// in [`Description::ignored`]; `visual` and `material` are ignored silently. URDF elements are those in the
-    /// namespace of `<robot>`.
+    /// Elements that are not part of URDF's mechanics (`gazebo`, `transmission`, `limit`, ...) are not read, and are
+    /// counted in [`Description::ignored`]. `visual` and `material` are ignored without counting. Only elements in the
+    /// namespace of `<robot>` are URDF elements.
     ///
     /// # Errors
-    /// Each with line, column and name of the element:
-    /// * text that is not XML, a document type definition, a root other than `<robot>`, xacro elements;
-    /// * elements nested deeper than 200 or with more than 100 attributes; more than 10,000 links, joints or collision
-    ///   shapes, 2,000 moving joints, 1,000,000 XML nodes or attributes, 1,000 namespaces or kinds of unknown elements
-    ///   (a refusal takes at most a second and 500 MB);
-    /// * no link; a missing or duplicate name; a joint of unknown type or with an unknown link; anything but one tree;
-    /// * text in place of a number, a number that is not finite, a negative mass or size, a zero axis.
+    /// Returns an error with line, column and name of the element in these cases:
+    /// * The text is not XML, has a document type definition, has a root other than `<robot>`, or contains xacro
+    ///   elements.
+    /// * Elements are nested deeper than 200 or have more than 100 attributes. There are more than 10,000 links, joints
+    ///   or collision shapes, 2,000 moving joints, 1,000,000 XML nodes or attributes, 1,000 namespaces or kinds of
+    ///   unknown elements (a refusal takes at most a second and 500 MB).
+    /// * There is no link, a name is missing or duplicate, a joint has an unknown type or link, or the joints do not
+    ///   form one tree.
+    /// * There is text in place of a number, a number that is not finite, a negative mass or size, or a zero axis.
     pub fn from_urdf(text: &str) -> Result<Self> {
-        // Some programs end a file with zero bytes.
+        // Some programs append zero bytes to a file.
         let text = text.strip_prefix('\u{feff}').unwrap_or(text).trim_end_matches('\0');
         let mut description = draft::read(text)?;
         let root = tree::connect(&mut description.links, &description.joints);
-        // As a <Joint> that is none.
+        // For example, <Joint> in place of <joint>.
         let of_robot = |name: &&String| name.starts_with('<') && name.contains(" in <robot>");
         let misspelt = |error: Error| match (error.remedy(), description.misspelt.iter().find(of_robot)) {
             (Some(remedy), Some(name)) => {
@@ -236,31 +238,31 @@ impl Description {
         Ok(description)
     }
 
-    /// The joint of that name (an index into [`Description::joints`]).
+    /// Returns the index in [`Description::joints`] of the joint with this name; `None` if there is none.
     pub fn joint(&self, name: &str) -> Option<usize> {
         self.joints.iter().position(|joint| joint.name == name)
     }
 }
 
-/// A link as errors name it.
+/// Returns the name of a link for use in errors.
 pub(crate) fn link_place(name: &str) -> String {
     format!("link \"{name}\"")
 }
 
-/// A joint as errors name it.
+/// Returns the name of a joint for use in errors.
 pub(crate) fn joint_place(name: &str) -> String {
     format!("joint \"{name}\"")
 }
 
 impl UrdfLink {
-    /// `error` at this link.
+    /// Returns `error` with the place of this link.
     pub(crate) fn refuse(&self, error: impl Into<Error>) -> Error {
         error.into().at(link_place(&self.name)).on(self.location.line, self.location.column)
     }
 }
 
 impl UrdfJoint {
-    /// `error` at this joint.
+    /// Returns `error` with the place of this joint.
     pub(crate) fn refuse(&self, error: impl Into<Error>) -> Error {
         error.into().at(joint_place(&self.name)).on(self.location.line, self.location.column)
     }
@@ -297,7 +299,7 @@ mod tests {
         let origin = Pose { xyz: [1e-3, 0.5, -2.0], rpy: [0.1, 0.2, 0.3] };
         let inertia = Some([[1.0, 2.0, 3.0], [2.0, 4.0, 5.0], [3.0, 5.0, 6.0]]);
         assert_eq!(link.inertial, Some(Inertial { origin, mass: 7.25, inertia }));
-        // A missing inertial is no mass of zero.
+        // A missing <inertial> differs from a mass of zero.
         let zero = Inertial { origin: Pose::default(), mass: 0.0, inertia: Some([[0.0; 3]; 3]) };
         assert_eq!((&robot.links[1].inertial, &robot.links[2].inertial), (&Some(zero), &None));
         let shapes: Vec<&Geometry> = link.collisions.iter().map(|collision| &collision.geometry).collect();
@@ -321,7 +323,8 @@ mod tests {
 
     #[test]
     fn untidy_files_are_read() {
-        // No name, a default namespace, CRLF, a byte order mark, a foreign tag, a limit without velocity, a zero byte.
+        // No name, a default namespace, CRLF, a byte order mark, a foreign element, a limit without velocity, a zero
+        // byte.
         let text = "\u{feff}<?xml version=\"1.0\"?>\r\n<robot xmlns=\"http://drake.mit.edu\" xmlns:d=\"d\" version=\"1.2\">\r\n\
             <d:link name=\"not one\"/><gazebo reference=\"x\"><link name=\"nor this\"/></gazebo><gazebo/>\r\n\
             <link name=\"Rad é 1\"><collision><geometry><sphere radius=\"0\"/></geometry></collision></link>\r\n\

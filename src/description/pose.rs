@@ -1,11 +1,11 @@
-//! Poses in three dimensions, as URDF writes them.
+//! Poses in three dimensions, in URDF's convention.
 
 use std::f64::consts::FRAC_PI_2;
 
 /// A 3 x 3 matrix, row by row.
 pub type Matrix = [[f64; 3]; 3];
 
-/// A frame in another one: translated by `xyz` and rotated by `rpy`.
+/// Pose of a frame in an outer frame: translation `xyz` and rotation `rpy`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Pose {
     /// The frame's origin in the outer frame \[m\].
@@ -15,11 +15,12 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// The matrix that takes vectors of this frame into the outer frame's axes: Rz(yaw) Ry(pitch) Rx(roll).
+    /// Returns the matrix that transforms vectors of this frame into the outer frame's axes: Rz(yaw) Ry(pitch)
+    /// Rx(roll).
     ///
-    /// Angles of zero and quarter turns give exact ones and zeros, and the digits are the same on every platform.
+    /// Zero angles and quarter turns give exact ones and zeros. The digits are the same on every platform.
     pub fn rotation(&self) -> Matrix {
-        // Most poses turn nothing.
+        // Most poses have no rotation.
         if self.rpy == [0.0; 3] {
             return [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         }
@@ -35,13 +36,14 @@ impl Pose {
     }
 }
 
-/// A quarter turn may be off by so many units in the last place: files are often written from computed angles.
+/// Largest deviation of a quarter turn in units in the last place: files are often written from computed angles.
 const ULPS: f64 = 4.0;
-/// So many digits and more of a quarter turn are one.
+/// A quarter turn that is rounded to at least this many digits counts as exact.
 const DIGITS: usize = 12;
 
-/// Sine and cosine of one to four quarter turns; `None` for another angle \[rad\]. One is within four units in the last
-/// place of a multiple of pi/2, or is one rounded to 12 digits and more; 1.5708 is none.
+/// Returns sine and cosine if `angle` \[rad\] is one to four quarter turns in either direction; else `None`. An angle
+/// counts if it is within four units in the last place of a multiple of pi/2, or is a multiple rounded to 12 or more
+/// digits. 1.5708 does not count.
 fn quarter_turn(angle: f64) -> Option<(f64, f64)> {
     let quarters = libm::round(angle / FRAC_PI_2);
     let exact = quarters * FRAC_PI_2;
@@ -61,19 +63,19 @@ fn quarter_turn(angle: f64) -> Option<(f64, f64)> {
     .filter(|_| is_near(exact) || rounded())
 }
 
-/// `matrix` times `vector`; the identity keeps every digit.
+/// Returns `matrix` times `vector`. The identity keeps every digit.
 pub fn apply(matrix: &Matrix, vector: [f64; 3]) -> [f64; 3] {
     matrix.map(|row| row[0] * vector[0] + row[1] * vector[1] + row[2] * vector[2])
 }
 
-/// `a` times `b`; the identity keeps every digit.
+/// Returns `a` times `b`. The identity keeps every digit.
 pub fn product(a: &Matrix, b: &Matrix) -> Matrix {
     a.map(|row| [0, 1, 2].map(|column| row[0] * b[0][column] + row[1] * b[1][column] + row[2] * b[2][column]))
 }
 
-/// `vector` at length one; one that has it keeps its digits, and zero stays zero.
+/// Scales `vector` to length one. A vector of length one keeps its digits, and zero remains zero.
 pub fn unit(vector: [f64; 3]) -> [f64; 3] {
-    // A power of two first, so that no square overflows or vanishes; it costs no digit.
+    // Scaling by a power of two is exact, and prevents overflow and underflow of the squares.
     let largest = vector.into_iter().map(f64::abs).fold(0.0, f64::max);
     if largest == 0.0 {
         return vector;
@@ -83,7 +85,7 @@ pub fn unit(vector: [f64; 3]) -> [f64; 3] {
     [x / length, y / length, z / length]
 }
 
-/// The right-handed rotation by `angle` \[rad\] about the unit vector `axis` (Rodrigues).
+/// Returns the right-handed rotation by `angle` \[rad\] about the unit vector `axis` (Rodrigues' formula).
 pub fn turn(axis: [f64; 3], angle: f64) -> Matrix {
     let (sin, cos) = libm::sincos(angle);
     let [x, y, z] = axis;
@@ -156,7 +158,7 @@ mod tests {
             assert_close(apply(&by(FRAC_PI_2), IDENTITY[(k + 1) % 3]), IDENTITY[(k + 2) % 3]);
             turn(axis, 0.7).into_iter().zip(by(0.7)).for_each(|(row, expected)| assert_close(row, expected));
         }
-        // A third of a whole turn about the diagonal takes x to y, y to z and z to x.
+        // A third of a full turn about the diagonal takes x to y, y to z and z to x.
         let diagonal = unit([2.0, 2.0, 2.0]);
         assert_close(apply(&turn(diagonal, 4.0 * FRAC_PI_2 / 3.0), [0.1, 0.2, 0.3]), [0.3, 0.1, 0.2]);
     }

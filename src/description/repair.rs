@@ -1,26 +1,27 @@
-//! Repairs common faults of URDF files so that their XML can be parsed; lines and columns stay where they were.
+//! Repairs common faults of URDF files so that their XML can be parsed. Lines and columns of errors refer to the
+//! original.
 //!
-//! Two faults are repaired: a declaration `<?xml ...?>` that is misspelled or does not come first becomes blanks (the
-//! text is UTF-8 already, so it carries no information), and prefixes that no element declares (`<sensor:camera>` of a
+//! Two faults are repaired. A declaration `<?xml ...?>` that is misspelt or not at the beginning is replaced by blanks
+//! (the text is UTF-8 already, so it carries no information). Undeclared namespace prefixes (`<sensor:camera>` in a
 //! robot without `xmlns:sensor`) are declared at the end of the root's tag.
 
 use super::xml::Cursor;
 use crate::error::{Error, Location};
 use std::borrow::Cow;
 
-/// The most prefixes that are declared: for each the text is parsed once more.
+/// Largest number of prefixes that are declared; the text is parsed once more for each.
 const MOST_PREFIXES: usize = 10;
 
-/// A text after its repairs.
+/// A text with its repairs.
 pub(super) struct Repaired<'a> {
     pub(super) text: Cow<'a, str>,
     prefixes: Vec<String>,
-    /// Where declarations were put in, and how many characters.
+    /// Where declarations were inserted, and their number of characters.
     inserted: Option<(Location, usize)>,
 }
 
 impl<'a> Repaired<'a> {
-    /// `text` without its declaration.
+    /// Replaces the XML declaration in `text` by blanks.
     pub(super) fn new(text: &'a str) -> Self {
         let text = match declarations(text) {
             found if found.is_empty() => Cow::Borrowed(text),
@@ -36,7 +37,7 @@ impl<'a> Repaired<'a> {
         Self { text, prefixes: Vec::new(), inserted: None }
     }
 
-    /// The text with one more prefix declared; `None` if that cannot help.
+    /// Declares one more prefix in the text; `None` if that cannot help.
     pub(super) fn declaring(self, prefix: &str) -> Option<Self> {
         let Self { text, mut prefixes, inserted } = self;
         if prefixes.len() == MOST_PREFIXES || prefixes.iter().any(|known| known == prefix) {
@@ -45,7 +46,7 @@ impl<'a> Repaired<'a> {
         let end = root_tag_end(&text)?;
         let declaration = format!(" xmlns:{prefix}=\"undeclared:{prefix}\"");
         let length = declaration.chars().count() + inserted.map_or(0, |(_, length)| length);
-        // Later ones follow the earlier, so the place stays that of the first.
+        // Each declaration is inserted after the earlier ones, so the place remains that of the first.
         let begin = inserted.map_or_else(|| Cursor::new(&text).locate(end), |(begin, _)| begin);
         let mut text = text.into_owned();
         text.insert_str(end, &declaration);
@@ -53,7 +54,7 @@ impl<'a> Repaired<'a> {
         Some(Self { text: Cow::Owned(text), prefixes, inserted: Some((begin, length)) })
     }
 
-    /// Where a place of the repaired text is in the file.
+    /// Converts a place in the repaired text to the place in the file.
     pub(super) fn in_file(&self, place: Location) -> Location {
         match self.inserted {
             Some((begin, length)) if place.line == begin.line && place.column > begin.column => {
@@ -63,7 +64,7 @@ impl<'a> Repaired<'a> {
         }
     }
 
-    /// `error` at its place in the file.
+    /// Returns `error` with its place in the file.
     pub(super) fn refusal(&self, error: Error) -> Error {
         match error.location().map(|place| self.in_file(place)) {
             Some(Location { line, column }) => error.on(line, column),
@@ -72,7 +73,7 @@ impl<'a> Repaired<'a> {
     }
 }
 
-/// The processing instructions before the root element, each with its end guessed at the first `>`.
+/// Returns the processing instructions before the root element. Each is taken to end at the first `>`.
 fn declarations(text: &str) -> Vec<std::ops::Range<usize>> {
     let (mut at, mut found) = (0, Vec::new());
     loop {
@@ -90,7 +91,7 @@ fn declarations(text: &str) -> Vec<std::ops::Range<usize>> {
     }
 }
 
-/// Where the name and the attributes of the root's tag end.
+/// Returns where the name and the attributes of the root's tag end.
 fn root_tag_end(text: &str) -> Option<usize> {
     let mut at = 0;
     loop {
@@ -140,7 +141,7 @@ mod tests {
         assert_eq!(repaired.text, format!("<!-- <a> -->\n{tag}<x:y/><z:y/></robot>"));
         let place = |column| repaired.in_file(Location { line: 2, column }).column;
         assert_eq!(place(3), 3);
-        // What follows the tag's `>` and the element z:y.
+        // The places after the tag's `>` and after the element x:y.
         assert_eq!((place(tag.len() + 1), place(tag.len() + 7)), (21, 27));
         assert!(repaired.declaring("x").is_none());
         let alone = Repaired::new("<robot/>").declaring("x").expect("a root");

@@ -3,8 +3,8 @@
 use super::{Description, UrdfJoint, UrdfLink};
 use crate::error::{Reason, Result};
 
-/// Sets the joint of each link and returns the root, in time linear in links and joints. A link with two parents, more
-/// than one root, or a cycle are refused.
+/// Sets the joint of each link and returns the root, in linear time. Returns an error if a link has two parents, if
+/// there are several roots, or if there is a cycle.
 pub(super) fn connect(links: &mut [UrdfLink], joints: &[UrdfJoint]) -> Result<usize> {
     for (index, joint) in joints.iter().enumerate() {
         if let Some(first) = links[joint.child].joint {
@@ -31,14 +31,14 @@ pub(super) fn connect(links: &mut [UrdfLink], joints: &[UrdfJoint]) -> Result<us
         let reason = Reason::NotATree(format!("link \"{name}\" is its own ancestor: the joints form a cycle"));
         return Err(joints[joint].refuse(reason).hint("cut the cycle open: one link must be no joint's child"));
     }
-    // Without a root every link is a child, so there is a cycle; without links there is nothing to connect.
+    // Without a root every link is a child, which was refused above as a cycle. So there are no links.
     root.ok_or_else(|| Reason::Missing("a <link>".into()).into())
 }
 
 impl Description {
-    /// All joints outward from `link`, those of one link in the file's order and each branch before the next.
+    /// Returns all joints beyond `link` in depth-first order. Joints of the same link are in the file's order.
     pub fn outward(&self, link: usize) -> Vec<usize> {
-        // The first joint of each link, and of each joint the next of the same link.
+        // The first joint of each link, and for each joint the next joint of the same parent link.
         let (mut first, mut next) = (vec![None; self.links.len()], vec![None; self.joints.len()]);
         for (index, joint) in self.joints.iter().enumerate().rev() {
             next[index] = first[joint.parent].replace(index);
@@ -46,7 +46,7 @@ impl Description {
         let (mut order, mut waiting) = (Vec::with_capacity(self.joints.len()), Vec::from_iter(first[link]));
         while let Some(index) = waiting.pop() {
             order.push(index);
-            // A stack is emptied from its end.
+            // `waiting` is a stack: the child's joints come before the next joint.
             waiting.extend(next[index]);
             waiting.extend(first[self.joints[index].child]);
         }
@@ -54,9 +54,9 @@ impl Description {
     }
 }
 
-/// A link that is its own ancestor, if any, and its joint.
+/// Returns a link that is its own ancestor, and its joint; `None` if there is no cycle.
 fn first_in_cycle(links: &[UrdfLink], joints: &[UrdfJoint]) -> Option<(usize, usize)> {
-    // The walk toward the root in which a link was first met, counted from 1.
+    // For each link, the first walk toward the root that reached it, counted from 1.
     let mut met = vec![0; links.len()];
     for start in 0..links.len() {
         let (walk, mut at) = (start + 1, start);

@@ -1,12 +1,12 @@
-//! The values of an element in urdf-rs's types, each number checked: urdf-rs gives the types and what holds where a
-//! file leaves something out, roxmltree the attributes.
+//! Values of an element, with every number checked. urdf-rs provides the types and default values, roxmltree the
+//! attributes.
 
 use super::{Collision, Geometry, Inertial, JointKind, Mesh, Mimic, Pose, xml};
 use crate::error::{Reason, Result};
 use roxmltree::Node;
 use urdf_rs::Vec3;
 
-/// The least number that an attribute may hold: any, or none that is negative.
+/// Smallest allowed value of an attribute: any number, or zero.
 const ANY: f64 = f64::NEG_INFINITY;
 const NOT_NEGATIVE: f64 = 0.0;
 
@@ -16,7 +16,7 @@ impl From<urdf_rs::Pose> for Pose {
     }
 }
 
-/// An `<origin>`, if there is one.
+/// Reads an `<origin>`; a missing one is the identity.
 pub(super) fn origin(origin: Option<Node<'_, '_>>) -> Result<Pose> {
     let Some(origin) = origin else { return Ok(urdf_rs::Pose::default().into()) };
     if origin.has_attribute("quat_xyzw") {
@@ -27,7 +27,7 @@ pub(super) fn origin(origin: Option<Node<'_, '_>>) -> Result<Pose> {
     Ok(urdf_rs::Pose { xyz: vector("xyz")?, rpy: vector("rpy")? }.into())
 }
 
-/// An `<inertial>`.
+/// Reads an `<inertial>`.
 pub(super) fn inertial(element: Node<'_, '_>) -> Result<Inertial> {
     let [own, mass, moments] = xml::named(element, ["origin", "mass", "inertia"]);
     let origin = origin(own?)?;
@@ -38,7 +38,7 @@ pub(super) fn inertial(element: Node<'_, '_>) -> Result<Inertial> {
     Ok(Inertial { origin, mass, inertia: inertia.map(matrix) })
 }
 
-/// An `<inertia>`; a file that leaves out the products of inertia means that there are none.
+/// Reads an `<inertia>`. Missing products of inertia are zero.
 fn inertia(element: Node<'_, '_>) -> Result<urdf_rs::Inertia> {
     let moment = |name| required(element, name, ANY).map(|[moment]| moment);
     let product = |name| optional(element, name, ANY).map(|product| product.map_or(0.0, |[product]| product));
@@ -46,15 +46,15 @@ fn inertia(element: Node<'_, '_>) -> Result<urdf_rs::Inertia> {
     Ok(urdf_rs::Inertia { ixx, iyy, izz, ixy: product("ixy")?, ixz: product("ixz")?, iyz: product("iyz")? })
 }
 
-/// A `<collision>`.
+/// Reads a `<collision>`.
 pub(super) fn collision(element: Node<'_, '_>) -> Result<Collision> {
     let [own, shape] = xml::named(element, ["origin", "geometry"]);
     Ok(Collision { origin: origin(own?)?, geometry: geometry(xml::required_child(element, shape, "geometry")?)? })
 }
 
-/// A `<geometry>`.
+/// Reads a `<geometry>`.
 fn geometry(geometry: Node<'_, '_>) -> Result<Geometry> {
-    // Beside a shape of URDF elements of other programs may stand, such as <drake:declare_convex>.
+    // Elements of other programs, such as <drake:declare_convex>, may accompany a shape of URDF.
     let (mut shapes, foreign) = (xml::children(geometry), || geometry.children().find(Node::is_element));
     let missing = || xml::refuse(geometry, Reason::Missing("a shape in <geometry>".into()));
     let shape = shapes.next().or_else(foreign).ok_or_else(missing)?;
@@ -81,8 +81,8 @@ fn geometry(geometry: Node<'_, '_>) -> Result<Geometry> {
     })
 }
 
-/// The `<axis>` of a joint, if it has a direction: `<axis/>` means what no `<axis>` means. It must not be zero where the
-/// joint has an axis.
+/// Reads the `<axis>` of a joint; `None` if it gives no direction (`<axis/>` counts as missing). A zero vector is an
+/// error if joints of this `kind` have an axis.
 pub(super) fn axis(axis: Option<Node<'_, '_>>, kind: JointKind) -> Result<Option<urdf_rs::Axis>> {
     let Some(axis) = axis else { return Ok(None) };
     let Some(xyz) = optional(axis, "xyz", ANY)? else { return Ok(None) };
@@ -93,26 +93,26 @@ pub(super) fn axis(axis: Option<Node<'_, '_>>, kind: JointKind) -> Result<Option
     Ok(Some(urdf_rs::Axis { xyz: Vec3(xyz) }))
 }
 
-/// A `<mimic>` of the joint with the index `joint`.
+/// Reads a `<mimic>` of the joint with the index `joint`.
 pub(super) fn mimic(element: Node<'_, '_>, joint: usize) -> Result<Mimic> {
     let value = |name, default| optional(element, name, ANY).map(|value| value.map_or(default, |[value]| value));
     Ok(Mimic { joint, multiplier: value("multiplier", 1.0)?, offset: value("offset", 0.0)? })
 }
 
-/// The numbers of an attribute that must be there; see [`numbers`].
+/// Reads the numbers of a required attribute; see [`numbers`].
 fn required<const N: usize>(element: Node<'_, '_>, name: &str, least: f64) -> Result<[f64; N]> {
     numbers(element, name, xml::required_attribute(element, name)?, least)
 }
 
-/// The numbers of an attribute that may be missing; see [`numbers`].
+/// Reads the numbers of an optional attribute; see [`numbers`].
 fn optional<const N: usize>(element: Node<'_, '_>, name: &str, least: f64) -> Result<Option<[f64; N]>> {
     element.attribute(name).map(|text| numbers(element, name, text, least)).transpose()
 }
 
-/// The numbers in the `text` of an attribute: `N` finite ones from `least` on.
+/// Parses the `text` of an attribute as exactly `N` finite numbers of at least `least`.
 fn numbers<const N: usize>(element: Node<'_, '_>, name: &str, text: &str, least: f64) -> Result<[f64; N]> {
     let what = || format!("{name} of <{}>", element.tag_name().name());
-    // Other white space than ASCII's is rare, and takes longer to look for.
+    // White space beyond ASCII is rare and slower to find.
     let numbers = parsed(text.split_ascii_whitespace()).or_else(|| parsed(text.split_whitespace()));
     let numbers: [f64; N] = numbers.ok_or_else(|| {
         let expected = if N == 1 { "a number".into() } else { format!("{N} numbers") };
@@ -128,7 +128,7 @@ fn numbers<const N: usize>(element: Node<'_, '_>, name: &str, text: &str, least:
     }
 }
 
-/// These `N` words and no more as numbers.
+/// Parses exactly `N` words as numbers; `None` if there are fewer, more, or non-numbers.
 fn parsed<'t, const N: usize>(mut words: impl Iterator<Item = &'t str>) -> Option<[f64; N]> {
     let mut numbers = [0.0; N];
     for number in &mut numbers {

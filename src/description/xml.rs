@@ -1,34 +1,34 @@
-//! XML elements with their places in the text; hostile texts are refused here, in bounded time and memory.
+//! XML elements with their locations in the text. Malicious texts are refused in bounded time and memory.
 
 use crate::error::{Error, Location, Reason, Result};
 use memchr::{memchr_iter, memmem, memrchr};
 use roxmltree::{Document, Node, ParsingOptions};
 
-/// The deepest nesting of elements that is accepted; URDF itself needs six.
+/// Largest accepted nesting depth of elements; URDF itself needs six.
 const DEEPEST: usize = 200;
-/// The most links that are accepted, and the most joints and the most shapes.
+/// Largest accepted number of links, of joints and of collision shapes.
 pub(super) const MOST_LINKS: usize = 10_000;
-/// The most attributes of one element that are accepted: roxmltree compares each with each.
+/// Largest accepted number of attributes of one element: roxmltree compares all pairs.
 const MOST_ATTRIBUTES: usize = 100;
-/// The most nodes (elements, texts, comments) that are accepted, and the most attributes in all: 100 for each of the
-/// most links.
+/// Largest accepted number of nodes (elements, texts, comments), and of attributes in total: 100 per link.
 const MOST_NODES: u32 = 1_000_000;
-/// The most namespace declarations that are accepted: roxmltree copies those in force into each element that adds one.
+/// Largest accepted number of namespace declarations: roxmltree copies all that are in scope into each element that
+/// adds one.
 const MOST_NAMESPACES: usize = 1000;
 
-/// The remedy for what is something else altogether.
+/// The hint for a text that is not XML at all.
 const NO_URDF: &str = "give the text of a URDF file, which begins with <robot";
-/// The remedies for files in the wrong order.
+/// The hints for files given in the wrong order.
 const JSON: &str = "this is JSON, as states are: the robot's URDF file comes first";
 const TABLE: &str = "this is a table, as of states: the robot's URDF file comes first";
 
-/// Why a text has no XML tree; with the prefix that is not declared, if declaring it may help.
+/// Why a text has no XML tree. `prefix` is an undeclared namespace prefix, if declaring it may help.
 pub(super) struct Unparsed {
     pub(super) prefix: Option<String>,
     pub(super) refused: Error,
 }
 
-/// The XML tree of `text`. A document type definition is refused, and too many or too deeply nested elements.
+/// Parses `text` into an XML tree. Document type definitions, and too many or too deeply nested elements are refused.
 pub(super) fn parse(text: &str) -> std::result::Result<Document<'_>, Unparsed> {
     let refused = |refused| Unparsed { prefix: None, refused };
     refuse_many(text).map_err(refused)?;
@@ -42,7 +42,7 @@ pub(super) fn parse(text: &str) -> std::result::Result<Document<'_>, Unparsed> {
     Ok(document)
 }
 
-/// What roxmltree refused, in our words.
+/// Translates an error of roxmltree.
 fn refusal(text: &str, error: &roxmltree::Error) -> Error {
     use roxmltree::Error as Xml;
     let (place, message) = (error.pos(), error.to_string());
@@ -77,7 +77,7 @@ fn refusal(text: &str, error: &roxmltree::Error) -> Error {
     }
 }
 
-/// Where the first `--` is that is inside a comment.
+/// Returns the position of the first `--` inside a comment.
 fn hyphens_in_comment(text: &str) -> Option<usize> {
     let mut at = 0;
     loop {
@@ -90,11 +90,11 @@ fn hyphens_in_comment(text: &str) -> Option<usize> {
     }
 }
 
-/// Refuses more than [`MOST_LINKS`] tags `<link` before a tree is built of them, and what roxmltree would spend a
-/// square on: an element with more than [`MOST_ATTRIBUTES`], more than [`MOST_NAMESPACES`]. The place is that of the
-/// first one too many.
+/// Refuses texts with more than [`MOST_LINKS`] tags `<link` before a tree is built from them, and texts on which
+/// roxmltree would take quadratic time: more than [`MOST_ATTRIBUTES`] of one element or [`MOST_NAMESPACES`]. The
+/// error's place is that of the first item beyond the limit.
 ///
-/// An attribute value holds no `<`, so a tag and its attributes stand between one `<` and the next.
+/// Attribute values cannot contain `<`, so a tag with its attributes lies between one `<` and the next.
 fn refuse_many(text: &str) -> Result<()> {
     let refused = |what, limit, offset: usize| {
         let place = Cursor::new(text).locate(offset.max(1) - 1);
@@ -103,7 +103,7 @@ fn refuse_many(text: &str) -> Result<()> {
     if let Some(offset) = memmem::find_iter(text.as_bytes(), "xmlns").nth(MOST_NAMESPACES) {
         return refused("namespaces", MOST_NAMESPACES, offset + 1);
     }
-    // No more attributes than equals signs: only where these are many it matters which of them are attributes.
+    // The equals signs bound the number of attributes. They need a closer look only if there are many.
     let equals = |text: &str| memchr_iter(b'=', text.as_bytes()).count();
     let has_many = equals(text) > MOST_NODES as usize;
     let (mut offset, mut links, mut all_attributes, mut in_comment) = (0, 0, 0, false);
@@ -113,7 +113,7 @@ fn refuse_many(text: &str) -> Result<()> {
         in_comment = commented && !part.contains("-->");
         links += usize::from(!commented && is_link(part));
         let is_attribute = |&at: &usize| part[at + 1..].trim_start().starts_with(['"', '\'']);
-        // An attribute has at least three bytes more, x="".
+        // An attribute has at least three more bytes, as in x="".
         let attributes = match part.len() / 4 {
             few if few <= MOST_ATTRIBUTES && !has_many => 0,
             _ => memchr_iter(b'=', part.as_bytes()).filter(is_attribute).count(),
@@ -133,7 +133,7 @@ fn refuse_many(text: &str) -> Result<()> {
     Ok(())
 }
 
-/// Whether the text after a `<` begins the element `link` of some namespace.
+/// Returns whether the text after a `<` begins an element `link` of any namespace.
 fn is_link(part: &str) -> bool {
     let ends = |byte: &u8| byte.is_ascii_whitespace() || matches!(byte, b'/' | b'>');
     let name = part.as_bytes().split(ends).next().unwrap_or_default();
@@ -141,7 +141,7 @@ fn is_link(part: &str) -> bool {
 }
 
 fn refuse_deep_nesting(document: &Document<'_>) -> Result<()> {
-    // Nodes are numbered in the text's order, so a parent's depth is known before its children's.
+    // Nodes are numbered in the text's order, so a parent's depth is known before those of its children.
     let mut depths: Vec<usize> = Vec::new();
     for node in document.root().descendants() {
         let depth = node.parent().and_then(|parent| depths.get(parent.id().get_usize())).map_or(0, |depth| depth + 1);
@@ -154,22 +154,23 @@ fn refuse_deep_nesting(document: &Document<'_>) -> Result<()> {
     Ok(())
 }
 
-/// `reason` at the place of `node`.
+/// Returns an error with `reason` at the place of `node`.
 pub(super) fn refuse(node: Node<'_, '_>, reason: Reason) -> Error {
     let place = node.document().text_pos_at(node.range().start);
     Error::new(reason).on(place.row as usize, place.col as usize)
 }
 
-/// The child elements of `node` that share its namespace.
+/// Returns the child elements of `node` that share its namespace.
 pub(super) fn children<'a, 'input: 'a>(node: Node<'a, 'input>) -> impl Iterator<Item = Node<'a, 'input>> {
     let namespace = node.tag_name().namespace();
     node.children().filter(move |child| child.is_element() && child.tag_name().namespace() == namespace)
 }
 
-/// A child element, if there is one.
+/// An optional child element.
 pub(super) type Child<'a, 'input> = Option<Node<'a, 'input>>;
 
-/// The child elements of these tags, found in one pass over all children; a second one of a tag is refused.
+/// Finds the child elements with these tags in one pass over all children. A second element with the same tag is an
+/// error.
 pub(super) fn named<'a, 'input: 'a, const N: usize>(
     node: Node<'a, 'input>,
     tags: [&str; N],
@@ -189,7 +190,7 @@ pub(super) fn named<'a, 'input: 'a, const N: usize>(
     found
 }
 
-/// `child`, the child element `tag` of `node`, which must be there.
+/// Returns `child`, the child element `tag` of `node`, or an error if it is missing.
 pub(super) fn required_child<'a, 'input: 'a>(
     node: Node<'_, '_>,
     child: Result<Child<'a, 'input>>,
@@ -198,7 +199,7 @@ pub(super) fn required_child<'a, 'input: 'a>(
     child?.ok_or_else(|| refuse(node, Reason::Missing(format!("<{tag}>"))))
 }
 
-/// The attribute `name`, which must be there and not be empty.
+/// Returns the attribute `name`, or an error if it is missing or empty.
 pub(super) fn required_attribute<'a>(node: Node<'a, '_>, name: &str) -> Result<&'a str> {
     match node.attribute(name) {
         Some(value) if !value.is_empty() => Ok(value),
@@ -218,7 +219,7 @@ impl<'a> Cursor<'a> {
         Self { text, offset: 0, location: Location { line: 1, column: 1 } }
     }
 
-    /// Line and column of the byte `offset`, which must not lie before the last one.
+    /// Returns line and column of the byte `offset`, which must not precede the offset of the last call.
     pub(super) fn locate(&mut self, offset: usize) -> Location {
         let passed = self.text.get(self.offset..offset).unwrap_or_default();
         let lines = memchr_iter(b'\n', passed.as_bytes()).count();

@@ -1,35 +1,36 @@
 //! COLLADA (DAE) -> vertices.
 //!
 //! ```text
-//!     p = unit (T_1 ... T_k p_mesh)         T_1 ... T_k: the transformations of the nodes from the scene inward
+//!     p = unit (T_1 ... T_k p_mesh)         T_1 ... T_k: the transformations of the nodes, from the scene to the mesh
 //! ```
 //!
-//! Only what places vertices is read (COLLADA 1.4.1, chapters 5 and 6): asset, visual scene, nodes and the positions of
-//! geometries, those of skins in their bind shape. A file without a visual scene has its geometries as they are. Its up
-//! axis is not read, as in RViz, MoveIt, Gazebo and Pinocchio: many files of robots say y although they have the axes of
-//! their link. Nothing recurses, and node instances are counted: a file of a few lines could ask for 2^100 of them.
+//! Only elements that affect vertex positions are read (COLLADA 1.4.1, chapters 5 and 6): asset, visual scene, nodes,
+//! and the positions of geometries, those of skins in their bind shape. In a file without a visual scene, all
+//! geometries are read without transformation. The up axis is not read, as in RViz, MoveIt, Gazebo and Pinocchio: many
+//! robot files say y although they use the axes of their link. There is no recursion, and node instances are counted,
+//! because a file of a few lines could request 2^100 of them.
 
 use super::super::pose::{Matrix, apply, product, turn, unit};
 use super::super::xml;
 use roxmltree::{Document, Node, NodeId};
 use std::collections::HashMap;
 
-/// The most elements of the scene, each instance counted.
+/// Largest number of elements in the scene, with each instance counted.
 const MOST_INSTANCES: usize = 2_000_000;
-/// The most vertices, each instance counted.
+/// Largest number of vertices, with each instance counted.
 const MOST_VERTICES: usize = 4_000_000;
-/// The most digits of a number.
+/// Largest number of characters in a number.
 const LONGEST_NUMBER: usize = 400;
-/// The deepest nesting of nodes, instances followed.
+/// Largest nesting depth of nodes, including instances.
 const DEEPEST: usize = 200;
 
-/// A linear map, and the translation behind it.
+/// A linear map followed by a translation.
 type Transform = (Matrix, [f64; 3]);
 
 const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 const UNMOVED: Transform = (IDENTITY, [0.0; 3]);
 
-/// The positions of all geometries that the scene shows \[m\]. Or why there are none.
+/// Returns the vertex positions of all geometries in the scene \[m\]. The error is the reason for a failure.
 pub(super) fn vertices(bytes: &[u8]) -> Result<Vec<[f64; 3]>, String> {
     let text = std::str::from_utf8(bytes).map_err(|_| "the text is not UTF-8".to_owned())?;
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
@@ -46,7 +47,7 @@ pub(super) fn vertices(bytes: &[u8]) -> Result<Vec<[f64; 3]>, String> {
     Shown::new(&document).vertices((IDENTITY.map(|row| row.map(|entry| meters * entry)), [0.0; 3]))
 }
 
-/// A document, its elements by id, what was read of its geometries, and the vertices that its scene shows.
+/// A document, its elements by id, the positions of geometries read so far, and the vertices in its scene.
 struct Shown<'a, 'input> {
     document: &'a Document<'input>,
     by_id: HashMap<&'a str, Node<'a, 'input>>,
@@ -64,7 +65,7 @@ impl<'a, 'input: 'a> Shown<'a, 'input> {
         self.document.descendants().filter(move |node| is(*node, tag))
     }
 
-    /// The element that an attribute names by `#id`.
+    /// Returns the element that an attribute refers to as `#id`.
     fn target(&self, node: Node<'_, '_>, attribute: &str) -> Result<Node<'a, 'input>, String> {
         let url = node.attribute(attribute).unwrap_or_default();
         let found = url.strip_prefix('#').and_then(|id| self.by_id.get(id));
@@ -108,7 +109,7 @@ impl<'a, 'input: 'a> Shown<'a, 'input> {
         Ok(self.vertices)
     }
 
-    /// Adds the vertices of `geometry`, transformed.
+    /// Adds the transformed vertices of `geometry`.
     fn show(&mut self, geometry: Node<'a, 'input>, placed: &Transform) -> Result<(), String> {
         if !self.positions.contains_key(&geometry.id()) {
             let positions = self.positions(geometry)?;
@@ -122,7 +123,7 @@ impl<'a, 'input: 'a> Shown<'a, 'input> {
         Ok(())
     }
 
-    /// The positions of `geometry` in its own frame.
+    /// Returns the positions of `geometry` in its own frame.
     fn positions(&self, geometry: Node<'a, 'input>) -> Result<Vec<[f64; 3]>, String> {
         let mut positions = Vec::new();
         for vertices in geometry.descendants().filter(|node| is(*node, "vertices")) {
@@ -144,7 +145,7 @@ impl<'a, 'input: 'a> Shown<'a, 'input> {
             };
             let (offset, stride): (usize, usize) = (count("offset", 0)?, count("stride", 3)?);
             let points = values.get(offset..).unwrap_or_default().chunks(stride.max(3));
-            // The numbers of others, as normals, may follow in the same array.
+            // Other data, such as normals, may follow in the same array.
             let own = points.take(count("count", usize::MAX)?);
             positions.extend(own.filter_map(|point| point.first_chunk::<3>()));
             if positions.len() > MOST_VERTICES {
@@ -155,7 +156,7 @@ impl<'a, 'input: 'a> Shown<'a, 'input> {
     }
 }
 
-/// The product of the transformations that stand in `node`, in their order.
+/// Returns the product of the transformations in `node`, in their order.
 fn transformation(node: Node<'_, '_>) -> Result<Transform, String> {
     let mut placed = UNMOVED;
     for element in node.children() {
@@ -179,13 +180,13 @@ fn transformation(node: Node<'_, '_>) -> Result<Transform, String> {
     Ok(placed)
 }
 
-/// The sixteen numbers of an element, row by row.
+/// Reads the sixteen numbers of an element, row by row, as a transformation.
 fn matrix(element: Node<'_, '_>) -> Result<Transform, String> {
     let [a, b, c, x, d, e, f, y, g, h, i, z, ..] = numbers::<16>(element)?;
     Ok(([[a, b, c], [d, e, f], [g, h, i]], [x, y, z]))
 }
 
-/// `inner` and then `outer`.
+/// Composes two transformations: first `inner`, then `outer`.
 fn within(outer: &Transform, inner: &Transform) -> Transform {
     (product(&outer.0, &inner.0), moved(outer, inner.1))
 }
@@ -200,7 +201,7 @@ fn numbers<const N: usize>(element: Node<'_, '_>) -> Result<[f64; N], String> {
     values.try_into().map_err(|_| format!("<{}> needs {N} numbers", element.tag_name().name()))
 }
 
-/// The text of an element, without the comments in it.
+/// Returns the text of an element without comments.
 fn text(element: Node<'_, '_>) -> String {
     element.children().filter(Node::is_text).filter_map(|part| part.text()).collect()
 }
@@ -211,12 +212,12 @@ fn number(word: &str) -> Result<f64, String> {
     if word.len() > LONGEST_NUMBER { Err(refused()) } else { word.parse().map_err(|_| refused()) }
 }
 
-/// The first child of `node` with a tag.
+/// Returns the first child of `node` with this tag.
 fn child<'a, 'input>(node: Node<'a, 'input>, tag: &str) -> Option<Node<'a, 'input>> {
     node.children().find(|child| is(*child, tag))
 }
 
-/// Whether an element has a tag, in whichever namespace: each version of COLLADA has its own.
+/// Returns whether an element has this tag in any namespace: each version of COLLADA has its own.
 fn is(node: Node<'_, '_>, tag: &str) -> bool {
     node.is_element() && node.tag_name().name() == tag
 }

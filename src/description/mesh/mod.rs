@@ -4,8 +4,8 @@
 //!     file name --fetch, the caller's--> bytes --by the name's ending--> stl | obj | collada --> vertices
 //! ```
 //!
-//! The caller resolves a name, once for each file, and supplies the bytes, which are limited. A mesh that is missing or
-//! cannot be read is left out of its link with a reason, because robots often come without some of their meshes.
+//! The caller resolves each file name once and supplies the bytes, whose number is limited. A mesh that is missing or
+//! unreadable is left out of its link with a reason, because robots often come without some of their meshes.
 
 mod collada;
 mod obj;
@@ -15,32 +15,33 @@ use super::{Description, Geometry};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// The most bytes of all meshes of a robot that are read.
+/// Largest total number of bytes of all meshes of a robot.
 const MOST_BYTES: usize = 256 << 20;
-/// The beginning of a Git LFS pointer.
+/// The beginning of a Git LFS pointer file.
 const LFS_POINTER: &[u8] = b"version https://git-lfs";
 
-/// The vertices of a mesh, or why there are none, as in `no such file`.
+/// The vertices of a mesh, or the reason why there are none, for example `no such file`.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Mesh {
     /// [`Description::read_meshes`] was not called.
     Unread,
-    /// It has none that serve.
+    /// The mesh has no usable vertices.
     LeftOut {
-        /// Why, in words.
+        /// The reason.
         why: String,
     },
-    /// In the mesh's own frame, before any factor of the URDF \[m\]; all are finite, there is at least one.
+    /// Vertices in the mesh's own frame, before the URDF's scale factors \[m\]. All are finite, and there is at least
+    /// one.
     Vertices(Arc<[[f64; 3]]>),
 }
 
-/// The bytes of the file that a mesh name refers to, or why there are none, as in `no such file`.
+/// The bytes of the file that a mesh name refers to, or the reason why there are none, for example `no such file`.
 pub type Fetched = std::result::Result<Vec<u8>, String>;
 
 impl Description {
-    /// Reads the collision meshes from what `fetch` finds under their names: STL (whose vertices are f32), OBJ and
-    /// COLLADA (DAE), by the ending of the name. A mesh that cannot be read is kept as [`Mesh::LeftOut`], and
-    /// [`Robot::left_out`](crate::Robot::left_out) and a caution give the reason.
+    /// Reads the collision meshes. `fetch` returns the bytes for a file name. The ending of the name selects the
+    /// format: STL (with vertices in f32), OBJ or COLLADA (DAE). A mesh that cannot be read becomes [`Mesh::LeftOut`];
+    /// a caution and [`Robot::left_out`](crate::Robot::left_out) give the reason.
     pub fn read_meshes(&mut self, mut fetch: impl FnMut(&str) -> Fetched) {
         let mut known: HashMap<String, Mesh> = HashMap::new();
         let mut bytes = 0;
@@ -59,7 +60,7 @@ impl Description {
     }
 }
 
-/// The vertices in the bytes of a file, which are added to the sum of `all`. Or why it cannot be read.
+/// Reads the vertices from the bytes of a file and adds their number to `all`. The error is the reason for a failure.
 fn read(file: &str, bytes: &[u8], all: &mut usize) -> std::result::Result<Vec<[f64; 3]>, String> {
     *all = all.saturating_add(bytes.len());
     if *all > MOST_BYTES {

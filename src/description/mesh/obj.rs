@@ -2,10 +2,10 @@
 
 use tobj::LoadOptions;
 
-/// The most bytes that are read \[bytes\]: a face of three bytes takes a hundred in memory.
+/// Largest accepted size \[bytes\]: a face of three bytes takes a hundred bytes in memory.
 const LARGEST: usize = 16 << 20;
 
-/// The vertices that faces and lines use \[m\], all digits kept. Or why there are none.
+/// Returns the vertices that faces and lines use \[m\] with all digits. The error is the reason for a failure.
 pub(super) fn vertices(bytes: &[u8]) -> Result<Vec<[f64; 3]>, String> {
     if bytes.len() > LARGEST {
         return Err(format!("more than {} MiB of OBJ text", LARGEST >> 20));

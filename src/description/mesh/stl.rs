@@ -2,21 +2,21 @@
 
 use std::borrow::Cow;
 
-/// What stands before the triangles of a binary file: 80 bytes for anybody, and their number \[byte\].
+/// Size of the header of a binary file: 80 arbitrary bytes and the number of triangles \[bytes\].
 const HEADER: usize = 84;
-/// A triangle of a binary file \[byte\].
+/// Size of a triangle in a binary file \[bytes\].
 const TRIANGLE: usize = 50;
 
-/// The corners of all triangles \[m\], each as often as it is written. Or why there are none.
+/// Returns the corners of all triangles with repetitions \[m\]. The error is the reason for a failure.
 pub(super) fn vertices(bytes: &[u8]) -> Result<Vec<[f64; 3]>, String> {
     let scene = mesh_loader::stl::from_slice(&tidied(bytes)?).map_err(|error| error.to_string())?;
     Ok(scene.meshes.iter().flat_map(|mesh| &mesh.vertices).map(|vertex| vertex.map(f64::from)).collect())
 }
 
-/// ASCII in small letters, as some programs write it in capitals, and with a name, which mesh-loader wants; binary
-/// without what follows its last triangle, and not beginning with "solid", by which mesh-loader takes it for ASCII if
-/// a byte of its number of triangles is a line break (the feet of Solo and Bolt). A binary file that is cut short is
-/// refused: mesh-loader would read what is there.
+/// Changes a file so that mesh-loader reads it correctly. ASCII text becomes lower case, because some programs write
+/// capitals, and gets a name if it has none, which mesh-loader requires. A binary file loses the bytes after its last
+/// triangle, and "solid" at its beginning: mesh-loader would take it for ASCII if a byte of the number of triangles is
+/// a line break (as in the feet of Solo and Bolt). A truncated binary file is an error; mesh-loader would read a part.
 fn tidied(bytes: &[u8]) -> Result<Cow<'_, [u8]>, String> {
     let begin = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
     let begins_as_text = begin.len() >= 5 && begin[..5].eq_ignore_ascii_case(b"solid");

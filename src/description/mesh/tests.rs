@@ -1,4 +1,4 @@
-//! Readers of mesh files, against shapes written by hand.
+//! Compares the readers of mesh files with shapes written by hand.
 
 use super::*;
 
@@ -29,13 +29,13 @@ fn binary_stl(header: &[u8]) -> Vec<u8> {
 
 fn obj() -> String {
     let vertices = PYRAMID.map(|[x, y, z]| format!("v {x} {y} {z}\n")).concat();
-    // Some faces count back from the last vertex, the bottom is one face of four, and a vertex belongs to none.
+    // Some faces count back from the last vertex, the bottom is one face of four, and one vertex belongs to no face.
     format!(
         "# caf\u{e9}\nmtllib foot.mtl\no foot\n{vertices}v 9 9 9\nvn 0 0 1\nf 1 2 5\nf 2//1 3//1 5//1\nf -4 -3 -2\nf 4 1 5\nf 4 3 2 1\n"
     )
 }
 
-/// A COLLADA text of `asset` and `scene` around the pyramid.
+/// Returns a COLLADA text with `asset` and `scene` in which the geometry has these `points`.
 fn dae(asset: &str, scene: &str, points: &[[f64; 3]]) -> String {
     let numbers: String = points.iter().flatten().map(|number| format!("{number} ")).collect();
     format!(
@@ -66,14 +66,14 @@ fn mesh(file: &str, bytes: impl Into<Vec<u8>>) -> std::result::Result<Vec<[f64; 
     read(file, &bytes.into(), &mut 0)
 }
 
-/// The vertices in order, each once.
+/// Returns the vertices sorted and without repetitions.
 #[track_caller]
 fn vertices(file: &str, bytes: impl Into<Vec<u8>>) -> Vec<[f64; 3]> {
     sorted(&mesh(file, bytes).unwrap_or_else(|why| panic!("{file}: {why}")))
 }
 
 fn sorted(vertices: &[[f64; 3]]) -> Vec<[f64; 3]> {
-    // Adding 0 makes -0 the 0 that it equals.
+    // Adding 0 turns -0 into 0.
     let mut vertices: Vec<_> = vertices.iter().map(|vertex| vertex.map(|number| number + 0.0)).collect();
     vertices.sort_by(|a, b| a.partial_cmp(b).expect("numbers"));
     vertices.dedup();
@@ -100,9 +100,9 @@ fn every_format_gives_the_same_vertices() {
         ("foot.stl", ascii_stl().replace("foot", "Fu\u{df}").into()),
         ("foot.STL", binary_stl(b"by hand")),
         ("foot.STL", [binary_stl(b"by hand"), vec![7; 60]].concat()),
-        // Many programs begin a binary file as if it were a text.
+        // Many programs begin a binary file like a text.
         ("foot.stl", binary_stl(b"solid foot")),
-        // And some readers take it for one if a byte of its number of triangles is a line break.
+        // Some readers take a binary file for text if a byte of its number of triangles is a line break.
         ("foot.stl", ten_triangles),
         ("foot.obj", obj().into()),
         ("foot.dae", dae("<up_axis>Z_UP</up_axis>", &shown, &PYRAMID).into()),
@@ -115,10 +115,10 @@ fn every_format_gives_the_same_vertices() {
     let millimeters = PYRAMID.map(|vertex| vertex.map(|number| 1000.0 * number));
     let found = vertices("a.dae", dae("<unit name=\"mm\" meter=\"0.001\"/>", &shown, &millimeters));
     assert_near(&found, &sorted(&PYRAMID));
-    // Texts keep their digits.
+    // Text formats keep all digits.
     assert_eq!(vertices("a.obj", "v 0.1 0.2 -0.3\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")[1], [0.1, 0.2, -0.3]);
     assert_eq!(vertices("a.dae", dae("", "", &[[0.1, 0.2, -0.3]])), [[0.1, 0.2, -0.3]]);
-    // Normals in the same array, behind the positions.
+    // The array holds normals after the positions.
     let shared = dae("", &shown, &[&PYRAMID[..], &[[7.0; 3]; 2]].concat());
     assert_eq!(vertices("a.dae", shared.replace("count=\"7\" stride", "count=\"5\" stride")), sorted(&PYRAMID));
     let commented = dae("", "", &[[0.1, 0.2, -0.3]]).replacen("0.2", "<!-- y --> 0.2", 1);
@@ -128,15 +128,15 @@ fn every_format_gives_the_same_vertices() {
 #[test]
 fn collada_nodes_place_their_geometries() {
     let placed = |nodes: &str| vertices("a.dae", dae("", &scene(nodes), &[[1.0, 2.0, 3.0]]));
-    // Turned by 90 degrees about z, then moved: (1, 2, 3) -> (-2, 1, 3) -> (8, 1, 3).
+    // Rotated by 90 degrees about z, then moved: (1, 2, 3) -> (-2, 1, 3) -> (8, 1, 3).
     let turned = "<translate>10 0 0</translate><rotate>0 0 1 90</rotate>";
     assert_near(&placed(&format!("<node>{turned}{SHOWN}</node>")), &[[8.0, 1.0, 3.0]]);
-    // The outer node scales what the inner one has moved.
+    // The outer node scales the result of the inner node.
     let nested = format!("<node><scale>2 2 2</scale><node>{turned}{SHOWN}</node></node>");
     assert_near(&placed(&nested), &[[16.0, 2.0, 6.0]]);
     let matrix = "<matrix>0 -1 0 10 1 0 0 0 0 0 1 0 0 0 0 1</matrix>";
     assert_near(&placed(&format!("<node>{matrix}{SHOWN}</node>")), &[[8.0, 1.0, 3.0]]);
-    // One geometry shown twice, once through a node instance.
+    // One geometry shown twice, once by a node instance.
     let twice = format!(
         r##"<node id="n"><translate>1 0 0</translate>{SHOWN}</node>
             <node><translate>0 5 0</translate><instance_node url="#n"/></node>"##
@@ -150,7 +150,7 @@ fn files_that_cannot_be_read_have_a_reason() {
     with_nan[96..100].copy_from_slice(&f32::NAN.to_le_bytes());
     let in_scene = |nodes: &str| dae("", &scene(nodes), &PYRAMID);
     let circle = r##"<node id="a"><instance_node url="#b"/></node><node id="b"><instance_node url="#a"/></node>"##;
-    // Sixty nodes, each shown twice by the next: 2^60 in all.
+    // Sixty nodes, each of which shows the next one twice: 2^60 instances.
     let twice = |k: usize| format!("<instance_node url=\"#n{}\"/>", k + 1).repeat(2);
     let doubled: String = (0..60).map(|k| format!("<node id=\"n{k}\">{}</node>", twice(k))).collect();
     let endless = "cannot be read: its nodes are too many, or name each other in a circle";
@@ -167,7 +167,7 @@ fn files_that_cannot_be_read_have_a_reason() {
         ("a.stl", with_nan, "one of its vertices has the coordinate NaN"),
         ("a.stl", Vec::new(), "cannot be read: "),
         ("a.stl", binary_stl(b"")[..200].into(), "cannot be read: "),
-        // Between two triangles: what is there would make another foot.
+        // The file is cut between two triangles; the rest would make another foot.
         ("a.stl", binary_stl(b"")[..84 + 50].into(), "cannot be read: 6 triangles are announced, 1 are there"),
         ("a.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 1 2".into(), "cannot be read: "),
         ("a.obj", "v 0 0 0\nf 1 2 3\n".into(), "cannot be read: "),
