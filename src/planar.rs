@@ -204,7 +204,7 @@ pub struct Inertia<T> {
 }
 
 impl<T: Real> Inertia<T> {
-    /// Rotates the inertia from the axes of a body into the axes that `turn` refers to.
+    /// Expresses the inertia, given in the body's axes, in axes relative to which the body is rotated by `turn`.
     #[inline]
     pub fn turned(self, turn: Rotation<T>) -> Self {
         Self { first: turn.apply(self.first), ..self }

@@ -217,7 +217,6 @@ fn read_joint(
     Ok(UrdfJoint { name: name.into(), kind, parent, child, origin, axis, has_axis, mimic, limits, location })
 }
 
-/// Reads the joint's type.
 fn joint_kind(element: Node<'_, '_>) -> Result<JointKind> {
     let word = xml::required_attribute(element, "type")?;
     let known = |kind: &JointKind| kind.name() == word || (*kind, word) == (JointKind::Spherical, DRAKES_SPHERICAL);

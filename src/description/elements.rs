@@ -62,7 +62,6 @@ pub(super) struct IgnoredCount {
 }
 
 impl IgnoredCount {
-    /// Counts `element`, a child of an element `parent`.
     pub(super) fn count(&mut self, parent: &'static str, element: Node<'_, '_>) -> Result<()> {
         let tag = element.tag_name().name();
         let kind = *self.by_tag.entry((parent, tag.into())).or_insert(self.kinds.len());

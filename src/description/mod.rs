@@ -130,8 +130,8 @@ pub struct UrdfJoint {
     pub has_axis: bool,
     /// The mimicked joint, if this is a mimic joint.
     pub mimic: Option<Mimic>,
-    /// The smallest and largest coordinate \[rad or m\], which may be infinite. `None` if the file gives no limits, or
-    /// the lower one is not below the upper one.
+    /// The smallest and largest coordinate \[rad or m\], which may be infinite. `None` if the joint is neither revolute
+    /// nor prismatic, or if the file gives no limits with lower < upper.
     pub limits: Option<[f64; 2]>,
     /// Where the joint's element begins.
     pub location: Location,

@@ -46,13 +46,11 @@ fn inertia(element: Node<'_, '_>) -> Result<urdf_rs::Inertia> {
     Ok(urdf_rs::Inertia { ixx, iyy, izz, ixy: product("ixy")?, ixz: product("ixz")?, iyz: product("iyz")? })
 }
 
-/// Reads a `<collision>`.
 pub(super) fn collision(element: Node<'_, '_>) -> Result<Collision> {
     let [own, shape] = xml::named(element, ["origin", "geometry"]);
     Ok(Collision { origin: origin(own?)?, geometry: geometry(xml::required_child(element, shape, "geometry")?)? })
 }
 
-/// Reads a `<geometry>`.
 fn geometry(geometry: Node<'_, '_>) -> Result<Geometry> {
     // Elements of other programs, such as <drake:declare_convex>, may accompany a shape of URDF.
     let (mut shapes, foreign) = (xml::children(geometry), || geometry.children().find(Node::is_element));

@@ -166,7 +166,6 @@ pub(super) fn children<'a, 'input: 'a>(node: Node<'a, 'input>) -> impl Iterator<
     node.children().filter(move |child| child.is_element() && child.tag_name().namespace() == namespace)
 }
 
-/// An optional child element.
 pub(super) type Child<'a, 'input> = Option<Node<'a, 'input>>;
 
 /// Finds the child elements with these tags in one pass over all children. A second element with the same tag is an

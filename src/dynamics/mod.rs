@@ -182,7 +182,6 @@ mod tests {
             workspace
         }
 
-        /// Computes the Delassus matrix by articulated bodies.
         fn by_bodies<T: Trigonometry>(&self, plan: &Plan<T>, points: &[ContactPoint<T>]) -> Workspace<T> {
             let mut workspace = self.placed(plan);
             articulated_inertias(plan, &mut workspace);

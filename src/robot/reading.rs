@@ -32,7 +32,8 @@ pub enum PlaneReason {
     Asked,
     /// All axes of revolute and continuous joints are parallel to its normal.
     CommonAxis,
-    /// Of x-z and y-z, more revolute and continuous joints on the paths to the lowest links rotate in it; x-z if equal.
+    /// Among x-z and y-z, more revolute and continuous joints on the paths to the lowest links rotate in this plane, or
+    /// equally many and it is x-z.
     Legs,
     /// It is the usual sagittal plane of URDF, and the axes do not suggest another.
     #[default]

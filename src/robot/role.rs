@@ -16,7 +16,6 @@ use crate::planar::Vector;
 /// An axis this close to the normal is off by rounding only \[rad\].
 const ROUNDING: f64 = 1e-9;
 
-/// The role of a joint in the plane.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Role {
     /// The joint moves about or along this axis, independently or as a mimic joint.
@@ -32,7 +31,6 @@ pub(super) enum Role {
     Frozen(FreezeReason),
 }
 
-/// Returns the role of every joint.
 pub(super) fn roles(description: &Description, pose: &ReferencePose, plane: Plane) -> Vec<Role> {
     let joints = &description.joints;
     let mut roles: Vec<Role> = (0..joints.len()).map(|index| role(&joints[index], index, pose, plane)).collect();

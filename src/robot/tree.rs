@@ -140,7 +140,6 @@ fn vanishes(link: &description::UrdfLink) -> bool {
 }
 
 impl Body {
-    /// Creates a body that has no mass yet.
     fn of(link: &str, joint: Option<ParentJoint>) -> Self {
         Self { name: link.into(), joint, mass: 0.0, com: Vector::zero(), moment: 0.0 }
     }

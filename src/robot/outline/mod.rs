@@ -110,7 +110,6 @@ mod tests {
         assert_eq!(shape.rim, Rim::Circle { radius });
     }
 
-    /// Returns the corners of a rectangle with these half sizes.
     fn rectangle(x: f64, z: f64) -> [Vector<f64>; 4] {
         [[0.1 - x, -0.3 - z], [0.1 + x, -0.3 - z], [0.1 + x, -0.3 + z], [0.1 - x, -0.3 + z]].map(Vector::from)
     }
@@ -119,7 +118,6 @@ mod tests {
         Geometry::Mesh { file: "package://p/sole.stl".into(), scale, mesh: Mesh::Vertices(vertices.into()) }
     }
 
-    /// Returns the corners of a box with these half sizes.
     fn eight(half: [f64; 3]) -> Vec<[f64; 3]> {
         (0..8).map(|bits| [0, 1, 2].map(|k| if bits >> k & 1 == 0 { -half[k] } else { half[k] })).collect()
     }
