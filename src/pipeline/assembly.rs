@@ -7,7 +7,7 @@
 //! ```
 //!
 //! Each step reads what the steps before it left in the workspace. The f64 pipeline finds contacts and bounds its
-//! rounding between the steps; [`super::exact`] takes them for every other number, and `accuracy` times each.
+//! rounding between the steps. [`super::exact`] runs the steps for every other number type, and `accuracy` times each.
 
 use super::still::{Still, eliminate};
 use crate::dynamics::plan::{Configuration, Plan};
@@ -22,20 +22,20 @@ use crate::robot::Robot;
 use crate::scalar::Real;
 use crate::state::{LinkPoint, Scene, SpringEnd, VirtualSpring};
 
-/// What acts on a robot in sustained contact, apart from the contacts.
+/// The loads on a robot in sustained contact, apart from the contact forces.
 #[derive(Debug, Clone, Copy)]
 pub struct Loads<'a> {
     pub robot: &'a Robot,
     /// Gravity, torques and virtual springs.
     pub scene: &'a Scene,
-    /// q, with the base where it is placed.
+    /// q, with the placed base.
     pub position: &'a [f64],
-    /// Which bodies do not turn but by the rounding of their rates; with an empty list none of them.
+    /// Whether each body does not rotate, except for the rounding of its rates; an empty list stands for all false.
     pub steady: &'a [bool],
 }
 
-/// At most this part of a row of G is rounding once loops hold its contact: a thousand units in the last place of a
-/// velocity, squared. Where rows of K nearly depend on each other they leave more.
+/// Once loops hold a contact, a row of G is rounding if at most this fraction of it is left: a thousand units in the
+/// last place of a velocity, squared. Nearly dependent rows of K leave more.
 const HELD: f64 = (1e3 * f64::EPSILON) * (1e3 * f64::EPSILON);
 
 /// How M^-1 is applied.
@@ -44,11 +44,11 @@ pub enum Elimination {
     /// M = L^T D L along the tree's branches.
     #[default]
     Ltl,
-    /// Articulated bodies, without M, mimic joints and constraints: quicker for long chains, with narrower enclosures.
+    /// Articulated bodies, without M, mimic joints and constraints: faster for long chains, with narrower enclosures.
     ArticulatedBodies,
 }
 
-/// The dynamics of one state, and the memory that it needs.
+/// The dynamics of one state, with reusable memory.
 #[derive(Debug, Clone, Default)]
 pub struct Assembly<T = f64> {
     pub plan: Plan<T>,
@@ -59,9 +59,9 @@ pub struct Assembly<T = f64> {
     /// Coordinates of braked joints that have a column all the same.
     pub kept: Vec<usize>,
     pub loops: Vec<Loop<T>>,
-    /// The rows of the loops that count, in the order in which every number eliminates them.
+    /// The independent rows of the loops, in the order in which every number type eliminates them.
     pub rows: Vec<usize>,
-    /// Whether those are the rows that hold something, whatever digits the pose does not have.
+    /// Whether the rank of the loops does not depend on digits that the pose does not have.
     pub is_rank_certain: bool,
     column: Vec<T>,
     /// Scratch of the elimination of contacts at rest.
@@ -70,7 +70,7 @@ pub struct Assembly<T = f64> {
 }
 
 impl Assembly {
-    /// [`Assembly::delassus`] in f64: rows of contacts that the loops hold are zero, and not what rounding leaves of them.
+    /// As [`Assembly::delassus`], but rows of contacts that the loops hold are exactly zero, without rounding.
     pub fn rounded_delassus(&mut self) {
         if !self.is_constrained() {
             return self.delassus();
@@ -108,7 +108,7 @@ impl<T: Real> Assembly<T> {
         }
     }
 
-    /// Takes M = L^T D L for what articulated bodies do not give.
+    /// Switches from articulated bodies to M = L^T D L, for results that only M gives.
     pub fn take_mass_matrix(&mut self) {
         if self.elimination == Elimination::ArticulatedBodies {
             self.elimination = Elimination::Ltl;
@@ -116,29 +116,29 @@ impl<T: Real> Assembly<T> {
         }
     }
 
-    /// The velocity of a point \[m/s\].
+    /// Returns the velocity of a contact point in the world's axes \[m/s\].
     pub fn velocity_of(&self, point: &ContactPoint<T>, velocity: &[T]) -> Vector<T> {
         point_velocity(&self.plan, point.body, point.arm(&self.workspace), velocity, &self.workspace)
     }
 
-    /// Takes the base's velocity as the one with which `foot` rests.
+    /// Sets the base's velocity so that `foot` is at rest.
     pub fn rest(&self, foot: &ContactPoint<T>, velocity: &mut [T]) {
         velocity[..2].fill(T::zero());
         let moving = self.velocity_of(foot, velocity);
         velocity[..2].copy_from_slice(&(-moving).components());
     }
 
-    /// Whether articulated bodies, which know neither mimic joints nor constraints, can apply M^-1.
+    /// Returns whether M^-1 can be applied by articulated bodies, which support neither mimic joints nor constraints.
     pub fn has_articulated_bodies(&self) -> bool {
         !self.plan.has_mimics && !self.is_constrained()
     }
 
-    /// Whether something other than the contacts gives impulses.
+    /// Returns whether loops or braked joints, too, transmit impulses.
     pub fn is_constrained(&self) -> bool {
         !(self.loops.is_empty() && self.kept.is_empty())
     }
 
-    /// Prepares the constraints; `foot` stays at rest when the loops are closed in a velocity.
+    /// Prepares the constraints. When the loops are closed in a velocity, `foot` stays at rest.
     pub fn constrain(&mut self, foot: Option<ContactPoint<T>>) {
         if self.is_constrained() {
             let constraints = Constraints { kept: &self.kept, rows: &self.rows };
@@ -147,7 +147,7 @@ impl<T: Real> Assembly<T> {
         }
     }
 
-    /// Closes the loops in `velocity`, as near to it as possible; gives the amplitudes of the constraints.
+    /// Changes `velocity` to the nearest one that keeps the loops closed; returns the amplitudes of the constraints.
     pub fn close(&self, velocity: &mut [T]) -> Vec<T> {
         if self.loops.is_empty() {
             return Vec::new();
@@ -155,12 +155,12 @@ impl<T: Real> Assembly<T> {
         close(&self.plan, &self.loops, Closed::Velocity, velocity, &self.workspace)
     }
 
-    /// Adds to a `change` of velocity what the constraints answer; gives the loops' impulses on their points a.
+    /// Adds the response of the constraints to a `change` of velocity; returns the loops' impulses on their points a.
     pub fn answer(&self, change: &mut [T]) -> Vec<Vector<T>> {
         self.answer_to(Closed::Change, change)
     }
 
-    /// As [`Assembly::answer`], to a change of velocity or to an acceleration, as `closed` says.
+    /// The same as [`Assembly::answer`], for a change of velocity or an acceleration, as `closed` selects.
     pub fn answer_to(&self, closed: Closed<'_, T>, change: &mut [T]) -> Vec<Vector<T>> {
         if !self.is_constrained() {
             return Vec::new();
@@ -169,7 +169,7 @@ impl<T: Real> Assembly<T> {
         loop_impulse(self.loops.len(), &amplitudes, &self.workspace)
     }
 
-    /// h = tau - b by column \[N, N m\], after the kinematics.
+    /// Returns h = tau - b by column \[N, N m\]. Requires the kinematics.
     pub fn load(&mut self, velocity: &[T], loads: Loads<'_>) -> &[T] {
         self.drive(velocity, loads);
         let Self { plan, workspace, column, .. } = self;
@@ -178,7 +178,7 @@ impl<T: Real> Assembly<T> {
         column
     }
 
-    /// tau by column.
+    /// Computes tau by column.
     fn drive(&mut self, velocity: &[T], loads: Loads<'_>) {
         let springs = self.springs(velocity, loads);
         self.column.clear();
@@ -189,8 +189,8 @@ impl<T: Real> Assembly<T> {
         }));
     }
 
-    /// The acceleration by coordinate \[m/s^2, rad/s^2\] that the loads alone give, without contacts and constraints,
-    /// and kappa of each loop.
+    /// Returns the acceleration by coordinate from the loads alone, without contacts and constraints \[m/s^2,
+    /// rad/s^2\], and kappa of each loop.
     pub fn acceleration(&mut self, velocity: &[T], loads: Loads<'_>) -> (Vec<T>, Vec<Vector<T>>) {
         match self.elimination {
             Elimination::Ltl => {
@@ -212,7 +212,7 @@ impl<T: Real> Assembly<T> {
         (acceleration, loops.iter().map(|own| own.drift(workspace)).collect())
     }
 
-    /// What each virtual spring asks for, after the kinematics.
+    /// Returns the force of each virtual spring. Requires the kinematics.
     pub fn springs(&self, velocity: &[T], loads: Loads<'_>) -> Vec<SpringLoad<T>> {
         let point = |LinkPoint { link, offset }: LinkPoint| {
             let link = &loads.robot.links[link];
@@ -229,7 +229,7 @@ impl<T: Real> Assembly<T> {
         loads.scene.springs.iter().map(load).collect()
     }
 
-    /// The contacts' accelerations J a + sigma for an acceleration by coordinate.
+    /// Returns the contacts' accelerations J a + sigma for an acceleration a by coordinate.
     pub fn contact_accelerations(&self, acceleration: &[T]) -> Vec<Pair<T>> {
         let own = self.points.iter().map(|point| {
             let total = self.velocity_of(point, acceleration) + point.drift(&self.workspace);
@@ -238,14 +238,14 @@ impl<T: Real> Assembly<T> {
         own.collect()
     }
 
-    /// J and c. The contact `stance` is exactly at rest.
+    /// Computes J and c. The contact `stance` is exactly at rest.
     pub fn contact_jacobian(&mut self, velocity: &[T], stance: Option<usize>) {
         contact_jacobian(&self.plan, &self.points, velocity, stance, &mut self.workspace);
     }
 
-    /// Takes c of the contacts that move as that of the motion next to v, by kinetic energy, in which the others are
-    /// `still`: c_i - G_ir lambda with G_rr lambda = c_r, from G and c. Reports each row of G that is eliminated, with
-    /// what is left of c and of the pivot there, and G.
+    /// Replaces v by the motion that is nearest by kinetic energy and in which the contacts `still` rest, and changes c
+    /// of the other contacts to it: c_i - G_ir lambda with G_rr lambda = c_r. Reports each eliminated row of G, the
+    /// remainders of its c and of its pivot, and G.
     pub fn settle(&mut self, Still { contacts, rows, .. }: &Still, mut report: impl FnMut(usize, Pair<T>, &[T])) {
         let Workspace { delassus, contact_velocity: speeds, .. } = &mut self.workspace;
         if !rows.is_empty() {
@@ -263,7 +263,7 @@ impl<T: Real> Assembly<T> {
         speeds.iter_mut().zip(contacts).filter(|(_, still)| **still).for_each(|(own, _)| *own = [T::zero(); 2]);
     }
 
-    /// G, without what the constraints do not let move.
+    /// Computes G, without the directions that the constraints block.
     pub fn delassus(&mut self) {
         match self.elimination {
             Elimination::Ltl => delassus(&self.plan, &mut self.workspace),
@@ -274,7 +274,7 @@ impl<T: Real> Assembly<T> {
         }
     }
 
-    /// Adds to `velocity` what an impulse at a point does to it, by a way that is prepared.
+    /// Adds to `velocity` the effect of an impulse at a point; `by` must be prepared.
     pub fn push(&mut self, by: Elimination, impulse: PointImpulse<T>, velocity: &mut [T]) {
         let Self { plan, workspace, column, motions, .. } = self;
         match by {
@@ -285,7 +285,7 @@ impl<T: Real> Assembly<T> {
         }
     }
 
-    /// Adds to `velocity` what an impulse [tangential, normal] at a contact point does to it, by a way that is prepared.
+    /// Adds to `velocity` the effect of an impulse [tangential, normal] at a contact; `by` must be prepared.
     pub fn strike(&mut self, by: Elimination, contact: usize, [tangential, normal]: Pair<T>, velocity: &mut [T]) {
         let point = self.points[contact];
         let axes = point.axes();
@@ -294,7 +294,7 @@ impl<T: Real> Assembly<T> {
         self.push(by, PointImpulse { body: point.body, arm, vector }, velocity);
     }
 
-    /// Adds to a `change` of v, by coordinate, what the applied impulses change in it by themselves.
+    /// Adds to a `change` of v, by coordinate, the effect of the applied impulses alone, without the constraints.
     pub fn apply(&mut self, robot: &Robot, scene: &Scene, change: &mut [T]) {
         for applied in &scene.impulses {
             let link = &robot.links[applied.link];
@@ -304,7 +304,7 @@ impl<T: Real> Assembly<T> {
         }
     }
 
-    /// c with a `change` of velocity. Only the change goes through J: without an impulse a contact at rest stays so.
+    /// Returns c after a `change` of velocity. Only the change goes through J: without it, a contact at rest stays so.
     pub fn free(&self, before: &[Pair<T>], change: &[T]) -> Vec<Pair<T>> {
         let free = before.iter().zip(&self.points).map(|(&[tangential, normal], point)| {
             let (more, axes) = (self.velocity_of(point, change), point.axes());

@@ -1,4 +1,4 @@
-//! One state's contact problem in numbers of any kind: what its f64 numbers were rounded from.
+//! The contact problem of one state in numbers of any kind: the exact data behind its rounded f64 numbers.
 
 use super::Impact;
 use super::assembly::{Assembly, Elimination, Loads};
@@ -15,37 +15,37 @@ use crate::state::{Scene, State};
 use std::cmp::Ordering;
 use std::ops::Add;
 
-/// What is asked about a state.
+/// The question about a state.
 #[derive(Debug, Clone, Copy)]
 pub enum Asked<'a> {
     Impact,
-    /// An impact at contacts that neither approach nor leave and slide so: all c_n are exactly zero, and c_t of those
-    /// that do not slide.
+    /// An impact at contacts that neither approach nor leave, with these signs of c_t: all c_n are exactly zero, and so
+    /// is c_t of contacts that do not slide.
     Shock(&'a [Ordering]),
     /// Accelerations in place of velocities.
     Forces(Loads<'a>),
 }
 
-/// A state with its contacts, every f64 of which is meant as the number that it is.
+/// A state with its contacts. Every f64 in it is taken as exact.
 pub struct ExactState<'a> {
     pub robot: &'a Robot,
     pub scene: &'a Scene,
-    /// q; with a foot x and z are not read.
+    /// q. With a `foot` its x and z are not read.
     pub position: &'a [f64],
-    /// dq/dt; with a foot x and z are such that it rests.
+    /// dq/dt. With a `foot` its x and z are those with which the foot rests.
     pub velocity: &'a [f64],
     /// The foot of the stance.
     pub foot: Option<&'a Contact>,
-    /// Its place among the contacts.
+    /// The index of this foot's contact.
     pub stance: Option<usize>,
     pub contacts: &'a [Contact],
-    /// Those that are exactly level with others.
+    /// For each contact, the other contact with which it is exactly level, if any.
     pub levels: &'a [Option<Level>],
     /// Contacts that are taken as exactly at rest.
     pub still: &'a Still,
-    /// The joints that keep their rates although they have columns, and the rows of the loops that count.
+    /// The braked joints that have columns all the same, and the independent rows of the loops.
     pub constraints: Constraints<'a>,
-    /// Whether the rows that count are those of the mechanism, and not of its pose's rounding.
+    /// Whether these rows follow from the mechanism, and not from the rounding of its pose.
     pub is_rank_certain: bool,
     pub laws: &'a [Law],
     pub restitution: &'a [f64],
@@ -61,8 +61,8 @@ pub struct Contacts<T> {
 }
 
 impl<'a> ExactState<'a> {
-    /// The `state` whose contacts are those of an impact, none of them level with another, and of which the foot of the
-    /// stance stands.
+    /// The exact data of a `state` with the contacts of an `impact` and the `foot` of the stance; no contact is level
+    /// with another.
     pub fn of(
         robot: &'a Robot,
         state: &'a State,
@@ -94,7 +94,7 @@ impl<'a> ExactState<'a> {
         Plan::new(self.robot, braked, &self.scene.rotor_inertia)
     }
 
-    /// The robot with its constraints, to be taken through the steps of the assembly.
+    /// The robot with its constraints, ready for the steps of the assembly.
     pub fn assembly<T: Real>(&self, plan: Plan<T>) -> Assembly<T> {
         let mut assembly = Assembly::new(plan);
         assembly.kept.extend(self.constraints.kept);
@@ -107,7 +107,7 @@ impl<'a> ExactState<'a> {
         contact.exact_point(self.robot, self.scene.ground.axes(contact.ground))
     }
 
-    /// The poses of the bodies and the contact points, from the configuration.
+    /// Computes the poses of the bodies and the contact points from the configuration.
     pub fn place<T: Trigonometry>(&self, assembly: &mut Assembly<T>) {
         assembly.place();
         assembly.points.clear();
@@ -132,7 +132,7 @@ impl<'a> ExactState<'a> {
         }
     }
 
-    /// J and c, with a `velocity` that keeps the stance and the loops, once M^-1 is prepared.
+    /// Computes J and c, and changes `velocity` to fit the stance and the loops. Requires M^-1.
     pub fn contact_velocities<T: Trigonometry>(&self, assembly: &mut Assembly<T>, velocity: &mut [T]) {
         let foot: Option<ContactPoint<T>> = self.foot.map(|foot| self.point(foot));
         if let Some(foot) = &foot {
@@ -143,7 +143,7 @@ impl<'a> ExactState<'a> {
         assembly.contact_jacobian(velocity, self.stance);
     }
 
-    /// What the applied impulses change in v, by coordinate, once M^-1 is prepared.
+    /// Returns the change of v by the applied impulses, by coordinate. Requires M^-1.
     pub fn change<T: Real>(&self, assembly: &mut Assembly<T>) -> Vec<T> {
         let mut change = vec![T::zero(); self.position.len()];
         assembly.apply(self.robot, self.scene, &mut change);
@@ -151,7 +151,7 @@ impl<'a> ExactState<'a> {
         change
     }
 
-    /// c-, without what rests.
+    /// Returns c-, with zeros for what rests.
     fn before<T: Real>(&self, assembly: &mut Assembly<T>) -> Vec<Pair<T>> {
         assembly.settle(self.still, |_, _, _| {});
         let speeds = assembly.workspace.contact_velocity.iter().enumerate();
@@ -163,7 +163,7 @@ impl<'a> ExactState<'a> {
         before.collect()
     }
 
-    /// G, which leaves the assembly, and both c, once all steps are done.
+    /// Returns G, which is taken out of the assembly, c- and c_free, after all steps of the assembly.
     pub fn collect<T: Real>(&self, assembly: &mut Assembly<T>) -> Contacts<T> {
         let before = self.before(assembly);
         let free = match self.scene.impulses.is_empty() {
@@ -176,16 +176,16 @@ impl<'a> ExactState<'a> {
         Contacts { delassus: std::mem::take(&mut assembly.workspace.delassus), before, free }
     }
 
-    /// The robot in its configuration, and dq/dt.
+    /// Returns the robot in its configuration, and dq/dt.
     fn given<T: Trigonometry>(&self) -> (Assembly<T>, Vec<T>) {
         let mut assembly = self.assembly(self.plan());
         assembly.configuration.set(&assembly.plan, self.position);
         (assembly, self.velocity.iter().map(|&entry| T::from_f64(entry)).collect())
     }
 
-    /// What the velocity by coordinate after these impulses of the contacts is the sum of, or the acceleration under
-    /// these forces: that without them, what applied impulses change, what each contact changes. The same of the
-    /// impulses of loops follows, [x, z] each.
+    /// Returns the summands of the velocity by coordinate after these contact impulses, or of the acceleration under
+    /// these contact forces: the part without them, for an impact the part of the applied impulses, then one part per
+    /// contact. Each summand continues with its part of the loop impulses, [x, z] for each loop.
     pub fn response<T: Trigonometry>(&self, impulse: &[Pair<f64>]) -> Vec<Vec<T>> {
         let (mut assembly, mut velocity) = self.given();
         self.assemble(&mut assembly, &mut velocity);
@@ -217,7 +217,7 @@ impl<'a> ExactState<'a> {
         parts
     }
 
-    /// M^-1, J and c in a configuration, with the contacts as they are and a `velocity` that keeps stance and loops.
+    /// Prepares M^-1, J and c in a configuration with these contacts; `velocity` is fitted to the stance and the loops.
     fn assemble<T: Trigonometry>(&self, assembly: &mut Assembly<T>, velocity: &mut [T]) {
         if assembly.has_articulated_bodies() {
             assembly.elimination = Elimination::ArticulatedBodies;
@@ -227,8 +227,8 @@ impl<'a> ExactState<'a> {
         self.contact_velocities(assembly, velocity);
     }
 
-    /// G and both c in a configuration, with the contacts as they are; if forces are asked for, the contacts'
-    /// accelerations without them in place of c. With a foot x and z of the `velocity` are not read.
+    /// Returns G, c- and c_free in a configuration with these contacts. For forces, the contacts' accelerations without
+    /// contact forces replace both c. With a foot, x and z of the `velocity` are not read.
     pub fn contacts<T: Trigonometry>(&self, mut assembly: Assembly<T>, mut velocity: Vec<T>) -> Contacts<T> {
         self.assemble(&mut assembly, &mut velocity);
         assembly.delassus();
@@ -281,7 +281,7 @@ impl Source for ExactState<'_> {
         let &Level { with, .. } = self.levels.get(contact)?.as_ref()?;
         let still = |contact: usize| self.still.contacts.get(contact);
         let is_alike = still(contact) == still(with) || !self.still.rows.is_empty();
-        // Accelerations differ by what the body's turn brings along.
+        // Accelerations of the two contacts differ by a term from the rotation of the body.
         (matches!(self.asked, Asked::Impact) && is_alike).then_some(with)
     }
 }
@@ -294,7 +294,7 @@ mod tests {
     use crate::pipeline::{Options, Pipeline};
     use crate::state::Defaults;
 
-    /// A state whose c is known no better than in f64.
+    /// A state whose c is known only as closely as in f64.
     struct Blurred<'a>(&'a ExactState<'a>);
 
     impl Source for Blurred<'_> {

@@ -4,10 +4,10 @@
 //!     M a = h + J^T f + K^T l,   K a + kappa = 0      c' = J a + sigma = c'_free + G f      h = tau - b (gravity, v v)
 //! ```
 //!
-//! With forces for impulses and accelerations for velocities it is the contact problem of an impact, with the same G
-//! and the same law, for contacts that neither approach nor leave; those that slide already keep their direction
-//! ([`Law::Sliding`]). No theorem forces an outcome upon those: none and two are Painleve's paradoxes. Without one the
-//! velocities jump, by an impact without approach.
+//! This is the contact problem of an impact with the same G and law, but with forces for impulses and accelerations for
+//! velocities. Its contacts neither approach nor leave the ground; those that already slide keep their direction
+//! ([`Law::Sliding`]). No theorem guarantees them exactly one outcome: none and two are Painleve's paradoxes. Without
+//! an outcome the velocities jump, by an impact without approach.
 
 use super::assembly::{Assembly, Loads};
 use super::exact::{Asked, ExactState};
@@ -29,43 +29,42 @@ use crate::scalar::{Magnitude, Real, dot};
 use crate::state::{Scene, SpringEnd, State};
 use std::cmp::Ordering;
 
-/// What part of their bounds the errors of accelerations are likely to reach, in those of G: over 1,000 states of
-/// fifteen robots, chains of ten links with masses of 1e-4 to 1e4 kg among them, it was at most 1.1.
+/// The fraction of their bounds that the errors of accelerations are likely to reach, as a multiple of that of G. Over
+/// 1,000 states of fifteen robots (also chains of ten links with masses of 1e-4 to 1e4 kg) it was at most 1.1.
 const LIKELY: f64 = 4.0;
 
-/// What an [`Impact`] is of a state in sustained contact: its numbers are forces \[N\] for impulses, accelerations
-/// \[m/s^2, rad/s^2\] for velocities after it, and in the problem accelerations without contact forces for velocities.
-/// Its contacts are those that take part, and `velocity_before` is how they move.
+/// The part of an [`Impact`] that describes sustained contact. Its impulses are then forces \[N\], and its velocities
+/// after the impact are accelerations \[m/s^2, rad/s^2\]. The velocities of its problem are accelerations without
+/// contact forces. Its contacts are those that take part, and `velocity_before` is their velocity.
 #[derive(Debug, Clone)]
 pub struct Sustained {
-    /// How each contact slides: the sign of its velocity along t.
+    /// The sliding direction of each contact: the sign of its velocity along t.
     pub slips: Vec<Ordering>,
-    /// With [`Verdict::None`], every outcome of the impact without approach that has an impulse; `None` if it is not
-    /// decided.
+    /// With [`Verdict::None`], every outcome with an impulse of the impact without approach; `None` if it is undecided.
     pub shock: Option<Vec<Outcome>>,
     /// Gravity along -z of the world \[m/s^2\].
     pub gravity: f64,
-    /// What acts at the joints.
+    /// Torques at the joints, and virtual springs.
     pub driven: Driven,
-    /// How far the problem's accelerations may be from those of the state \[m/s^2\]; infinite if nothing is known.
+    /// Error bounds of the problem's accelerations \[m/s^2\]; infinite if nothing is known.
     pub rounding: Vec<Pair<f64>>,
 }
 
-/// A state in sustained contact without contact forces.
+/// A state in sustained contact before contact forces are added.
 struct Unforced {
-    /// As in [`Loads`].
+    /// See [`Loads::steady`].
     steady: Vec<bool>,
-    /// q, with the base where it is placed.
+    /// q, with the placed base.
     position: Vec<f64>,
     driven: Driven,
-    /// Acceleration by coordinate, without and with what the loops answer \[m/s^2, rad/s^2\].
+    /// Accelerations by coordinate, without the loops' response (`unclosed`) and with it \[m/s^2, rad/s^2\].
     unclosed: Vec<f64>,
     free: Vec<f64>,
     /// kappa of each loop.
     drifts: Vec<Vector>,
-    /// What the accelerations by coordinate are likely off by \[m/s^2, rad/s^2\].
+    /// Likely errors of the accelerations by coordinate \[m/s^2, rad/s^2\].
     likely: Vec<f64>,
-    /// Bounds of the rounding in the contacts' accelerations.
+    /// Bounds of the rounding in the contacts' accelerations \[m/s^2\].
     rounding: Vec<Pair<f64>>,
 }
 
@@ -75,25 +74,25 @@ impl Unforced {
     }
 }
 
-/// Velocities after an impact are right to this part of those before it: rates of no more than it say nothing.
+/// Relative accuracy of velocities after an impact, as a fraction of those before it. Smaller rates count as zero.
 const STOPPED: f64 = 1e-10;
-/// No planet has a stronger gravity \[m/s^2\]; some programs count in centimeters.
+/// A greater gravity gets a note \[m/s^2\]: no planet has it, and some programs count in centimeters.
 const STRONGEST: f64 = 100.0;
 
 impl Pipeline<'_> {
-    /// Every consistent set of contact forces and accelerations of one state.
+    /// Computes every consistent set of contact forces and accelerations of one state.
     ///
-    /// Closed contacts take part if their normal velocity is zero, to rounding or below
-    /// [`Options::resting_speed`](super::Options::resting_speed); those that leave are open.
+    /// A closed contact takes part if its normal velocity is zero, up to rounding or
+    /// [`Options::resting_speed`](super::Options::resting_speed). A contact that leaves the ground does not.
     ///
     /// # Errors
-    /// As [`Pipeline::impact`], and `Inconsistent` for a contact that approaches the ground, for applied impulses and
-    /// for a contact that rolls or slides over a corner of the ground.
+    /// Returns the errors of [`Pipeline::impact`], and `Inconsistent` for a contact that approaches the ground, for
+    /// applied impulses and for a contact that rolls or slides over a corner of the ground.
     pub fn forces(&mut self, state: &State) -> Result<Box<Impact>> {
         within(self.options.budget, || self.sustained(state, None))
     }
 
-    /// As [`Pipeline::forces`]; if modes are `chosen`, of all rejected combinations those are listed.
+    /// As [`Pipeline::forces`]. If modes are `chosen`, only the rejected combinations with these modes are listed.
     pub(super) fn sustained(&mut self, state: &State, chosen: Option<&[Vec<Mode>]>) -> Result<Box<Impact>> {
         let scene = &state.scene;
         let (mut prepared, slips) = self.prepare_sustained(state)?;
@@ -148,14 +147,14 @@ impl Pipeline<'_> {
         Ok(impact)
     }
 
-    /// Everything up to the contact problem of forces.
+    /// Computes everything up to the contact problem of forces.
     pub(super) fn prepare_forces(&mut self, state: &State) -> Result<Box<Prepared>> {
         let (mut prepared, slips) = self.prepare_sustained(state)?;
         self.pose(state, &mut prepared, &slips, self.rounding_of_rates())?;
         Ok(prepared)
     }
 
-    /// Everything up to the contacts that take part, and how these slide.
+    /// Computes everything up to the contacts that take part and their sliding directions.
     fn prepare_sustained(&mut self, state: &State) -> Result<(Box<Prepared>, Vec<Ordering>)> {
         if !state.scene.impulses.is_empty() {
             let reason = Reason::Inconsistent("an applied impulse acts in an impact, not in sustained contact".into());
@@ -167,7 +166,7 @@ impl Pipeline<'_> {
         let Impact { contacts, stance, notes, velocity_before, .. } = &mut **impact;
         let body = |link: usize| self.robot.rigid_body(self.robot.links[link].body);
         for (at, spring) in state.scene.springs.iter().enumerate() {
-            // No joint lies between the base and the world.
+            // No joint lies between the base and the world, so the base's rigid body counts as the world.
             let other = match spring.b {
                 SpringEnd::Link(point) => body(point.link),
                 SpringEnd::World(_) => 0,
@@ -177,7 +176,7 @@ impl Pipeline<'_> {
             }
         }
         if self.assembly.is_constrained() || !still.rows.is_empty() {
-            // Those of an impact are infinite, or of other velocities.
+            // After constraints or resting contacts, the bounds are infinite or belong to other velocities.
             self.bound_velocities(contacts, levels, velocity, Standing { foot: foot.as_ref(), place: *stance });
         }
         match state.scene.gravity() {
@@ -196,15 +195,15 @@ impl Pipeline<'_> {
             && self.fastest(&prepared.velocity) <= speed
             && prepared.velocity.iter().any(|&rate| rate != 0.0)
         {
-            // All of them: what is left of some would open loops, and move the foot of a stance.
+            // All rates are cleared: clearing only some of them would open loops and move the foot of a stance.
             prepared.velocity.fill(0.0);
             prepared.impact.notes.push(format!("all rates are taken as zero (resting speed {speed} m/s)"));
         }
         Ok((prepared, slips.into_iter().flatten().collect()))
     }
 
-    /// What happens just after an impact, of its decided outcomes: the forces at the velocities that they print, in
-    /// which contacts take part as their modes say. Notes what is not known.
+    /// Computes the forces just after each decided outcome of an impact. The velocities are those that the outcome
+    /// prints, and its modes select the contacts that take part. Returns notes on outcomes for which this fails.
     pub(super) fn follow(&mut self, state: &State, struck: &Prepared, analysis: &mut Analysis) -> Vec<String> {
         let scene = Scene { impulses: Vec::new(), ..state.scene.clone() };
         let after = State { scene, ..state.clone() };
@@ -218,18 +217,18 @@ impl Pipeline<'_> {
         notes
     }
 
-    /// The forces just after an `outcome`; `None` of more contacts than are enumerated.
+    /// Computes the forces just after an `outcome`; `None` if there are more contacts than are enumerated.
     fn next(&mut self, after: &State, struck: &Prepared, outcome: &Outcome) -> Result<Option<Next>> {
         let mut velocity: Vec<f64> = outcome.velocity().collect();
         let fastest = f64::max(self.fastest(&struck.velocity), self.fastest(&velocity));
-        // A bounce is made of the velocity before, and no larger than what rounding leaves of that it is none.
+        // A bounce is proportional to the velocity before. If it is within the rounding of that, there is no bounce.
         let slip = |(contact, mode): (usize, &Mode)| match mode {
             Mode::Separate => None,
             _ if struck.impact.problem.bounce(contact).abs() > STOPPED * fastest => None,
             mode => mode.direction().partial_cmp(&0.0),
         };
         let slips: Vec<Option<Ordering>> = outcome.modes.iter().enumerate().map(slip).collect();
-        // What stands has rates of rounding, whose squares would decide what dependent contacts do.
+        // Resting bodies have rates of rounding size, whose squares would decide the modes of dependent contacts.
         self.stop(&mut velocity, STOPPED * fastest);
         // The foot of a stance may move after the impact.
         let mut prepared = Prepared { velocity, foot: None, still: Still::default(), ..struck.clone() };
@@ -256,7 +255,7 @@ impl Pipeline<'_> {
         }))
     }
 
-    /// The speed of each rate: of a turn that at the robot's size (see [`Feet::size`](crate::contact::Feet::size)) \[m/s\].
+    /// The speed of each rate \[m/s\]; a rotation's at the robot's size ([`Feet::size`](crate::contact::Feet::size)).
     fn speeds<'a>(&'a self, velocity: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
         let rates = velocity.iter().zip(self.robot.units());
         rates.map(|(rate, (unit, _))| rate.abs() * if unit == "rad" { self.feet.size() } else { 1.0 })
@@ -266,14 +265,14 @@ impl Pipeline<'_> {
         self.speeds(velocity).fold(0.0, f64::max)
     }
 
-    /// Takes rates as zero that are no faster than `speed` \[m/s\].
+    /// Sets rates to zero that are no faster than `speed` \[m/s\].
     fn stop(&self, velocity: &mut [f64], speed: f64) {
         let stops: Vec<bool> = self.speeds(velocity).map(|own| own <= speed).collect();
         velocity.iter_mut().zip(stops).filter(|(_, stops)| *stops).for_each(|(rate, _)| *rate = 0.0);
     }
 
-    /// Puts the problem of accelerations in place of that of velocities; so large a part of the sum of a body's rates is
-    /// `rounding`.
+    /// Puts the problem of accelerations in place of that of velocities. `rounding` is the relative error of the sum of
+    /// a body's rates.
     fn pose(&mut self, state: &State, prepared: &mut Prepared, slips: &[Ordering], rounding: f64) -> Result<Unforced> {
         let steady = self.steady(prepared, slips, rounding);
         self.refuse_turning_normals(state, prepared, slips, &steady)?;
@@ -303,7 +302,8 @@ impl Pipeline<'_> {
         Ok(Unforced { steady, position, driven, unclosed, free, drifts, likely, rounding })
     }
 
-    /// Bounds the rounding of the accelerations without forces, by coordinate, which are given, and of the contacts.
+    /// Bounds the rounding of the accelerations without contact forces: the given ones by coordinate, and the
+    /// contacts'.
     fn bound_accelerations(
         &mut self,
         prepared: &Prepared,
@@ -311,7 +311,7 @@ impl Pipeline<'_> {
         loads: Loads<'_>,
     ) -> (Vec<f64>, Vec<Pair<f64>>) {
         if self.assembly.is_constrained() {
-            // They go through what answers them, whose rounding no bound follows.
+            // The accelerations pass through the constraints' response, whose rounding no bound covers.
             return (vec![f64::INFINITY; acceleration.len()], vec![[f64::INFINITY; 2]; prepared.impact.contacts.len()]);
         }
         let Self { robot, assembly, stretched, bounds, .. } = self;
@@ -321,7 +321,7 @@ impl Pipeline<'_> {
         let magnitudes = |list: &[f64]| list.iter().map(|&entry| Magnitude::from_f64(entry)).collect::<Vec<_>>();
         let mut velocity = magnitudes(&prepared.velocity);
         if let Some(foot) = &prepared.foot {
-            // What rounds it goes into the base's velocity, which is the one with which it rests.
+            // The velocity of the base makes this foot rest, so it inherits the rounding of the foot's velocity.
             let rests = Magnitude(2.0 * bounds.speed(&assembly.plan, foot.arm(robot), &prepared.velocity));
             velocity[..2].iter_mut().for_each(|entry| *entry = *entry + rests);
         }
@@ -331,7 +331,7 @@ impl Pipeline<'_> {
         bounds.accelerations(plan, acceleration, workspace, (&terms, loads.scene.springs.len()), &whole)
     }
 
-    /// What is computed of forces at so many contacts.
+    /// The options for an analysis of forces with this number of contacts.
     fn asked_of_forces<'a>(&self, contacts: usize, chosen: Option<&'a [Vec<Mode>]>) -> AnalysisOptions<'a> {
         let explain = contacts > 0 && contacts <= self.options.explain_up_to;
         AnalysisOptions {
@@ -342,7 +342,7 @@ impl Pipeline<'_> {
         }
     }
 
-    /// Every set of forces of a problem that is posed; `None` of more contacts than are enumerated.
+    /// Finds every set of forces of the posed problem; `None` if there are more contacts than are enumerated.
     fn analyze_forces(
         &mut self,
         state: &State,
@@ -358,7 +358,8 @@ impl Pipeline<'_> {
         self.scratch.analyze(&prepared.impact.problem, &source, asked).ok().map(Analysis::of_forces)
     }
 
-    /// Leaves the contacts that have a slip and so take part, with what is known of them, and poses an impact there.
+    /// Keeps only the contacts that have a slip and so take part, with their known data, and poses their impact
+    /// problem.
     fn take_part(&mut self, state: &State, prepared: &mut Prepared, slips: &[Option<Ordering>]) -> Result<()> {
         let Prepared { velocity, foot, levels, merged, still, change, impact, .. } = prepared;
         let Impact { contacts, stance, resting, problem, .. } = &mut **impact;
@@ -385,7 +386,7 @@ impl Pipeline<'_> {
         Ok(())
     }
 
-    /// Refuses circles of different radii that act as one contact of a body that turns.
+    /// Refuses merged circles of different radii on a body that turns.
     fn refuse_uneven(&self, prepared: &Prepared) -> Result<()> {
         let uneven = prepared.merged.iter().filter(|merged| merged.is_uneven).flat_map(|merged| &merged.outer);
         let mut uneven = uneven.map(|&at| &prepared.impact.contacts[at]);
@@ -396,12 +397,12 @@ impl Pipeline<'_> {
         Err(Error::new(Reason::Inconsistent(reason)).hint(hint))
     }
 
-    /// What part of the sum of a body's given rates is rounding: one of its own for each body.
+    /// Relative rounding of the sum of a body's given rates: one unit for each body.
     fn rounding_of_rates(&self) -> f64 {
         self.assembly.plan.bodies.len() as f64 * f64::EPSILON
     }
 
-    /// Whether a body turns by more than the `rounding` of its rate.
+    /// Returns whether a body turns faster than the `rounding` of its rate.
     fn turns(&self, body: usize, velocity: &[f64], rounding: f64) -> bool {
         let Assembly { plan, .. } = &self.assembly;
         let rates = plan.way_to_root(body).map(|(_, body)| match body.motion {
@@ -413,15 +414,15 @@ impl Pipeline<'_> {
         sum.abs() > rounding * size
     }
 
-    /// Which bodies do not turn: those whose rates add up to no more than their `rounding`, and those that turn as one with
-    /// a body of which two contacts take part that stand, or are on the same straight ground.
+    /// Finds the bodies that do not turn. Either the body's rates add up to no more than their `rounding`, or two
+    /// contacts of its rigid part hold it: both stand, or both are on the same straight ground.
     fn steady(&self, prepared: &Prepared, slips: &[Ordering], rounding: f64) -> Vec<bool> {
         let (contacts, velocity) = (&prepared.impact.contacts, &prepared.velocity);
         let parts = self.rigid_parts(velocity);
         let holds = |&(at, own): &(usize, &Contact)| {
             let stops = |(other, contact): (usize, &Contact)| {
                 let apart = contact.point - own.point;
-                // At one place, up to rounding, they keep nothing from turning.
+                // Contacts at one place, up to rounding, do not keep a body from turning.
                 let least = CONTACT_TOLERANCE * (own.arm(self.robot).length + contact.arm(self.robot).length);
                 let is_apart = |distance: f64| {
                     distance > least || (distance > 0.0 && !self.turns(own.body, velocity, self.rounding_of_rates()))
@@ -432,7 +433,7 @@ impl Pipeline<'_> {
             };
             contacts.iter().enumerate().any(stops)
         };
-        // Of each body the first of those that have the same rate of turn.
+        // For each body, the first body that has the same rate of rotation.
         let mut first: Vec<usize> = Vec::new();
         for (index, body) in self.assembly.plan.bodies.iter().enumerate() {
             let turns = matches!(body.motion, JointMotion::Revolute { .. }) && velocity[body.coordinate] != 0.0;
@@ -443,7 +444,7 @@ impl Pipeline<'_> {
         first.iter().map(is_steady).collect()
     }
 
-    /// Refuses contacts that move over a corner of the ground, where the normal turns.
+    /// Refuses contacts that move over a corner of the ground, where the normal changes direction.
     fn refuse_turning_normals(
         &self,
         state: &State,
@@ -469,7 +470,7 @@ impl Pipeline<'_> {
         Ok(())
     }
 
-    /// Every outcome with an impulse of an impact at contacts that neither approach nor leave; `None` if it is
+    /// Finds every outcome with an impulse of an impact at contacts that neither approach nor leave; `None` if it is
     /// undecided.
     fn shock(
         &mut self,

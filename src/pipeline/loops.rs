@@ -1,4 +1,4 @@
-//! The loops of a state: whether they close, which of their rows count, and the velocity that keeps them closed.
+//! The loops of a state: whether they close, which rows are independent, and a velocity that keeps them closed.
 
 use super::Pipeline;
 use super::assembly::{Assembly, Loads};
@@ -14,22 +14,22 @@ use crate::robot::Robot;
 use crate::scalar::{Ball, Certified, Magnitude, Real};
 use crate::state::NamedLoop;
 
-/// How far apart the points of a loop may lie, as part of the robot's size: recorded poses are rounded, and simulators
-/// keep their loops closed by springs.
+/// The greatest gap of a loop, as a fraction of the robot's size: recorded poses are rounded, and simulators close
+/// loops by springs.
 const OPEN: f64 = 1e-4;
-/// The greatest part of the kinetic energy that may lie in a motion that opens the loops: a hundredth of the speed.
+/// The greatest fraction of the kinetic energy in a motion that opens the loops: a hundredth of the speed.
 const OPENING: f64 = 1e-4;
-/// The part of what the accelerations of a loop's points are added up from that may open it.
+/// The greatest acceleration that may open a loop, as a fraction of the sum of the terms of its points' accelerations.
 const PARTING: f64 = 1e-9;
-/// Below this part of the kinetic energy a motion that opens the loops is rounding, and not worth a word.
+/// Below this fraction of the kinetic energy, a motion that opens the loops is rounding and gets no note.
 const ROUNDING: f64 = 1e-20;
-/// A row of K is taken to follow from others if less than this part of its squared reach is left.
+/// A row of K counts as dependent on others if less than this fraction of its squared reach is left.
 const DEPENDENT: f64 = 1e-22;
-/// A pose that leaves a loop open gives directions only to this multiple of the gap.
+/// The directions of a loop with a gap are off by up to this multiple of the gap, relative to a length of the robot.
 const PER_GAP: f64 = 16.0;
-/// Near a pose that leaves gaps up to g open is one that closes them, and its K has the same rank, if of each row more
-/// than this multiple of g over the loops' shortest arm is left as a part of its squared reach: next to a singular pose
-/// a gap g is as much as angles of sqrt(g). Source: the theorem of Newton and Kantorovich, whose constant is 2.
+/// Near a pose with gaps up to g lies a pose that closes the loops, and K has the same rank there, if more than this
+/// multiple of g over the loops' shortest arm is left of each row, as a fraction of its squared reach: next to a
+/// singular pose g amounts to angles of sqrt(g). Source: the theorem of Newton and Kantorovich, whose constant is 2.
 const CERTAIN: f64 = 4.0;
 
 impl NamedLoop {
@@ -42,7 +42,7 @@ impl NamedLoop {
         }
     }
 
-    /// Where the ends are, with their arms stretched.
+    /// The bodies of both ends, and bounds of the lengths of their arms.
     fn arms(&self, robot: &Robot) -> [Arm; 2] {
         [self.a, self.b].map(|end| {
             let link = &robot.links[end.link];
@@ -50,7 +50,7 @@ impl NamedLoop {
         })
     }
 
-    /// As messages name it, with its number in the list.
+    /// The loop's name in messages, with its index in the list.
     fn name(&self, index: usize, robot: &Robot) -> String {
         let [a, b] = [self.a, self.b].map(|end| &robot.links[end.link].name);
         format!("loops[{index}] ({a} - {b})")
@@ -58,9 +58,9 @@ impl NamedLoop {
 }
 
 impl Pipeline<'_> {
-    /// Finds which rows of the loops count at `position`, and closes them in `velocity`; a `foot` that rests keeps
-    /// resting. Gives whether that changes the velocity by rounding alone. A loop that the pose or the velocity leaves open
-    /// is refused, with the gap.
+    /// Finds the independent rows of the loops at `position`, and closes the loops in `velocity`; a resting `foot`
+    /// stays at rest. Returns whether this changes the velocity by rounding alone. Refuses a loop that the pose or the
+    /// velocity leaves open, and names the gap.
     pub(super) fn close_loops(
         &mut self,
         named: &[NamedLoop],
@@ -104,7 +104,7 @@ impl Pipeline<'_> {
                 2 * named.len()
             ));
         }
-        // What follows from others is left out.
+        // Rows that follow from others are left out.
         for (index, own) in named.iter().enumerate().filter(|(index, _)| !self.is_whole(*index)) {
             let left = [(2 * index, "x"), (2 * index + 1, "z")];
             let left = left.into_iter().filter(|(row, _)| !self.assembly.rows.contains(row));
@@ -125,7 +125,7 @@ impl Pipeline<'_> {
         [(a, b), (b, a)].map(|(end, other)| self.bounds.reach(&self.assembly.plan, end, other.body))
     }
 
-    /// Whether the loops are exactly closed, and the rows left out follow exactly from those that count.
+    /// Returns whether the loops are exactly closed and the rows left out follow exactly from the others.
     fn others_follow_exactly(&self, named: &[NamedLoop], position: &[f64]) -> bool {
         let Assembly { kept, rows, .. } = &self.assembly;
         let braked = if kept.is_empty() { &self.braked[..] } else { &[] };
@@ -136,12 +136,12 @@ impl Pipeline<'_> {
         follow_exactly(&exact.plan, &loops, Constraints { kept, rows }, &exact.workspace)
     }
 
-    /// Whether both rows of a loop count.
+    /// Returns whether both rows of a loop are independent.
     fn is_whole(&self, index: usize) -> bool {
         [2 * index, 2 * index + 1].iter().all(|row| self.assembly.rows.contains(row))
     }
 
-    /// Closes the loops in `velocity`; gives a note if that changes it by more than rounding.
+    /// Closes the loops in `velocity`. Returns a note if that changes it by more than rounding.
     fn close_velocity(
         &mut self,
         named: &[NamedLoop],
@@ -169,8 +169,8 @@ impl Pipeline<'_> {
         if spent > OPENING * energy && opening > resting {
             return Err(moves_apart(own, worst, opening, robot));
         }
-        // What was left out must hold all the same, up to a part of what moved its points: they may rest now. If they rested
-        // before, the closing of other loops may move them by its rounding.
+        // The rows left out must hold, too, up to a fraction of the given speeds of their points, which may be at rest
+        // now. Points that were at rest before may move by the rounding of other loops' closing.
         let speeds = |named: &NamedLoop| named.arms(robot).map(|end| self.bounds.speed(plan, end, &given));
         let squared = |named: &NamedLoop| speeds(named).iter().map(|speed| speed * speed).sum::<f64>();
         let fastest = named.iter().map(squared).fold(0.0, f64::max);
@@ -189,9 +189,9 @@ impl Pipeline<'_> {
         }))
     }
 
-    /// Refuses the acceleration `free` by coordinate if it opens a loop along a row that was left out, with kappa of each
-    /// loop: a dead point holds no velocity there, but its own motion would move its points apart. `unclosed` is the
-    /// acceleration without what the loops answer.
+    /// Refuses the acceleration `free` by coordinate if it opens a loop along a row that was left out. At a dead point
+    /// no velocity opens the loop, but the motion's own acceleration may move its points apart. `drifts` is kappa of
+    /// each loop, and `unclosed` is the acceleration without the loops' response.
     pub(super) fn refuse_parting(
         &mut self,
         named: &[NamedLoop],
@@ -206,7 +206,7 @@ impl Pipeline<'_> {
         let shortest = reaches.fold(f64::INFINITY, |least, reach| least.min(reach.shortest));
         let Self { robot, assembly: Assembly { plan, loops, workspace, rows, .. }, stretched, bounds, .. } = self;
         let gap = loops.iter().fold(0.0, |most: f64, own| most.max(own.gap(plan, workspace).length()));
-        // What the accelerations are added up from, by magnitude.
+        // Magnitudes of the terms of the accelerations.
         bounds.stretched_poses(&stretched.plan, &mut stretched.workspace);
         let magnitudes = |list: &[f64]| list.iter().map(|&entry| Magnitude::from_f64(entry)).collect::<Vec<_>>();
         stretched.load(&magnitudes(velocity), loads);
@@ -230,7 +230,7 @@ impl Pipeline<'_> {
         Ok(())
     }
 
-    /// Refuses a loop whose points are apart; gives the widest gap \[m\].
+    /// Refuses a loop with a gap that is too wide. Returns the widest gap \[m\].
     fn refuse_gaps(&self, named: &[NamedLoop]) -> Result<f64> {
         let size = self.feet.size();
         let mut widest = 0.0_f64;

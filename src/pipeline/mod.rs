@@ -1,4 +1,4 @@
-//! One state end to end: the only place where all stages meet.
+//! The computation for one state from end to end: the only module in which all stages meet.
 //!
 //! ```text
 //!     State --> configuration --> stance, loops, contacts --> M, J, G --> ContactProblem --> Analysis --> Impact
@@ -63,58 +63,59 @@ impl Aspect {
     }
 }
 
-/// What the pipeline is asked for in addition to the outcomes; [`Pipeline`] has an example.
+/// Settings of a [`Pipeline`], which has an example.
 #[derive(Debug, Clone, Default)]
 pub struct Options {
-    /// What [`Pipeline::answer`] answers.
+    /// The question that [`Pipeline::answer`] answers.
     pub aspect: Aspect,
-    /// How far from the ground a foot may be and still touch \[m\]; by default [`CONTACT_TOLERANCE`] times the robot's
-    /// size.
+    /// Greatest height above the ground at which a foot still counts as touching \[m\]; by default
+    /// [`CONTACT_TOLERANCE`] times the robot's size.
     pub contact_tolerance: Option<f64>,
-    /// Contacts slower than this are taken as exactly at rest \[m/s\]; 0 turns this off. The default differs by contact:
-    /// the bound of the rounding in J v. If rates and angles have 6 to 15 significant digits and cancel to a
-    /// ten-thousandth, it also covers half a unit in their last places. A state with an uncertainty is used as given.
+    /// Contacts slower than this are taken as exactly at rest \[m/s\]; 0 turns this off. The default differs by
+    /// contact: it is the bound of the rounding in J v. If rates and angles have 6 to 15 significant digits and the
+    /// terms of J v cancel to a ten-thousandth, it also covers half a unit in their last places. Without this option a
+    /// state with an uncertainty is used as given.
     pub resting_speed: Option<f64>,
-    /// Refuse states with joints outside the limits of the robot's file, which otherwise are noted.
+    /// Whether to refuse states with joints outside the limits of the robot's file; by default they get a note.
     pub strict_limits: bool,
-    /// Feet in addition to the robot's shapes; they are detected by their height, too.
+    /// Feet in addition to the robot's shapes. They, too, are detected by their height.
     pub feet: Vec<NamedContact>,
-    /// Up to how many contacts to list every rejected combination, and beta, gamma and the region of each contact.
+    /// Up to this many contacts, every rejected combination is listed, and beta, gamma and the region of each contact.
     pub explain_up_to: usize,
-    /// Keep the matrices.
+    /// Whether to keep the matrices ([`Impact::matrices`]).
     pub matrices: bool,
-    /// Only what a result in brief shows: without velocities of base and joints, rank and condition of G, borders, the
-    /// nearest foot, notes on it and on contacts at rest, and what is left out.
+    /// Whether to compute a brief result: without velocities of base and joints, rank and condition of G, borders, the
+    /// nearest foot, notes on it and on contacts at rest, and [`Impact::left_out`].
     pub brief: bool,
-    /// Compute the forces just after each outcome of an impact.
+    /// Whether to compute the forces just after each outcome of an impact.
     pub next: bool,
-    /// Compute [`Impact::friction_needed`].
+    /// Whether to compute [`Impact::friction_needed`].
     pub friction_needed: bool,
-    /// Do without bounds of the rounding in M, J and c: faster, and nothing is proven.
+    /// Whether to skip the bounds of the rounding in M, J and c. This is faster, and nothing is proven.
     pub no_proof: bool,
-    /// Parts of the computation to leave out if a scene does not need them.
+    /// Parts of the computation that are skipped if a scene does not need them.
     pub reductions: Reductions,
-    /// How much time a state may take; what it leaves open is undecided. Without one a state takes what it takes, which
-    /// may be hours for many contacts that are nearly dependent.
+    /// The time limit per state; what is open at its end is undecided. Without a limit, a state with many nearly
+    /// dependent contacts may take hours.
     pub budget: Option<Budget>,
 }
 
-/// The default contact tolerance, as part of the robot's size (see [`Feet::size`]).
+/// The default contact tolerance, as a fraction of the robot's size (see [`Feet::size`]).
 pub const CONTACT_TOLERANCE: f64 = 1e-6;
 
-/// The note of a box that takes more time than there is.
+/// The note for a box whose check does not finish within the budget.
 const UNKNOWN_IN_TIME: &str =
     "whether the verdict holds on the box of the uncertainty is not known within the budget of work (`budget`)";
 
-/// The answer for one state, of an impact or, with [`Sustained`], of forces; [`Pipeline`] has an example.
+/// The answer for one state: its impact or, if [`Impact::sustained`] is set, its forces. [`Pipeline`] has an example.
 #[derive(Debug, Clone, Default)]
 #[non_exhaustive]
 pub struct Impact {
-    /// Where the bodies are.
+    /// Where the bodies are in the world.
     pub placement: Placement,
-    /// The closed contacts, in the order of all lists per contact.
+    /// The closed contacts. All lists per contact have this order.
     pub contacts: Vec<Contact>,
-    /// The lowest foot that does not touch; `None` if every foot touches, and in brief.
+    /// The lowest foot that does not touch; `None` if every foot touches or the result is brief.
     pub nearest: Option<NearestFoot>,
     /// Contact velocities before the impact, [tangential, normal] \[m/s\].
     pub velocity_before: Vec<Pair<f64>>,
@@ -122,70 +123,70 @@ pub struct Impact {
     pub kinetic_energy: f64,
     /// The contact problem, in f64.
     pub problem: ContactProblem,
-    /// Which contacts were taken as exactly at rest, because they are slow.
+    /// Whether each contact was taken as exactly at rest because it is slow.
     pub resting: Vec<bool>,
-    /// Which contact is that of the stance's foot; `None` without a stance or if its foot does not touch.
+    /// Index of the contact of the stance's foot; `None` without a stance or if its foot does not touch.
     pub stance: Option<usize>,
-    /// Every outcome and the verdict; `None` of more contacts than are enumerated (see [`Impact::analyzed`]).
+    /// Every outcome and the verdict; `None` if there are more contacts than are enumerated (see [`Impact::analyzed`]).
     pub analysis: Option<Analysis>,
-    /// The friction with which no contact would have to slide, if asked for and if in every outcome one does: the greatest
-    /// |L_t| / L_n of the contacts that stick, infinite if one sticks without a normal impulse; of several outcomes
-    /// without a sliding contact that of the one that needs least. `None` if infinite friction gives none.
+    /// The friction with which no contact has to slide, if requested and if some contact slides in every outcome: the
+    /// greatest |L_t| / L_n of the sticking contacts, infinite if one sticks without a normal impulse. Among several
+    /// outcomes without sliding, it is that of the one that needs least. `None` if infinite friction gives none.
     pub friction_needed: Option<f64>,
-    /// Whether some contact slides in every outcome however great friction is: [`Impact::friction_needed`] was asked for,
-    /// and there is none.
+    /// Whether some contact slides in every outcome however great friction is: [`Impact::friction_needed`] was
+    /// requested and does not exist.
     pub slides_regardless: bool,
-    /// What it has of forces in place of an impact.
+    /// Data of sustained contact; `None` for an impact.
     pub sustained: Option<Sustained>,
-    /// Whether the outcomes are the same on the box of the state's uncertainty; `None` if it has none.
+    /// Whether the outcomes are the same on the box of the state's uncertainty; `None` if the state has no uncertainty.
     pub holds: Option<robust::Robustness>,
-    /// The matrices, if asked for.
+    /// The matrices, if requested.
     pub matrices: Option<Matrices>,
-    /// What of the scene does not enter the analysis.
+    /// The parts of the scene that do not enter the analysis.
     pub left_out: Vec<LeftOut>,
-    /// What a reader should know, in whole sentences.
+    /// Notes for the reader, in whole sentences.
     pub notes: Vec<String>,
 }
 
 impl Impact {
-    /// Every outcome and the verdict.
+    /// Returns every outcome and the verdict.
     ///
     /// # Errors
-    /// [`TooManyContacts`](crate::Reason::TooManyContacts) for more contacts than are enumerated.
+    /// Returns [`TooManyContacts`](crate::Reason::TooManyContacts) if there are more contacts than are enumerated.
     pub fn analyzed(&self) -> Result<&Analysis> {
         self.analysis.as_ref().ok_or_else(|| unlisted(self.contacts.len()))
     }
 
-    /// What it answers.
+    /// Returns whether this is the answer for an impact or for forces.
     pub fn aspect(&self) -> Aspect {
         if self.sustained.is_some() { Aspect::Forces } else { Aspect::Impact }
     }
 
-    /// As [`Impact::analyzed`], without the rest.
+    /// Returns [`Impact::analyzed`] by value, and drops the rest of the answer.
     ///
     /// # Errors
-    /// As [`Impact::analyzed`].
+    /// Returns the errors of [`Impact::analyzed`].
     pub fn into_analysis(self) -> Result<Analysis> {
         self.analysis.ok_or_else(|| unlisted(self.contacts.len()))
     }
 }
 
-/// The refusal of a state with so many contacts.
+/// The error for a state with more contacts than are enumerated.
 fn unlisted(contacts: usize) -> Error {
     too_many_contacts(contacts).hint("name only the contacts that matter (`contacts`), or lower the contact tolerance")
 }
 
-/// Something that this scene does not need; what the file does not is in [`Robot`].
+/// A part of the analysis that this scene does not need. [`Robot`] lists the skipped parts of the URDF.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum LeftOut {
-    /// The column of a joint that keeps its rate (an index into [`Robot::joints`](crate::Robot)).
+    /// The column of a braked joint, which keeps its rate (an index into [`Robot::joints`](crate::Robot)).
     Column(usize),
-    /// This many collision shapes, which are too high to reach the ground.
+    /// The number of collision shapes that are too high to reach the ground.
     OutOfReach(usize),
-    /// This many collision shapes, because contacts are named by hand.
+    /// The number of collision shapes that are not used because the state names its contacts.
     NotAsked(usize),
-    /// Contact points of one body between others, which act for them.
+    /// Contact points of one body that lie between two others, which act for them.
     Merged(Merged),
     /// The tangential impulses of these contacts, which have no friction.
     Tangential(Vec<usize>),
@@ -193,20 +194,20 @@ pub enum LeftOut {
     Cone(Vec<usize>),
 }
 
-/// The answer for one state, and what of its contacts was taken as given.
+/// The answer for one state, with the contacts' data that were taken as given.
 struct Answer {
     impact: Box<Impact>,
-    /// Of which the answer was taken: the `impact` in it is memory.
+    /// The prepared state behind the answer. Its own `impact` was exchanged for spare memory.
     prepared: Box<Prepared>,
-    /// The rows of the loops that count.
+    /// The independent rows of the loops.
     rows: Vec<usize>,
 }
 
 /// The matrices behind an answer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Matrices {
-    /// Names of the moving coordinates in the order of q: rows and columns of M, columns of J (braked joints have
-    /// none).
+    /// Names of the moving coordinates in the order of q: the rows and columns of M and the columns of J. Braked joints
+    /// have none.
     pub coordinates: Vec<String>,
     /// M, one row per coordinate.
     pub mass_matrix: Vec<Vec<f64>>,
@@ -216,7 +217,7 @@ pub struct Matrices {
     pub delassus: Vec<Vec<f64>>,
 }
 
-/// Answers states of one robot, one after the other, in memory that it keeps.
+/// Answers the states of one robot one after the other, and reuses its memory.
 ///
 /// ```
 /// # let urdf = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/urdf/minimalistic.urdf"));
@@ -236,26 +237,26 @@ pub struct Pipeline<'r> {
     robot: &'r Robot,
     options: Options,
     feet: Feet,
-    /// Names of the base's coordinates and of the joints.
+    /// Names of the base's coordinates, and names of the joints.
     names: [Arc<[String]>; 2],
     assembly: Assembly,
-    /// The braked joints and rotors for which the last plan was compiled.
+    /// The braked joints and rotor inertias for which the current plan was compiled.
     braked: Vec<usize>,
     rotor_inertia: Vec<f64>,
     bounds: RoundingBounds,
-    /// The magnitudes of what the accelerations of a state are computed from.
+    /// The sums of magnitudes of the terms in a state's accelerations, for their rounding bounds.
     stretched: Assembly<Magnitude>,
     scratch: Scratch,
-    /// Memory of the next state and of its answer.
+    /// Memory for the next state and for its answer.
     spare: Option<Box<Prepared>>,
     recycled: Option<Box<Impact>>,
 }
 
 impl<'r> Pipeline<'r> {
-    /// A pipeline for states of `robot`.
+    /// Creates a pipeline for states of `robot`.
     pub fn new(robot: &'r Robot, options: Options) -> Self {
         let feet = Feet::new(robot, &options.feet);
-        // Who gives a tolerance means it.
+        // A tolerance that the user gives is applied exactly, without the allowance for uneven mesh soles.
         let feet = if options.contact_tolerance.is_none() { feet.uneven() } else { feet };
         let mut names = robot.coordinates().map(str::to_owned);
         Self {
@@ -274,13 +275,13 @@ impl<'r> Pipeline<'r> {
         }
     }
 
-    /// Every outcome of one state; boxed, since an answer is large.
+    /// Computes every outcome of one state. The answer is boxed because it is large.
     ///
     /// # Errors
-    /// The [`Reason`](crate::Reason)s are `Singular` for a coordinate without inertia, `Penetration` for a foot deep in
-    /// the ground, `Inconsistent` for a joint outside strict limits and a loop that the pose or the velocity leaves
-    /// open, `Missing` for a contact without friction or a stance without a foot, `MatricesTooLarge` for hundreds of
-    /// contacts, and `NotFinite` for numbers whose products leave the range of f64.
+    /// Returns an error with one of these [`Reason`](crate::Reason)s: `Singular` if a coordinate has no inertia,
+    /// `Penetration` if a foot is deep in the ground, `Inconsistent` if a joint is outside strict limits or the pose or
+    /// velocity leaves a loop open, `Missing` if a contact has no friction or a stance has no foot, `MatricesTooLarge`
+    /// for hundreds of contacts, and `NotFinite` if products of the given numbers leave the range of f64.
     pub fn impact(&mut self, state: &State) -> Result<Box<Impact>> {
         within(self.options.budget, || {
             let mut answer = self.strike(state, None)?;
@@ -297,10 +298,10 @@ impl<'r> Pipeline<'r> {
         })
     }
 
-    /// The impact or the forces of one state, as [`Options::aspect`] says.
+    /// Computes the impact or the forces of one state, as [`Options::aspect`] selects.
     ///
     /// # Errors
-    /// As [`Pipeline::impact`] and [`Pipeline::forces`].
+    /// Returns the errors of [`Pipeline::impact`] and [`Pipeline::forces`].
     pub fn answer(&mut self, state: &State) -> Result<Box<Impact>> {
         match self.options.aspect {
             Aspect::Impact => self.impact(state),
@@ -308,11 +309,11 @@ impl<'r> Pipeline<'r> {
         }
     }
 
-    /// As [`Pipeline::answer`], whatever the state's uncertainty is, and without the friction needed; of all rejected
-    /// combinations those with `chosen` modes are listed.
+    /// The same as [`Pipeline::answer`], but ignores the state's uncertainty and omits [`Impact::friction_needed`]. Of
+    /// all rejected combinations it lists only those with the `chosen` modes.
     ///
     /// # Errors
-    /// As [`Pipeline::answer`].
+    /// Returns the errors of [`Pipeline::answer`].
     pub fn answer_explaining(&mut self, state: &State, chosen: &[Vec<Mode>]) -> Result<Box<Impact>> {
         within(self.options.budget, || match self.options.aspect {
             Aspect::Impact => self.strike(state, Some(chosen)).map(|answer| self.finished(answer)),
@@ -320,7 +321,7 @@ impl<'r> Pipeline<'r> {
         })
     }
 
-    /// As [`Pipeline::answer_explaining`] without chosen modes, in brief.
+    /// The same as [`Pipeline::answer_explaining`] without chosen modes, in brief.
     pub(crate) fn outcomes(&mut self, state: &State) -> Result<Box<Impact>> {
         let brief = replace(&mut self.options.brief, true);
         let answer = self.answer_explaining(state, &[]);
@@ -328,7 +329,7 @@ impl<'r> Pipeline<'r> {
         answer
     }
 
-    /// As [`Pipeline::impact`]; if modes are `chosen`, of all rejected combinations those are listed.
+    /// As [`Pipeline::impact`]. If modes are `chosen`, only the rejected combinations with these modes are listed.
     fn strike(&mut self, state: &State, chosen: Option<&[Vec<Mode>]>) -> Result<Answer> {
         let scene = &state.scene;
         let mut prepared = self.prepare(state)?;
@@ -345,7 +346,7 @@ impl<'r> Pipeline<'r> {
         let next = self.options.next && chosen.is_none();
         let rejections = chosen.map_or(explain.into(), ListedRejections::Only);
         let asked = AnalysisOptions { rejections, prove: !no_proof, brief, reductions };
-        // More contacts than are enumerated are all that it refuses.
+        // The only error of `analyze` is that there are too many contacts.
         let mut analysis = self.scratch.analyze(problem, &source, asked).ok();
         let slides = |analysis: &Analysis| {
             let is_decided = matches!(analysis.verdict, Verdict::Unique | Verdict::Ambiguous);
@@ -380,25 +381,25 @@ impl<'r> Pipeline<'r> {
         Ok(Answer { impact, prepared, rows: self.assembly.rows.clone() })
     }
 
-    /// What an answer is asked for; the rest of its memory goes to the next state.
+    /// Returns the impact, and keeps the memory of the prepared state for the next one.
     fn finished(&mut self, Answer { impact, prepared, .. }: Answer) -> Box<Impact> {
         self.spare = Some(prepared);
         impact
     }
 
-    /// The answer without its analysis, of which the memory is exchanged with that of the next state.
+    /// Moves the impact, still without its analysis, out of `prepared`, and leaves recycled memory in its place.
     fn unanswered(&mut self, prepared: &mut Prepared) -> Box<Impact> {
         replace(&mut prepared.impact, self.recycled.take().unwrap_or_default())
     }
 
-    /// Takes the memory of an answer that is no longer needed. With it the answer to a state of up to three contacts, of
-    /// which f64 decides all, takes no new memory in brief.
+    /// Takes back the memory of an answer that is no longer needed. A brief answer to a state with up to three contacts
+    /// that f64 decides completely then allocates nothing.
     pub fn recycle(&mut self, mut impact: Box<Impact>) {
         self.scratch.recycle(impact.analysis.take().map_or(Vec::new(), |analysis| analysis.outcomes));
         self.recycled = Some(impact);
     }
 
-    /// Lists what a scene leaves out.
+    /// Lists the parts of the scene that were left out.
     fn left_out(&self, scene: &Scene, prepared: &Prepared) -> Vec<LeftOut> {
         let (laws, out_of_reach) = (prepared.impact.problem.laws(), prepared.out_of_reach);
         let mut all = Vec::new();
@@ -427,7 +428,7 @@ impl<'r> Pipeline<'r> {
         self.assembly.take_mass_matrix();
         let Assembly { plan, workspace, .. } = &self.assembly;
         let (nv, rows) = (plan.columns(), 2 * workspace.contact_velocity.len());
-        // Columns of the plan run outward from the root, the user's coordinates in the file's order.
+        // The plan's columns run outward from the root; the user's coordinates are in the file's order.
         let mut order: Vec<usize> = (0..nv).collect();
         order.sort_by_key(|&column| plan.coordinates[column]);
         let names: Vec<&str> = self.robot.coordinates().collect();

@@ -1,5 +1,5 @@
-//! What a reader should know of a state before its answer: what has no effect, and what is perhaps in other units or another
-//! pose than it was meant.
+//! Notes on a state before its answer: inputs without effect, and inputs that may have other units or another pose than
+//! was meant.
 
 use super::{NearestFoot, Pipeline};
 use crate::contact::{Contact, Footing, Placement};
@@ -9,24 +9,24 @@ use crate::impact::Outcome;
 use crate::planar::Vector;
 use crate::state::{Scene, State};
 
-/// A foot that comes down from no more than this part of the robot's size has nearly touched.
+/// Greatest height of a falling foot that nearly touched, and greatest depth without a note, as fractions of its size.
 const NEAR_MISS: f64 = 1e-2;
 
-/// A foot that does not move is taken to have nearly stood up to this part of the robot's size.
+/// Greatest height of a resting foot that nearly stands, as a fraction of the robot's size.
 const STANDS: f64 = 1e-4;
 
-/// A foot that leaves the ground no faster does not move \[m/s\].
+/// A foot that leaves the ground more slowly than this counts as resting \[m/s\].
 const SLOW: f64 = 1e-2;
 
-/// Contacts of two bodies are at the same place if their distance is at most this part of the robot's size, and an outcome
-/// depends on rounding if its margin is no greater.
+/// Contacts of two bodies are at the same place up to this fraction of the robot's size. An outcome depends on rounding
+/// if its margin is smaller than this.
 const THIN: f64 = 1e-10;
 
-/// Named contacts that differ in height by more than this part of the robot's size cannot touch the ground together.
+/// Named contacts whose heights differ by more than this fraction of the robot's size cannot both touch the ground.
 const UNEVEN: f64 = 0.1;
 
 impl Pipeline<'_> {
-    /// Notes friction and restitution of links on which nothing can touch.
+    /// Notes friction and restitution of links that have no foot.
     pub(super) fn note_unused_laws(&self, State { scene, uncertainty, .. }: &State, notes: &mut Vec<String>) {
         let named = |link| scene.contacts.iter().flatten().any(|contact| contact.link == link);
         let has_foot = |link| self.feet.iter().any(|foot| foot.link == link) || named(link);
@@ -40,7 +40,7 @@ impl Pipeline<'_> {
         });
     }
 
-    /// Notes what is odd about the contacts, the `nearest` foot that does not touch, and the ground.
+    /// Notes oddities of the contacts, of the feet that nearly touch (`nearest` and `near`), and of the ground.
     pub(super) fn note_contacts(
         &self,
         scene: &Scene,
@@ -65,7 +65,7 @@ impl Pipeline<'_> {
         notes.extend(self.upside_down(contacts, placement));
     }
 
-    /// That an outcome depends on how two contacts differ that are at the same place except for the robot's last digits.
+    /// Notes that an outcome depends on last digits of the robot that alone keep two contacts from being at one place.
     pub(super) fn nearly_one(&self, contacts: &[Contact], outcomes: &[Outcome]) -> Option<String> {
         let is_thin = |own: &Outcome| own.margin.is_some_and(|margin| margin > 0.0 && margin < THIN);
         if !outcomes.iter().any(is_thin) {
@@ -82,7 +82,7 @@ impl Pipeline<'_> {
         ))
     }
 
-    /// That the robot's center of mass is below all contacts, as of a robot that is drawn head down.
+    /// Notes that the robot's center of mass is below all contacts, as it is if the robot is upside down.
     fn upside_down(&self, contacts: &[Contact], placement: &Placement) -> Option<String> {
         let bodies = self.assembly.plan.bodies.iter().enumerate();
         let sum = bodies.fold((0.0, Vector::zero()), |(mass, moment), (body, PlanBody { inertia, .. })| {
@@ -96,7 +96,7 @@ impl Pipeline<'_> {
         Some(format!("the center of mass is {depth:.3} m below all contacts: is the pose upside down?"))
     }
 
-    /// That a link reaches so far \[m\] below the named contacts of its body.
+    /// Notes that a link reaches this depth \[m\] below the named contacts of its body.
     fn inside(&self, (link, depth): (usize, f64)) -> Option<String> {
         let name = &self.robot.links[link].name;
         (depth > NEAR_MISS * self.feet.size()).then(|| {
@@ -107,7 +107,7 @@ impl Pipeline<'_> {
         })
     }
 
-    /// That a contact is named twice.
+    /// Notes that a contact is named twice.
     fn doubled(&self, contacts: &[Contact]) -> Option<String> {
         let place = |contact: &Contact| (contact.link, contact.offset, contact.radius);
         let is_known = |at: &usize| contacts[..*at].iter().any(|other| place(other) == place(&contacts[*at]));
@@ -115,7 +115,7 @@ impl Pipeline<'_> {
         Some(format!("a contact of {name} is named twice: its impulse is shared by both"))
     }
 
-    /// That one of the named contacts is high above another one.
+    /// Notes that one of the named contacts is high above another one.
     fn uneven(&self, contacts: &[Contact]) -> Option<String> {
         let by_height = |a: &&Contact, b: &&Contact| a.gap.total_cmp(&b.gap);
         let (lowest, highest) = (contacts.iter().min_by(by_height)?, contacts.iter().max_by(by_height)?);
@@ -126,7 +126,7 @@ impl Pipeline<'_> {
         })
     }
 
-    /// The note of a foot that is deep in the ground where other contacts are named.
+    /// Notes that a foot is deep in the ground while other contacts are named.
     fn sunk_besides(&self, NearestFoot { link, height, .. }: NearestFoot) -> Option<String> {
         let name = &self.robot.links[link].name;
         (height < -NEAR_MISS * self.feet.size()).then(|| {
@@ -137,13 +137,13 @@ impl Pipeline<'_> {
         })
     }
 
-    /// How far above the ground a foot that comes down has nearly touched \[m\].
+    /// Greatest height above the ground at which a falling foot has nearly touched \[m\].
     pub(super) fn near_miss(&self) -> f64 {
         NEAR_MISS * self.feet.size()
     }
 
     /// Notes that nothing touches, and feet that come down or stand just above the ground: the `nearest` one, and those
-    /// that are `near` although others of their bodies do not touch.
+    /// of other bodies without contacts (`near`).
     fn note_near_misses(
         &self,
         contacts: &[Contact],
@@ -156,8 +156,8 @@ impl Pipeline<'_> {
             let stands = *height <= STANDS * self.feet.size() && velocity[1] < SLOW;
             *height > 0.0 && (comes || stands)
         };
-        // A little more than the height, in two digits, next to four of the height; a sole that may be uneven stands on as
-        // many of its corners as with the usual tolerance.
+        // A little more than the height, because it is printed with two digits and the height with four. The bumps are
+        // added so that an uneven sole stands on as many corners as with the default tolerance.
         let bumps = self.feet.iter().map(|foot| foot.bumps).fold(0.0, f64::max);
         let enough = |height: f64| 1.1 * height + bumps;
         if !contacts.is_empty() {
@@ -183,7 +183,7 @@ impl Pipeline<'_> {
         };
         let NearestFoot { link, height, velocity } = foot;
         let (name, moving) = (&self.robot.links[link].name, along_normal(velocity));
-        // Only beyond the end of a profile a foot that does not touch is lower.
+        // A foot that does not touch can be below the ground only beyond the end of a profile.
         let place = if height < 0.0 { "below its end" } else { "above it" };
         let shown = rounded(height.abs());
         let by_base = if self.assembly.plan.floating { "`place: lowest`" } else { "its joints" };
@@ -200,7 +200,7 @@ impl Pipeline<'_> {
     }
 }
 
-/// That a length, such as a contact tolerance, exceeds the size of the robot, as one in millimeters does; both in \[m\].
+/// Notes that a length, such as a contact tolerance, exceeds the robot's size, as millimeters do; both in \[m\].
 pub fn beyond_size(what: &str, length: f64, size: f64) -> Option<String> {
     (length > size).then(|| {
         let [length, size] = [length, size].map(rounded);

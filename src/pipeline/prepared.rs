@@ -1,4 +1,4 @@
-//! From a state to its contact problem in f64: what goes between the steps of the
+//! From a state to its contact problem in f64: the work between the steps of the
 //! [`Assembly`](super::assembly::Assembly).
 //!
 //! ```text
@@ -26,39 +26,39 @@ use std::mem::take;
 /// A foot that does not touch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NearestFoot {
-    /// The URDF link that carries it (an index into [`Robot::links`]).
+    /// The URDF link of the foot (an index into [`Robot::links`]).
     pub link: usize,
     /// Height of its lowest point above the ground along the normal \[m\].
     pub height: f64,
-    /// How that point moves before the impact, [tangential, normal] \[m/s\].
+    /// Velocity of its lowest point before the impact, [tangential, normal] \[m/s\].
     pub velocity: Pair<f64>,
 }
 
 /// A state that is ready to be analyzed.
 #[derive(Debug, Clone, Default)]
 pub struct Prepared {
-    /// v just before the impact, with the stance and the loops kept \[m/s, rad/s\].
+    /// v just before the impact, made consistent with the stance and the loops \[m/s, rad/s\].
     pub velocity: Vec<f64>,
     /// The foot of the stance.
     pub foot: Option<Contact>,
-    /// Contacts for which others act.
+    /// Contacts that were left out because others act for them.
     pub merged: Vec<Merged>,
-    /// Shapes that were too far from the ground to be asked.
+    /// The number of shapes that were too far from the ground to be checked.
     pub out_of_reach: usize,
-    /// Contacts that are taken as exactly level with others.
+    /// For each contact, the other contact with which it is taken to be exactly level, if any.
     pub levels: Vec<Option<Level>>,
     pub still: Still,
-    /// What the applied impulses change in v, without and with what the loops answer.
+    /// The change of v by the applied impulses: without the response of the loops (`applied`) and with it (`change`).
     pub applied: Vec<f64>,
     pub change: Vec<f64>,
-    /// v with that change.
+    /// v plus `change`.
     pub free: Vec<f64>,
-    /// The answer as far as it is known.
+    /// The part of the answer that is known so far.
     pub impact: Box<Impact>,
 }
 
 impl Prepared {
-    /// The `state` that was prepared in this `assembly`, for numbers of any kind.
+    /// The contact problem's exact data, for numbers of any kind; the `state` was prepared in this `assembly`.
     pub fn exact<'a>(
         &'a self,
         robot: &'a Robot,
@@ -78,13 +78,13 @@ impl Prepared {
 }
 
 impl Pipeline<'_> {
-    /// The `state` that was just `prepared`, for numbers of any kind.
+    /// The exact data of the `state` that was just `prepared`, for numbers of any kind.
     #[cfg(feature = "accuracy")]
     pub(crate) fn exact<'a>(&'a self, state: &'a State, prepared: &'a Prepared) -> ExactState<'a> {
         prepared.exact(self.robot, state, &self.assembly, Errors::UNKNOWN)
     }
 
-    /// Everything up to the contact problem.
+    /// Computes everything up to the contact problem.
     pub(crate) fn prepare(&mut self, state: &State) -> Result<Box<Prepared>> {
         let scene = &state.scene;
         self.check_lengths(state)?;
@@ -97,7 +97,7 @@ impl Pipeline<'_> {
         self.check_limits(state)?;
         let surface = Surface::new(&scene.ground);
         let mut prepared = self.spare.take().unwrap_or_default();
-        // A field more is an error here.
+        // No field is skipped by `..`: a new field does not compile until it is reset here.
         let Prepared { velocity, foot, merged, out_of_reach, levels, still, applied, change, free, impact } =
             &mut *prepared;
         let Impact {
@@ -135,7 +135,7 @@ impl Pipeline<'_> {
         check_matrix_size(contacts.len())?;
         *nearest = if self.options.brief { None } else { self.open_foot(&footing, contacts, velocity) };
         if !self.options.brief {
-            // None is lower than the nearest one.
+            // No other foot can be near if the nearest one is not.
             let is_near = nearest.is_some_and(|foot| foot.height <= self.near_miss());
             let near = if is_near { footing.near(contacts, self.near_miss()) } else { Vec::new() };
             let near: Vec<NearestFoot> = near.iter().filter_map(|foot| self.moving(foot, velocity)).collect();
@@ -158,7 +158,7 @@ impl Pipeline<'_> {
         self.bound_delassus();
         self.settle(contacts, (velocity, *stance), still, (resting, notes));
         if !scene.impulses.is_empty() || (self.assembly.is_constrained() && !self.options.no_proof) {
-            // They go through M^-1, whose rounding these bounds do not follow.
+            // Both pass through M^-1, whose rounding the bounds do not cover.
             self.bounds.delassus = f64::INFINITY;
             self.bounds.velocity.fill([f64::INFINITY; 2]);
         }
@@ -175,7 +175,7 @@ impl Pipeline<'_> {
         Ok(prepared)
     }
 
-    /// Refuses a state whose lists are not as long as its robot has coordinates, or whose indices it does not have.
+    /// Refuses a state with a list whose length does not fit the robot, or with an index that the robot does not have.
     fn check_lengths(&self, state: &State) -> Result<()> {
         let coordinates = self.robot.dofs();
         check_length("position", state.position.len(), coordinates)?;
@@ -193,7 +193,7 @@ impl Pipeline<'_> {
         state.scene.check_indices(self.robot)
     }
 
-    /// Refuses a joint outside its limits, if that is asked for.
+    /// Refuses a joint outside its limits, if the options are strict.
     fn check_limits(&self, state: &State) -> Result<()> {
         match state.outside_limits(self.robot).next().filter(|_| self.options.strict_limits) {
             None => Ok(()),
@@ -203,9 +203,9 @@ impl Pipeline<'_> {
         }
     }
 
-    /// Compiles the plan, unless the last one was for the same braked joints and rotors.
+    /// Compiles the plan, unless the last one was for the same braked joints and rotor inertias.
     pub(super) fn compile(&mut self, scene: &Scene) {
-        // By entries: to compare the memory of empty lists takes 200 cycles (docs/speed.md).
+        // Compares entry by entry: comparing the memory of empty lists takes 200 cycles (docs/speed.md).
         if self.braked.iter().ne(&scene.braked) || self.rotor_inertia != scene.rotor_inertia {
             let (without, kept) = match self.options.reductions.held {
                 true => (&scene.braked[..], &[][..]),
@@ -224,7 +224,7 @@ impl Pipeline<'_> {
         *elimination = if by_bodies { Elimination::ArticulatedBodies } else { Elimination::Ltl };
     }
 
-    /// Refuses a coordinate whose inertia is zero to rounding once all that it carries may move.
+    /// Refuses a coordinate whose inertia is zero up to rounding when all joints beyond it may move.
     pub(super) fn check_inertia(&mut self, loops: &[NamedLoop]) -> Result<()> {
         let nv = self.assembly.plan.columns();
         let by_bodies = self.assembly.elimination == Elimination::ArticulatedBodies;
@@ -265,7 +265,7 @@ impl Pipeline<'_> {
         Ok(())
     }
 
-    /// The first link that `joint` moves and to which the file gives no `<inertial>`.
+    /// Finds the first link that `joint` moves and to which the file gives no `<inertial>`.
     fn without_inertial(&self, joint: usize) -> Option<String> {
         let child = self.robot.joints.get(joint)?.child;
         let link = self.robot.links.iter().find(|link| link.body == child && !link.has_inertial)?;
@@ -273,8 +273,8 @@ impl Pipeline<'_> {
         Some(format!("link \"{}\"{line}", link.name))
     }
 
-    /// The kinetic energy \[J\]; it and the Delassus matrix must be numbers, or no sign means anything. The refusal
-    /// names the greatest of the velocities that were `given`.
+    /// Returns the kinetic energy \[J\]. The energy and the Delassus matrix must be finite, or no sign means anything.
+    /// The error names the greatest of the `given` velocities.
     fn energy_in_range(&mut self, given: &[f64], velocity: &[f64]) -> Result<f64> {
         let too_large =
             |error: Error| error.hint("positions and velocities are too large for f64: are they in SI units?");
@@ -292,13 +292,13 @@ impl Pipeline<'_> {
         })
     }
 
-    /// How far from the ground a foot may be and still touch \[m\].
+    /// Returns the greatest height above the ground at which a foot still touches \[m\].
     pub fn tolerance(&self) -> f64 {
         self.options.contact_tolerance.unwrap_or(CONTACT_TOLERANCE * self.feet.size())
     }
 
-    /// Where the bodies are, in the memory of others, and the foot of a stance; the `velocity` by coordinate becomes one
-    /// with which that stands.
+    /// Returns the placement of the bodies, in reused `memory`, and the foot of a stance. Changes the `velocity` by
+    /// coordinate so that this foot is at rest.
     fn stand(
         &self,
         state: &State,
@@ -321,7 +321,7 @@ impl Pipeline<'_> {
         };
         let placement = at(Vector::zero(), memory);
         let footing = self.footing(&state.scene, &placement, surface);
-        // Within a tolerance that was given for a recording a foot may be tilted: then it stands on its lower end.
+        // A given tolerance lets a recorded foot be tilted; it then stands on its lower end.
         let flat = self.options.contact_tolerance.map_or(f64::INFINITY, |_| CONTACT_TOLERANCE * self.feet.size());
         let stance = footing.stance(link, self.tolerance(), flat)?;
         self.assembly.rest(&stance.foot.point_of(), velocity);
@@ -332,8 +332,8 @@ impl Pipeline<'_> {
         Footing { robot: self.robot, feet: &self.feet, scene, placement, surface }
     }
 
-    /// The closed contacts, those for which others act, and how many shapes are out of reach; `memory` is that of other
-    /// contacts.
+    /// Returns the closed contacts, the contacts for which others act, and the number of shapes out of reach. `memory`
+    /// is reused.
     fn contacts(
         &self,
         footing: &Footing,
@@ -357,12 +357,12 @@ impl Pipeline<'_> {
         Ok((contacts, merged, out_of_reach))
     }
 
-    /// The lowest foot that does not touch, and how it moves.
+    /// Returns the lowest foot that does not touch, with its velocity.
     fn open_foot(&self, footing: &Footing, contacts: &[Contact], velocity: &[f64]) -> Option<NearestFoot> {
         footing.nearest(contacts).and_then(|foot| self.moving(&foot, velocity))
     }
 
-    /// How a foot moves that does not touch.
+    /// Returns a foot that does not touch, with its velocity; `None` if a number is not finite.
     fn moving(&self, foot: &Contact, velocity: &[f64]) -> Option<NearestFoot> {
         let point = foot.point_of();
         let (moving, [tangent, normal]) = (self.assembly.velocity_of(&point, velocity), point.axes());
@@ -371,8 +371,8 @@ impl Pipeline<'_> {
         is_finite.then_some(NearestFoot { link: foot.link, height: foot.gap, velocity })
     }
 
-    /// The refusal of a foot that is too deep, completed by how the `lowest` foot moves, and for a stance with a remedy
-    /// that leaves the base to it; the first odd joint may be why.
+    /// Completes the error for a foot that is too deep in the ground: with the velocity of the `lowest` foot, with a
+    /// remedy that suits a stance, and with the first oddity of the state, which may be the cause.
     fn sunk(&self, error: Error, state: &State, lowest: Option<NearestFoot>) -> Error {
         let Reason::Penetration { link, depth, tolerance, .. } = error.reason() else { return error };
         let velocity = lowest.filter(|foot| self.robot.links[foot.link].name == *link).map(|foot| foot.velocity);
@@ -397,7 +397,7 @@ impl Pipeline<'_> {
             .hint(hint)
     }
 
-    /// Which contacts are level with which: up to rounding, or if they are named exactly.
+    /// Finds the contacts that are level with others: up to rounding or, if they are named, exactly.
     pub(super) fn levels(
         &self,
         state: &State,
@@ -416,13 +416,13 @@ impl Pipeline<'_> {
         levels
     }
 
-    /// The bodies that move as one at this `velocity`, in the pose of the assembly.
+    /// The bodies that move as one at this `velocity`, in the assembly's pose.
     pub(super) fn rigid_parts<'a>(&'a self, velocity: &'a [f64]) -> RigidParts<'a> {
         let Assembly { plan, workspace, kept, .. } = &self.assembly;
         RigidParts { plan, workspace, kept, velocity }
     }
 
-    /// Whether two points of one body have the same height above the ground in all digits of the pose.
+    /// Returns whether two points of one body have exactly the same height above the ground for the pose as given.
     fn is_exactly_level(&self, state: &State, a: &Contact, b: &Contact) -> bool {
         let ground = |own: &Contact| state.scene.ground.axes(own.ground);
         let [a, b] = [a, b].map(|own| own.exact_point::<Residue>(self.robot, ground(own)));
@@ -433,7 +433,7 @@ impl Pipeline<'_> {
         normal.dot(a - b).is_zero() == Some(true)
     }
 
-    /// Bounds the rounding of c; the foot of the stance rests.
+    /// Bounds the rounding of c. The foot of the stance is at rest.
     pub(super) fn bound_velocities(
         &mut self,
         contacts: &[Contact],
@@ -443,7 +443,7 @@ impl Pipeline<'_> {
     ) {
         let Self { robot, assembly: Assembly { plan, configuration, .. }, bounds, .. } = self;
         let arms = contacts.iter().enumerate().map(|(index, contact)| {
-            // The place of a level contact is added up from that of the other.
+            // The position of a level contact is computed from that of the other one.
             let other = levels.get(index).copied().flatten().filter(|level| level.along.is_some());
             let other = other.map(|level| contacts[level.with].arm(robot).length + level.way);
             let own = contact.arm(robot);
@@ -454,7 +454,7 @@ impl Pipeline<'_> {
         bounds.velocities(plan, velocity, foot, |contact| standing.place == Some(contact));
     }
 
-    /// Adds to the bounds of c what a `change` of the velocity moves the contacts by, which closed loops up to rounding.
+    /// Adds to the bounds of c the contact speeds of a `change` of velocity, which closed the loops up to rounding.
     fn blur(&mut self, contacts: &[Contact], stance: Option<usize>, change: Vec<f64>) {
         let moving = contacts.iter().enumerate().filter(|(index, _)| stance != Some(*index));
         for (index, contact) in moving.filter(|_| !change.is_empty()) {
@@ -463,7 +463,7 @@ impl Pipeline<'_> {
         }
     }
 
-    /// Bounds the rounding of G; without proofs it is taken for what was measured.
+    /// Bounds the rounding of G. Without proofs it is the measured value.
     pub(super) fn bound_delassus(&mut self) {
         if self.options.no_proof {
             self.bounds.delassus = DYNAMICS_ROUNDING;
@@ -476,7 +476,7 @@ impl Pipeline<'_> {
         }
     }
 
-    /// The contact problem, in the memory of another one.
+    /// Fills in the contact problem, in the memory of another one.
     pub(super) fn problem(
         &self,
         scene: &Scene,
@@ -507,11 +507,11 @@ impl Pipeline<'_> {
     }
 }
 
-/// What G of a robot loses to rounding, relative to its rows' own scale: measured below 3e-15 against 640 bits on
-/// chains, straight legs and extreme mass ratios. It is no bound, and used only if none is asked for.
+/// Rounding of G, relative to the scale of its rows: measured below 3e-15 against 640 bits on chains, straight legs and
+/// extreme mass ratios. It is not a bound, and is used only without proofs.
 const DYNAMICS_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// The contact of the foot that stands: the same circle with the same normal; a point rests whatever the normal is.
+/// Finds the contact of the standing foot: the same circle with the same normal or, for a point, with any normal.
 fn place_of(foot: &Contact, contacts: &[Contact]) -> Option<usize> {
     let same_point = || contacts.iter().position(|other| foot.radius == 0.0 && foot.has_circle_of(other));
     contacts.iter().position(|other| foot.is_the_same_as(other)).or_else(same_point)

@@ -1,12 +1,12 @@
-//! What the whole robot does after an outcome: velocities of base and joints and the impulses of loops, or its
+//! The motion of the whole robot after an outcome: velocities of base and joints and the impulses of loops, or the
 //! accelerations under forces.
 //!
 //! ```text
 //!     v+ = v- + M^-1 (applied + J^T L + K^T l)      f64 --likely error too large--> balls ... intervals
 //! ```
 //!
-//! L is taken as it is printed. Each entry is right to 1e-10 of the velocity before or, if larger, of what the impulses
-//! could do to it, sqrt((M^-1)_jj) sum |L_r| sqrt(G_rr).
+//! L is used as it is printed. Each entry is right to 1e-10 of the velocity before or, if that is larger, of the
+//! greatest effect of the impulses, sqrt((M^-1)_jj) sum |L_r| sqrt(G_rr).
 
 use super::assembly::Elimination;
 use super::exact::{Asked, ExactState};
@@ -16,24 +16,24 @@ use crate::impact::{Attempt, DIGITS, Errors, Outcome, Precision, Rung, climb, is
 use crate::planar::{Pair, Vector};
 use crate::state::{Named, State};
 
-/// How the robot moves if the contacts give no impulses.
+/// The robot's motion without contact impulses.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Unstruck<'a> {
-    /// The velocity before, by coordinate; of forces zero.
+    /// The velocity before the impact, by coordinate; zero for forces.
     pub before: &'a [f64],
-    /// What applied impulses alone change in it; of forces the acceleration that the loads alone give.
+    /// Its change by the applied impulses alone; for forces the acceleration from the loads alone.
     pub applied: &'a [f64],
-    /// With both, and what the loops answer.
+    /// The sum of both and of the loops' response.
     pub free: &'a [f64],
-    /// Likely errors of `free` by coordinate that do not come from those of G; empty if there are none.
+    /// Likely errors of `free` by coordinate that do not come from errors of G; empty if there are none.
     pub errors: &'a [f64],
-    /// What the loops close.
+    /// The quantity in which the loops are closed.
     pub closed: Closed<'a, f64>,
 }
 
 impl Pipeline<'_> {
-    /// Completes `outcomes` by the robot's velocity after each and the impulses of the loops, from articulated inertias
-    /// where there are no mimic joints. What remains to be seen of their digits makes them unproven.
+    /// Adds to `outcomes` the robot's velocity after each and the impulses of the loops, computed by articulated
+    /// inertias if there are no mimic joints. An outcome whose digits cannot be shown becomes unproven.
     pub(super) fn respond(
         &mut self,
         outcomes: &mut [Outcome],
@@ -66,14 +66,14 @@ impl Pipeline<'_> {
         }
     }
 
-    /// Whether f64 likely has the digits of all velocities, of which those of G tell.
+    /// Returns whether f64 likely gives the digits of all velocities, judged by the errors of G and of a stance's base.
     fn has_digits(&self, prepared: &Prepared) -> bool {
         let [of_delassus, of_velocity] = self.bounds.likely;
         let base = prepared.velocity.iter().take(2).fold(0.0, |most: f64, entry| most.max(entry.abs()));
         of_velocity * self.bounds.base <= DIGITS * base && of_delassus * self.bounds.delassus <= DIGITS
     }
 
-    /// Whether f64 likely has the digits of what is there without contact impulses.
+    /// Returns whether f64 likely gives the digits of the motion without contact impulses.
     fn loads_have_digits(&self, outcome: &Outcome, Unstruck { free, errors, .. }: Unstruck<'_>) -> bool {
         let sizes = || free.iter().zip(outcome.velocity()).map(|(free, after)| free.abs().max(after.abs()));
         let base = sizes().take(self.robot.base_dofs().min(2)).fold(0.0, f64::max);
@@ -100,7 +100,7 @@ impl Pipeline<'_> {
 
     fn name(&self, outcome: &mut Outcome, mut rates: Vec<f64>, loops: Vec<Vector>) {
         let [base, joints] = &self.names;
-        // The sign of a zero means nothing.
+        // Turns -0 into 0: the sign of a zero means nothing.
         rates.iter_mut().for_each(|rate| *rate += 0.0);
         let of_joints = rates.split_off(base.len());
         outcome.loop_impulse = (!loops.is_empty()).then_some(loops);
@@ -109,7 +109,7 @@ impl Pipeline<'_> {
     }
 }
 
-/// The velocities and loop impulses after these impulses of the contacts, sought.
+/// A search for the velocities and loop impulses that follow from these contact impulses.
 struct Response<'a> {
     source: &'a ExactState<'a>,
     impulse: &'a [Pair<f64>],
@@ -124,7 +124,7 @@ impl Attempt for Response<'_> {
         let sum = |entry: usize| parts.iter().fold(T::zero(), |sum, part| sum + part[entry]);
         let size = |entry: usize| parts.iter().map(|part| part[entry].to_f64().abs()).sum::<f64>();
         let (rates, is_floating) = (self.source.position.len(), self.source.robot.base_dofs() > 0);
-        // Both components of one vector have one scale.
+        // Both components of a vector have the same scale.
         let scale = |entry: usize| match entry.checked_sub(rates) {
             None if entry < 2 && is_floating => size(0).max(size(1)),
             None => size(entry),

@@ -1,13 +1,13 @@
-//! Contacts that rest as far as their velocity is known: a foot that stands in a simulation has c = J v of some 1e-17
-//! m/s, whose signs say nothing.
+//! Detection of resting contacts. A foot that stands in a simulation has c = J v of some 1e-17 m/s, whose signs mean
+//! nothing; it counts as at rest as far as its velocity is known.
 //!
 //! ```text
 //!     |c| <= rounding of J v + D,   D = sum of A_k dv_k + sum of |u_k| dq_k   where |c| <= 1e-4 sum of A_k |v_k|, else 0
 //! ```
 //!
-//! over all coordinates k that move the contact: A_k is its arm from the joint, stretched, and u_k the velocity of the
-//! joint's axis, by which the velocity of a contact that rests changes with an angle. dv_k and dq_k are half units of the
-//! numbers' last decimal places ([`half_units`]). With a stance the terms of its foot count twice more.
+//! The sums run over all coordinates k that move the contact. A_k bounds its arm from the joint. u_k is the velocity of
+//! the joint's axis, by which the velocity of a resting contact changes with the angle. dv_k and dq_k are half units in
+//! the last decimal places of the numbers ([`half_units`]). With a stance, the terms of its foot are added twice.
 
 use super::Pipeline;
 use super::assembly::Assembly;
@@ -23,28 +23,28 @@ use std::cmp::Ordering;
 use std::fmt;
 use std::ops::RangeInclusive;
 
-/// Only if no more than this part of what its terms add up to is left of a velocity, digits of the state explain it.
+/// The digits of the state can explain a velocity only if at most this fraction of the sum of its terms is left.
 const CANCELED: f64 = 1e-4;
-/// A contact that moves by no more than this part of what its terms add up to may be one that stands.
+/// A contact whose velocity is at most this fraction of the sum of its terms may be one that stands.
 const SUSPICIOUS: f64 = 1e-3;
-/// Numbers with so many significant digits were rounded to them; with fewer they are meant, with more they are f64.
+/// Significant digits of a number that was rounded to them. With fewer it is exact, with more it is a full f64.
 const ROUNDED: RangeInclusive<usize> = 6..=15;
 
-/// The last place of a number of f32, relative to it, at most.
+/// The last place of an f32 number, relative to it, at most.
 const ULP_OF_F32: f64 = f32::EPSILON as f64;
 
-/// What the note on a resting contact says behind its name, before the speeds.
+/// The text after the contact's name in the note on a resting contact, before the speeds.
 pub(crate) const AT_REST: &str = " is taken as exactly at rest";
 
 /// The stance of a state.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Standing<'a> {
     pub foot: Option<&'a Contact>,
-    /// Its place among the contacts.
+    /// The index of this foot's contact.
     pub place: Option<usize>,
 }
 
-/// Why a contact is taken as resting, with the speed below which it is \[m/s\].
+/// Why a contact is taken as resting, with the limit of its speed \[m/s\].
 enum Because {
     Option(f64),
     Rounding(f64),
@@ -52,8 +52,8 @@ enum Because {
 }
 
 impl Pipeline<'_> {
-    /// Finds the contacts that rest, and notes them unless in brief; says which in `resting`. `velocity` is dq/dt; the
-    /// contacts' velocities and their bounds must be known.
+    /// Finds the contacts that rest, marks them in `resting`, and notes them unless the result is brief. `velocity` is
+    /// dq/dt. The contacts' velocities and their bounds must be known.
     pub(super) fn find_resting(
         &mut self,
         state: &State,
@@ -70,14 +70,14 @@ impl Pipeline<'_> {
             if place == Some(index) {
                 continue;
             }
-            // Of what is known to its uncertainty no speed is taken as zero, unless that is asked for.
+            // With an uncertainty, no speed is taken as zero unless the option asks for it.
             let is_strict = state.uncertainty.is_some() && self.options.resting_speed.is_none();
             let contact = (index, contact);
             let because = if is_strict { None } else { self.rests(state, velocity, [slow, bound], contact, foot) };
             let name = &contact.1.name;
             if let Some(because) = because {
                 resting[index] = true;
-                // So small a bound has room for underflow alone; and what stands with a stance is not worth a word.
+                // A bound this small only covers underflow. Resting contacts on the foot of the stance need no note.
                 let is_of_foot = self.assembly.loops.is_empty() && foot.is_some_and(|foot| foot.body == contact.1.body);
                 let is_blurred = bound > f64::MIN_POSITIVE.sqrt() && self.options.resting_speed.is_none();
                 if !self.options.brief && (slow > 0.0 || is_blurred && !is_of_foot) {
@@ -110,8 +110,8 @@ impl Pipeline<'_> {
         }
     }
 
-    /// Takes contacts that rest as exactly at rest, once G is known, and c of those that depend on them as of a motion in
-    /// which they do: no impulses fit a c that no motion has.
+    /// Takes resting contacts as exactly at rest, once G is known. The c of contacts that depend on them becomes that
+    /// of a motion in which they rest, because no impulses fit a c that no motion has.
     pub(super) fn settle(
         &mut self,
         contacts: &[Contact],
@@ -140,17 +140,17 @@ impl Pipeline<'_> {
         }
         let size = 2 * contacts.len();
         self.assembly.settle(still, |row, [speed, pivot], delassus| {
-            // |G_ir / pivot| is no greater than sqrt(G_ii / pivot), and is known to this part of that.
+            // |G_ir / pivot| is at most sqrt(G_ii / pivot), and `known` is its error relative to that.
             let known = *error * delassus[row * (size + 1)] / pivot;
             let off = bounds[row / 2][row % 2] + known * speed.abs();
             let reach = if known < WELL_KNOWN { 2.0 * off / pivot.sqrt() } else { f64::INFINITY };
-            // What cannot move is not reached, however far that is.
+            // A row that cannot move is not affected, not even by an infinite bound.
             for other in (0..size).filter(|other| delassus[other * (size + 1)] > 0.0) {
                 bounds[other / 2][other % 2] += reach * delassus[other * (size + 1)].sqrt();
             }
         });
         let speeds = &mut self.assembly.workspace.contact_velocity;
-        // Only a joint that keeps its rate can still move what the contacts at rest hold, unless rounding alone says so.
+        // Only a braked joint with a rate can move a held contact. An infinite bound then cannot tell whether it does.
         let is_driven = self.braked.iter().any(|joint| velocity[self.robot.base_dofs() + joint] != 0.0);
         for &index in &still.held {
             let [slow, bound] = [speeds[index], bounds[index]].map(length);
@@ -166,8 +166,8 @@ impl Pipeline<'_> {
         bounds.iter_mut().zip(&still.contacts).filter(|(_, still)| **still).for_each(|(bound, _)| *bound = [0.0; 2]);
     }
 
-    /// Why a contact is taken as resting whose speed, or one component of it, is `slow`, rounded by up to `bound`; `None`
-    /// if it moves.
+    /// Returns why a contact with the speed `slow` (or one component of it), rounded by up to `bound`, is taken as
+    /// resting; `None` if it moves.
     fn rests(
         &self,
         state: &State,
@@ -178,7 +178,7 @@ impl Pipeline<'_> {
     ) -> Option<Because> {
         match self.options.resting_speed {
             Some(limit) => (slow < limit).then_some(Because::Option(limit)),
-            // Loops are closed in every number, which moves by its own rounding what rests as given.
+            // Loops are closed again in every number type; the rounding of this moves contacts that rest as given.
             None if bound == 0.0 && self.assembly.loops.is_empty() => None,
             None if slow <= bound => Some(Because::Rounding(bound)),
             None if slow > CANCELED * self.bounds.terms(index) => None,
@@ -189,8 +189,8 @@ impl Pipeline<'_> {
         }
     }
 
-    /// How each contact slides, which must not approach the ground: the sign of its tangential velocity; `None` of one
-    /// that leaves. What is so slow that a contact would rest with it is taken as exactly zero, and noted.
+    /// Returns the sign of each contact's tangential velocity; `None` if the contact leaves the ground. Refuses a
+    /// contact that approaches. Components within the limit of a resting contact are set to zero and noted.
     pub(super) fn slips(
         &mut self,
         state: &State,
@@ -228,13 +228,13 @@ impl Pipeline<'_> {
         Ok(slips)
     }
 
-    /// How fast a contact that rests may move by what the state's numbers were rounded to \[m/s\].
+    /// The speed that a resting contact may have because the state's numbers were rounded \[m/s\].
     fn digits(&self, state: &State, velocity: &[f64], contact: &Contact, foot: Option<&Contact>) -> f64 {
         let (plan, workspace) = (&self.assembly.plan, &self.assembly.workspace);
         let speed = |contact: &Contact, rates: &[f64]| self.bounds.speed(plan, contact.arm(self.robot), rates);
         let [turns, mut rates] = [&state.position, &state.velocity].map(|numbers| half_units(numbers));
         if foot.is_some() {
-            // They are placeholders.
+            // With a stance, the rates of the base are placeholders.
             rates[..2].fill(0.0);
         }
         let turned = |contact: &Contact| -> f64 {
@@ -266,10 +266,10 @@ fn length([t, n]: Pair<f64>) -> f64 {
     if squared.is_normal() { squared.sqrt() } else { libm::hypot(t, n) }
 }
 
-/// Half a unit in the last decimal place to which each number was rounded: its own if it has six to fifteen significant
-/// digits (in the shortest decimal that is the number). If it has fewer, because the zeros at its end are lost, the
-/// coarser of the finest place of the others and of as many digits as these have; else 0. Numbers of f32, and lists that
-/// may be the text of f32, have its rounding, if that is greater.
+/// Returns half a unit in the last decimal place to which each number was rounded: its own last place if it has six to
+/// fifteen significant digits (in its shortest decimal). A number with fewer has lost zeros at its end: its place is
+/// the coarser of the finest place in the list and its own with as many digits as the longest. Others get 0. Numbers of
+/// f32, and lists that may be the text of f32, get the rounding of f32 if that is greater.
 fn half_units(numbers: &[f64]) -> Vec<f64> {
     let last_places: Vec<(usize, i32)> = numbers.iter().map(|&number| last_place(number)).collect();
     let rounded = || last_places.iter().filter(|(digits, _)| ROUNDED.contains(digits));
@@ -293,18 +293,18 @@ fn half_units(numbers: &[f64]) -> Vec<f64> {
     numbers.iter().zip(&last_places).map(half_unit).collect()
 }
 
-/// Whether the shortest decimal of the nearest number of f32 is the shortest one of this number.
+/// Whether the shortest decimal of this number is also the shortest decimal of the nearest f32.
 fn is_text_of_single(number: f64) -> bool {
     zmij::Buffer::new().format(number as f32).parse() == Ok(number)
 }
 
-/// Whether a number is one of f32, to which it was rounded then, whatever digits it has in f64.
+/// Whether a number is exactly an f32, and so was rounded to one, whatever digits it has in f64.
 fn is_single(number: f64) -> bool {
     f64::from(number as f32) == number
 }
 
-/// How many significant digits a number has in the shortest decimal of its precision, and the power of ten of the last
-/// one.
+/// The number of significant digits in the shortest decimal of the number's precision, and the power of ten of its last
+/// digit.
 fn last_place(number: f64) -> (usize, i32) {
     let mut buffer = zmij::Buffer::new();
     let text = if is_single(number) { buffer.format(number as f32) } else { buffer.format(number) };
@@ -329,9 +329,9 @@ mod tests {
     #[test]
     fn numbers_with_many_decimals_are_rounded_to_them() {
         let half = |numbers: &[f64]| half_units(numbers);
-        // As `%.6f` writes them.
+        // The format of `%.6f`.
         assert_eq!(half(&[0.566082, -1.191566, 0.5, 0.0]), [5e-7; 4]);
-        // As `%.6g` does, where zeros at the end are lost.
+        // The format of `%.6g`, which drops zeros at the end.
         assert_eq!(half(&[0.00123457, -5.88049, 1234.56, -1.447, 0.0]), [5e-9, 5e-6, 5e-3, 5e-6, 5e-9]);
     }
 
@@ -350,7 +350,7 @@ mod tests {
         let widened = [0.339_661_72_f32, -1.191_566_f32, 0.5].map(f64::from);
         let half = f64::exp2(-24.0);
         assert_eq!(half_units(&widened), [widened[0] * half, 5e-7, 0.5 * half]);
-        // As NumPy prints them, and one that has four digits in f32.
+        // The format of NumPy, and a number that has four digits in f32.
         let printed = [0.123_456_79_f32, -1.234_567_8].map(|own| own.to_string().parse().unwrap());
         assert_eq!(half_units(&printed), printed.map(|own: f64| own.abs() * half));
         assert_eq!(half_units(&[f64::from(0.7275_f32), 0.123456])[0], f64::from(0.7275_f32) * half);

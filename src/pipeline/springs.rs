@@ -1,4 +1,4 @@
-//! What virtual springs ask of the joints and of the base, as results list it.
+//! The forces of virtual springs on the joints and the base, as results list them.
 
 use super::Pipeline;
 use super::assembly::Loads;
@@ -31,19 +31,19 @@ pub struct Unrealized {
     pub moment: f64,
 }
 
-/// What acts at the joints.
+/// The torques at the joints.
 #[derive(Debug, Clone)]
 pub struct Driven {
-    /// At each joint, virtual springs included \[N m, N\].
+    /// Torque or force at each joint, virtual springs included \[N m, N\].
     pub torque: Named,
-    /// What each of the state's virtual springs asks for.
+    /// The force of each virtual spring of the state.
     pub springs: Vec<SpringForce>,
-    /// What all of them ask of a floating base: it is not applied. `None` if there are no springs.
+    /// The sum of the springs' forces on a floating base, which is not applied. `None` without springs or such a base.
     pub unrealized: Option<Unrealized>,
 }
 
 impl Pipeline<'_> {
-    /// What acts at the joints of bodies that are placed. A spring's force beyond the range of f64 is refused.
+    /// Returns the torques at the joints; the bodies must be placed. Refuses a spring's force beyond the range of f64.
     pub(super) fn driven(&self, velocity: &[f64], loads: Loads<'_>) -> Result<Driven> {
         let [_, joints] = &self.names;
         let mut torque = loads.scene.torque.clone();

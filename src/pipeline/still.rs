@@ -1,40 +1,40 @@
-//! Contacts at rest, and the rows of G by which others depend on them.
+//! Contacts at rest, and the rows of G through which other contacts depend on them.
 
 use crate::scalar::Real;
 
-/// A row of G follows from others if no more than this part of it is left, or than G is known to.
+/// A row of G depends on others if at most this fraction of it is left; the error of G replaces it if it is greater.
 const DEPENDENT: f64 = 1e-12;
 
-/// The rounding of a row of G, relative to it, with room for its sums.
+/// The relative rounding of a row of G, with room for its sums.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// A greater determinant of the scaled G is far from all rounding.
+/// A determinant of the scaled G above this is far from all rounding.
 const REGULAR: f64 = 1e-6;
 
-/// A greater relative error of G leaves nothing known.
+/// If the relative error of G is not below this, nothing is known.
 pub const WELL_KNOWN: f64 = 1e-4;
 
-/// The contacts at rest, next to which c of the others is taken, so that impulses can give c of all.
+/// The contacts at rest. The c of the others is fitted to them, so that impulses exist that give c of all contacts.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Still {
-    /// Which contacts they are; empty if none is taken so.
+    /// Whether each contact is at rest; empty if none is taken so.
     pub contacts: Vec<bool>,
-    /// Their rows of G that count, 2 contact + axis, in the order in which every number eliminates them; empty if no
-    /// other contact depends on them.
+    /// Independent rows of G of the contacts at rest (2 contact + axis), in the order in which every number type
+    /// eliminates them; empty if no other contact depends on them.
     pub rows: Vec<usize>,
-    /// Other contacts whose rows all follow from these: no impulse moves them while these rest.
+    /// Other contacts whose rows all depend on these: no impulse moves them while the contacts at rest stay so.
     pub held: Vec<usize>,
 }
 
 impl Still {
-    /// Keeps the contacts that have a new `place`; all at rest have one.
+    /// Keeps the contacts that have a new `place`, and renumbers their rows. All contacts at rest must have one.
     pub fn keep(&mut self, place: impl Fn(usize) -> Option<usize>) {
         let mut at = 0..;
         self.contacts.retain(|_| at.next().and_then(&place).is_some());
         self.rows.iter_mut().for_each(|row| *row = place(*row / 2).map_or(*row, |at| 2 * at + *row % 2));
     }
 
-    /// Finds the rows, and the contacts that they hold, from G, of which entries are known to `error`; `scratch` is memory.
+    /// Finds the rows and the held contacts from G, whose entries have the relative `error`; `scratch` is memory.
     pub fn find_rows(&mut self, delassus: &[f64], error: f64, scratch: &mut Vec<f64>) {
         let Self { contacts, rows, held } = self;
         let tolerance = if error < WELL_KNOWN { error.max(DEPENDENT) } else { DEPENDENT };
@@ -58,14 +58,14 @@ impl Still {
     }
 }
 
-/// An elimination of rows of G, the most independent first.
+/// An elimination of rows of G that takes the most independent row first.
 struct Pivoting<'a> {
     delassus: &'a [f64],
-    /// What part of a row is nothing.
+    /// A smaller fraction of a row counts as nothing.
     tolerance: f64,
-    /// What the eliminated rows leave of G.
+    /// The part of G that is left by the eliminated rows.
     left: &'a mut [f64],
-    /// By how much that has made the rounding of each row grow; infinite for one that is eliminated.
+    /// The growth of the rounding of each row by these eliminations; infinite for an eliminated row.
     growth: &'a mut [f64],
 }
 
@@ -75,9 +75,9 @@ impl Pivoting<'_> {
         self.growth.fill(1.0);
     }
 
-    /// Whether all rows are so independent that none follows from any others, as nearly always.
+    /// Returns whether all rows are clearly independent, which is nearly always so.
     ///
-    /// With its rows scaled to a diagonal of one G has this determinant, and what others leave of a row is no less.
+    /// With rows scaled to a unit diagonal, G has this determinant, and no row's remainder is smaller than it.
     fn is_regular(&mut self) -> bool {
         self.start();
         let size = self.growth.len();
@@ -87,7 +87,7 @@ impl Pivoting<'_> {
             if determinant.is_nan() || determinant <= REGULAR.max(2.0 * self.tolerance) {
                 return false;
             }
-            // Only below the diagonal: nothing else is read here.
+            // Only the part below the diagonal is updated: nothing else is read here.
             let (above, below) = self.left.split_at_mut((row + 1) * size);
             let own = &above[row * size + row..];
             for other in below.chunks_exact_mut(size) {
@@ -98,18 +98,18 @@ impl Pivoting<'_> {
         true
     }
 
-    /// Whether nothing is left of a row but rounding.
+    /// Returns whether only rounding is left of a row.
     fn follows(&self, row: usize) -> bool {
         self.share(row) <= self.tolerance + ROUNDING * self.growth[row]
     }
 
-    /// What part of a row is left; nothing of one that cannot move.
+    /// The fraction of a row that is left; zero for a row that cannot move.
     fn share(&self, row: usize) -> f64 {
         let diagonal = row * (self.growth.len() + 1);
         if self.delassus[diagonal] > 0.0 { self.left[diagonal] / self.delassus[diagonal] } else { 0.0 }
     }
 
-    /// Eliminates the `wanted` rows that do not follow from others, and reports each to `chosen`; gives how many.
+    /// Eliminates the `wanted` rows that do not depend on others, and reports each to `chosen`; returns their number.
     fn count(&mut self, wanted: impl Fn(usize) -> bool, mut chosen: impl FnMut(usize)) -> usize {
         let size = self.growth.len();
         let mut count = 0;
@@ -131,7 +131,7 @@ impl Pivoting<'_> {
     }
 }
 
-/// Takes the part along `row` of a square matrix of this size from its row `other`, and gives how much of it that was.
+/// Eliminates `row` of a square matrix of this size from its row `other`, and returns the factor.
 pub fn eliminate<T: Real>(matrix: &mut [T], size: usize, row: usize, other: usize) -> T {
     let share = matrix[other * size + row] / matrix[row * size + row];
     for column in 0..size {

@@ -1,4 +1,4 @@
-//! A state's contact problem and its feet, as a search between states follows them.
+//! The contact problem and the feet of a state, for searches between states.
 
 use super::{Aspect, Impact, Pipeline};
 use crate::contact::{Contact, Surface};
@@ -9,23 +9,23 @@ use crate::state::State;
 /// A state's contact problem, not yet analyzed.
 #[derive(Debug, Clone)]
 pub struct Unsolved {
-    /// The closed contacts.
+    /// The closed contacts of the state.
     pub contacts: Vec<Contact>,
     /// Their contact problem, in f64.
     pub problem: ContactProblem,
-    /// How far each foot is from the ground \[m\]; empty if the state names its contacts.
+    /// Height of each foot above the ground \[m\]; empty if the state names its contacts.
     pub clearance: Vec<f64>,
-    /// At which corner of its link's feet each contact is, counted through them, or `None` if it is at none, as on a
-    /// corner of the ground; empty as well.
+    /// For each contact, the index of its corner among all corners of its link's feet; `None` if it is at none, as on a
+    /// corner of the ground. Empty if the state names its contacts.
     pub corners: Vec<Option<usize>>,
 }
 
 impl Pipeline<'_> {
-    /// The contact problem of a state as f64 has it, without its analysis: of its impact or of forces, as
-    /// [`Options::aspect`](super::Options::aspect) says.
+    /// Returns the contact problem of a state in f64, without its analysis: of the impact or of the forces, as
+    /// [`Options::aspect`](super::Options::aspect) selects.
     ///
     /// # Errors
-    /// As [`Pipeline::answer`].
+    /// Returns the errors of [`Pipeline::answer`].
     pub fn unsolved(&mut self, state: &State) -> Result<Unsolved> {
         let prepared = match self.options.aspect {
             Aspect::Impact => self.prepare(state)?,

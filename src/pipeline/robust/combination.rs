@@ -1,10 +1,10 @@
-//! A combination of modes on a whole box: det A and the numerators of its inequalities, as polynomials.
+//! One combination of modes on a whole box: det A and the numerators of its inequalities, as polynomials.
 //!
 //! ```text
 //!     A x + f = 0,   x_j = N_j / det A,   N_j = (-1)^(j+k) (minor of [A | f] without column j)         (Cramer)
 //! ```
 //!
-//! Unknowns: two impulses of a sticking contact, one along the ray of a sliding (or frictionless closed) one.
+//! Unknowns: two impulses of a sticking contact, one along the ray of a sliding (or frictionless closed) contact.
 
 use crate::law::{Impulse, Inequality, Law, Mode};
 use crate::scalar::{Ordered, Sign};
@@ -14,21 +14,21 @@ use crate::scalar::{Ordered, Sign};
 pub(super) struct UncertainProblem<T> {
     /// G, 2n x 2n by rows \[1/kg\].
     pub delassus: Vec<T>,
-    /// Per row the velocity without impulses, on a normal row with its bounce \[m/s\].
+    /// For each row the velocity without impulses; normal rows include the bounce \[m/s\].
     pub free: Vec<T>,
-    /// Per contact.
+    /// The law of each contact.
     pub laws: Vec<Law<T>>,
 }
 
-/// A combination's equations and inequalities, all times det A.
+/// The equations and inequalities of a combination, all multiplied by det A.
 #[derive(Debug, Default)]
 pub(super) struct BoxCombination<T> {
-    /// det A, up to a sign that it shares with the numerators.
+    /// det A, up to a sign that the numerators share.
     pub determinant: T,
-    /// What must keep its inequality after a division by det A; without one it is c_t of a frictionless contact that
-    /// sticks, and must be zero.
+    /// Each numerator with the inequality that it must satisfy after the division by det A. Without one, it is c_t of a
+    /// frictionless sticking contact, and must be zero.
     pub numerators: Vec<(Option<Inequality>, T)>,
-    /// Unknowns: row in which the equation stands, contact, and the ray's entries [tangential, normal].
+    /// One entry per unknown: the row of its equation, its contact, and the ray's entries [tangential, normal].
     columns: Vec<(usize, usize, [T; 2])>,
     minors: Vec<T>,
 }
@@ -43,7 +43,7 @@ impl<T: Ordered> UncertainProblem<T> {
         self.delassus[at] * ray[0] + self.delassus[at + 1] * ray[1]
     }
 
-    /// Fills in the combination `modes`.
+    /// Computes the combination `modes` into `into`.
     pub fn combine(&self, modes: &[Mode], into: &mut BoxCombination<T>) {
         let [zero, one] = [T::zero(), T::one()];
         into.columns.clear();
@@ -62,7 +62,7 @@ impl<T: Ordered> UncertainProblem<T> {
         self.read(modes, into);
     }
 
-    /// All minors of [A | f] of full height, each without one column, by expansion along one row after the other.
+    /// Computes all minors of [A | f] of full height, each without one column, by expansion along row after row.
     fn expand(&self, into: &mut BoxCombination<T>) {
         let BoxCombination { columns, minors, .. } = into;
         let unknowns = columns.len();
@@ -70,7 +70,7 @@ impl<T: Ordered> UncertainProblem<T> {
         minors.clear();
         minors.resize(1 << width, T::zero());
         minors[0] = T::one();
-        // A set of columns comes after its subsets, and is as high as it has columns.
+        // A set of columns comes after its subsets; its minor has as many rows as columns.
         for set in 1usize..1 << width {
             let height = set.count_ones() as usize;
             if height > unknowns {
@@ -96,7 +96,7 @@ impl<T: Ordered> UncertainProblem<T> {
             if (column + unknowns).is_multiple_of(2) { minor } else { -minor }
         };
         let whole = numerator(unknowns);
-        // A row's velocity times det A.
+        // The velocity of a row times det A.
         let velocity = |row: usize| {
             let start = self.free[row] * whole;
             columns.iter().enumerate().fold(start, |sum, (j, &column)| sum + self.entry(row, column) * numerator(j))
@@ -129,7 +129,7 @@ impl<T: Ordered> UncertainProblem<T> {
 }
 
 impl<T: Ordered> BoxCombination<T> {
-    /// Whether it is an outcome of every state of the box, or of none; `None` if that was not shown.
+    /// Returns whether it is an outcome of every state of the box, or of none; `None` if neither was shown.
     pub fn is_valid(&self) -> Option<bool> {
         let signs = || self.numerators.iter().map(|&(inequality, number)| (inequality, number.sign()));
         let has = |wanted: Sign| signs().any(|(inequality, sign)| inequality.is_some() && sign == wanted);
@@ -137,13 +137,13 @@ impl<T: Ordered> BoxCombination<T> {
             inequality.is_none() && matches!(sign, Sign::Negative | Sign::Positive)
         };
         if signs().any(unequal) {
-            // If det A = 0, a numerator that is not zero says that the equations contradict each other.
+            // If det A = 0, a numerator other than zero means that the equations contradict each other.
             return Some(false);
         }
         let (good, bad) = match self.determinant.sign() {
             Sign::Positive => (Sign::Positive, Sign::Negative),
             Sign::Negative => (Sign::Negative, Sign::Positive),
-            // Whatever the sign of det A: one of two opposite numerators has the other sign.
+            // This holds for either sign of det A: one of two opposite numerators violates its inequality.
             _ => return (has(Sign::Positive) && has(Sign::Negative)).then_some(false),
         };
         let violated = |(inequality, sign): (Option<Inequality>, Sign)| {
@@ -174,7 +174,7 @@ mod tests {
     }
 
     proptest! {
-        /// Against the elimination of the ordinary analysis.
+        /// Compares with the elimination of the ordinary analysis.
         #[test]
         fn numerators_match_elimination(
             root in prop::array::uniform32(-1.0..1.0f64), more in prop::array::uniform4(-1.0..1.0f64),
@@ -209,7 +209,7 @@ mod tests {
                 crate::impact::slack::slacks(&leaf, &modes, problem.laws(), |slack| expected.push(slack.number));
                 prop_assert_eq!(expected.len(), found.numerators.len());
                 for (slack, (_, numerator)) in expected.into_iter().zip(&found.numerators) {
-                    // A pivot near zero costs the elimination its digits.
+                    // A pivot near zero costs digits of the elimination.
                     let size = 1.0 + slack.abs() * product.abs();
                     let least = leaf.pivots.iter().fold(1.0, |least: f64, pivot| least.min(pivot.abs()));
                     prop_assert!((numerator.mid - slack * product).abs() <= 1e-9 * size / (least * least), "{modes:?}");

@@ -1,4 +1,4 @@
-//! A state whose numbers vary in a box while its contacts are kept.
+//! A state whose numbers vary in a box while its contacts stay the same.
 
 use super::super::exact::{Contacts, ExactState};
 use super::super::{Answer, Impact, Pipeline, Prepared};
@@ -13,21 +13,21 @@ use crate::robot::Robot;
 use crate::scalar::{Affine, Real};
 use crate::state::{NamedContact, State};
 
-/// A state whose contacts, stance and resting contacts are kept while its numbers vary.
+/// A state whose contacts, stance and resting contacts stay the same while its numbers vary.
 pub(super) struct KeptContacts<'a, 'r> {
     pub pipeline: &'a mut Pipeline<'r>,
     pub state: &'a State,
     pub answer: &'a Answer,
-    /// The state with its contacts by name.
+    /// The state with all its contacts named.
     pub named: State,
-    /// Of each contact.
+    /// The link of each contact.
     pub links: Vec<usize>,
     pub friction: Vec<Friction>,
     pub quantities: Vec<Quantity>,
 }
 
 impl KeptContacts<'_, '_> {
-    /// The state at a point of the box.
+    /// Returns the state at a point of the box.
     fn at(&self, point: &[f64]) -> State {
         let mut state = self.named.clone();
         for (&quantity, &value) in self.quantities.iter().zip(point) {
@@ -47,7 +47,7 @@ impl KeptContacts<'_, '_> {
         state
     }
 
-    /// The proven answer at a point, if its contacts are the same.
+    /// Returns the state at a point and its analysis; `None` if its contacts differ.
     fn analysis(&mut self, point: &[f64]) -> Option<(State, Analysis)> {
         let state = self.at(point);
         let answer = self.pipeline.strike(&state, Some(&[])).ok()?;
@@ -59,7 +59,7 @@ impl KeptContacts<'_, '_> {
             }
             (one, other) => one.is_none() == other.is_none(),
         };
-        // Elsewhere on a profile a named contact may have another normal.
+        // Elsewhere on a profile, a named contact may have another normal.
         let mut contacts = own.impact.contacts.iter().zip(&given.impact.contacts);
         let same_axes = contacts.all(|(one, other)| one.ground == other.ground);
         let same_rests = own.impact.stance == given.impact.stance && own.prepared.still == given.prepared.still;
@@ -68,12 +68,12 @@ impl KeptContacts<'_, '_> {
         same.then_some((state, impact.analysis?))
     }
 
-    /// The square of how far a foot that is named may lie from the same foot as it was found \[m^2\].
+    /// Square of the distance between a named foot and the same foot when it was detected \[m^2\], at most.
     fn place_rounding(&self) -> f64 {
         (1e-12 * self.pipeline.feet.size()).powi(2)
     }
 
-    /// The state at a point, if its proven outcomes are not the `expected` ones (lists of modes, sorted).
+    /// Returns the state at a point if its proven outcomes are not the `expected` ones (lists of modes, sorted).
     pub fn counterexample(&mut self, point: &[f64], expected: &[Vec<Mode>]) -> Option<Counterexample> {
         let (state, analysis) = self.analysis(point)?;
         (proven_modes(&analysis)? != expected).then(|| Counterexample {
@@ -83,7 +83,7 @@ impl KeptContacts<'_, '_> {
         })
     }
 
-    /// Every combination of the modes that the contacts may take, the first contact's changing fastest.
+    /// Returns every combination of the modes that the contacts may take; the first contact changes fastest.
     pub fn combinations(&self) -> Vec<Vec<Mode>> {
         let mut all = vec![Vec::new()];
         for &friction in self.friction.iter().rev() {
@@ -94,12 +94,12 @@ impl KeptContacts<'_, '_> {
         all
     }
 
-    /// The contact problems of all states of the box.
+    /// Returns the contact problem on the whole box.
     pub fn problem<const N: usize>(&self, whole: &StateBox) -> UncertainProblem<Affine<N>> {
         let Answer { impact, prepared, rows } = self.answer;
         let Prepared { foot, still, .. } = &**prepared;
         let (robot, scene) = (self.pipeline.robot, &self.state.scene);
-        // Where angles vary a sole is not level.
+        // No sole is taken as exactly level, because angles vary.
         let exact = ExactState::of(robot, self.state, (impact, foot.as_ref()), still, Constraints { kept: &[], rows });
         let mut assembly = exact.assembly(whole.plan::<N>(robot, &scene.braked, &scene.rotor_inertia));
         assembly.configuration = whole.configuration(&assembly.plan, &self.state.position);
@@ -120,12 +120,12 @@ impl KeptContacts<'_, '_> {
     }
 }
 
-/// The lists of modes of a proven analysis, sorted.
+/// Returns the lists of modes of an analysis, sorted; `None` if it is not proven.
 pub(super) fn proven_modes(analysis: &Analysis) -> Option<Vec<Vec<Mode>>> {
     analysis.proven.then(|| analysis.modes())
 }
 
-/// The state with every contact named, so that it stays one whatever its height.
+/// Names every contact of the state, so that it stays a contact at any height.
 pub(super) fn with_named_contacts(robot: &Robot, state: &State, answer: &Answer) -> State {
     let Impact { contacts, .. } = &*answer.impact;
     let mut named = State { id: None, uncertainty: None, ..state.clone() };

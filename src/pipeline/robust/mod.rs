@@ -1,4 +1,4 @@
-//! Whether a verdict holds if each of the state's numbers is known to an interval.
+//! Robustness: whether a verdict holds if each number of the state is known only to an interval.
 //!
 //! ```text
 //!     box of states --affine numbers--> G, c, mu --minors--> det A, numerators --signs--> all combinations decided: yes
@@ -25,27 +25,27 @@ use crate::impact::Verdict;
 use crate::law::Mode;
 use crate::state::State;
 
-/// More contacts than this are not tried on a box.
+/// Boxes with more contacts than this are not tried.
 pub const CONTACT_LIMIT: usize = 5;
 
 /// Whether the set of outcomes, as lists of modes, is the same for every state of a box.
 #[derive(Debug, Clone)]
 pub enum Robustness {
-    /// It is, by bounds that include all rounding.
+    /// The set is the same, shown by bounds that include all rounding.
     Everywhere,
-    /// It is not: a state of the box has others.
+    /// The set is not the same: a state of the box has other outcomes.
     Not(Box<Counterexample>),
     /// Neither was shown within the effort spent.
     Unknown,
 }
 
-/// A state of the box whose outcomes differ, as the proven analysis of that very state finds them.
+/// A state of the box whose outcomes differ, as its own proven analysis shows.
 #[derive(Debug, Clone)]
 pub struct Counterexample {
-    /// The state; its contacts are named, so that they are the same whatever their height.
+    /// The state. Its contacts are named, so that they stay contacts at any height.
     pub state: State,
-    /// Its verdict.
+    /// The verdict of that state.
     pub verdict: Verdict,
-    /// Its outcomes' lists of modes.
+    /// The lists of modes of its outcomes.
     pub outcomes: Vec<Vec<Mode>>,
 }

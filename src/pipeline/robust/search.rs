@@ -1,4 +1,4 @@
-//! Halving a box until every combination is decided, or a state is found whose outcomes differ.
+//! Halves a box until every combination is decided or a state with other outcomes is found.
 
 use super::super::{Answer, Pipeline};
 use super::combination::BoxCombination;
@@ -10,17 +10,17 @@ use crate::law::Mode;
 use crate::scalar::{Affine, Ordered, Sign};
 use crate::state::{State, Uncertainty};
 
-/// Boxes times combinations that are tried at most, with up to [`USUAL`] uncertain quantities.
+/// The greatest number of boxes times combinations to try, with up to [`USUAL`] uncertain quantities.
 const EFFORT: usize = 2048;
 
-/// With more uncertain quantities a box costs more, and fewer are tried.
+/// With more uncertain quantities than this, each box costs more, so fewer are tried.
 const USUAL: usize = 16;
 
-/// Corners of the whole box that are tried next to those in which the numbers point.
+/// The number of random corners of the whole box that are tried besides those that the open combinations suggest.
 const RANDOM_CORNERS: usize = 8;
 
 impl Pipeline<'_> {
-    /// Whether the answer to `state` holds on the box of its uncertainty.
+    /// Finds out whether the answer to `state` holds on the box of its uncertainty.
     pub(in crate::pipeline) fn robustness(
         &mut self,
         state: &State,
@@ -48,7 +48,7 @@ impl Pipeline<'_> {
             answer,
             pipeline: self,
         };
-        // Sizes of the affine numbers; what goes beyond the last counts as unrelated errors.
+        // Sizes of the affine numbers. Quantities beyond the last size count as unrelated errors.
         match quantities {
             0 => Robustness::Everywhere,
             1..=16 => search::<16>(&mut kept, whole, &expected),
@@ -58,7 +58,8 @@ impl Pipeline<'_> {
     }
 }
 
-/// Looks for a state of the box whose outcomes are not `expected` (lists of modes, sorted), until none is left.
+/// Looks for a state of the box whose outcomes are not `expected` (lists of modes, sorted), until all boxes are
+/// decided.
 fn search<const N: usize>(kept: &mut KeptContacts<'_, '_>, whole: StateBox, expected: &[Vec<Mode>]) -> Robustness {
     let mut boxes = vec![(whole, kept.combinations())];
     let mut search: BoxSearch<'_, '_, '_, N> =
@@ -70,7 +71,7 @@ fn search<const N: usize>(kept: &mut KeptContacts<'_, '_>, whole: StateBox, expe
             return Robustness::Unknown;
         }
         if !first {
-            // The whole box is examined in any case.
+            // The whole box is examined whatever it costs.
             let Some(rest) = effort.checked_sub(open.len()) else { return Robustness::Unknown };
             effort = rest;
         }
@@ -91,7 +92,7 @@ fn search<const N: usize>(kept: &mut KeptContacts<'_, '_>, whole: StateBox, expe
 struct BoxSearch<'a, 'k, 'r, const N: usize> {
     kept: &'a mut KeptContacts<'k, 'r>,
     expected: &'a [Vec<Mode>],
-    /// Points whose outcomes are as expected.
+    /// Points that were tried without finding other outcomes.
     tried: Vec<Vec<f64>>,
     combination: BoxCombination<Affine<N>>,
     /// Directions in which open combinations of the last box change first.
@@ -99,13 +100,14 @@ struct BoxSearch<'a, 'k, 'r, const N: usize> {
 }
 
 impl<const N: usize> BoxSearch<'_, '_, '_, N> {
-    /// The combinations that are not decided on a box, and the quantity to halve; `None` if nothing is known to matter.
+    /// Returns the undecided combinations of a box, and the quantity to halve; `None` if no quantity is known to
+    /// matter.
     fn examine(&mut self, own: &StateBox, mut open: Vec<Vec<Mode>>) -> (Vec<Vec<Mode>>, Option<usize>) {
         let problem = self.kept.problem::<N>(own);
         let mut influence = vec![0.0; own.ends.len()];
         self.ways.clear();
         open.retain(|modes| {
-            // What the time does not suffice for stays open.
+            // Combinations for which no time is left stay open.
             if is_spent_after(9_u32.pow(modes.len() as u32)) {
                 return true;
             }
@@ -118,15 +120,15 @@ impl<const N: usize> BoxSearch<'_, '_, '_, N> {
             is_open
         });
         if influence.iter().all(|&own| own == 0.0) {
-            // The box is too wide to show anything.
+            // The box is too wide to show any influence.
             influence = own.spreads();
         }
         let most = influence.iter().copied().fold(0.0, f64::max);
         (open, influence.iter().position(|&own| own == most && most > 0.0))
     }
 
-    /// A state of the box whose outcomes are not the expected ones, in its center or a corner; `random` more corners
-    /// are tried than the open combinations point to.
+    /// Returns a state of the box with other than the expected outcomes. Tries the center, the corners that the open
+    /// combinations suggest, and `random` more corners.
     fn counterexample(&mut self, own: &StateBox, random: usize) -> Option<Counterexample> {
         let mut points = vec![own.center()];
         points.extend(self.ways.iter().map(|way| own.corner(way)));
@@ -146,7 +148,7 @@ impl<const N: usize> BoxSearch<'_, '_, '_, N> {
     }
 }
 
-/// Adds to `influence` what the open combination depends on, and to `ways` the directions in which it changes.
+/// Adds the sensitivities of an open combination to `influence`, and the directions in which it changes to `ways`.
 fn weigh_open<const N: usize>(
     combination: &BoxCombination<Affine<N>>,
     valid: bool,
@@ -155,11 +157,11 @@ fn weigh_open<const N: usize>(
 ) {
     let determinant = &combination.determinant;
     let sign = if determinant.to_f64() < 0.0 { -1.0 } else { 1.0 };
-    // How far each inequality is from being decided: 1 on its border, 0 in its middle.
+    // The center of each numerator as a part of its radius: 0 if it is most open, 1 or -1 if it is just decided.
     let slacks = combination.numerators.iter().filter(|(inequality, _)| inequality.is_some());
     let slacks = slacks.map(|(_, number)| (number, sign * number.to_f64() / number.error()));
     let undecided = |number: &Affine<N>| number.sign() == Sign::Undecided;
-    // Nonlinear parts depend above all on what moves det A.
+    // The nonlinear parts depend mainly on the quantities that move det A.
     let moved = determinant.slopes().iter().map(|slope| slope.abs()).sum::<f64>().max(f64::MIN_POSITIVE);
     let mut weigh = |number: &Affine<N>| {
         let radius = number.error();
@@ -173,14 +175,14 @@ fn weigh_open<const N: usize>(
         ways.extend([1.0, -1.0].map(|sign| way(determinant, sign)));
     }
     if valid {
-        // It ends as soon as any of its slacks does.
+        // A valid combination ends when any of its slacks becomes negative.
         for (number, _) in slacks.filter(|(number, _)| undecided(number)) {
             weigh(number);
             ways.push(way(number, -sign));
         }
         return;
     }
-    // It begins once the last of its slacks is no longer violated.
+    // A rejected combination begins when the last of its slacks is no longer violated.
     let mut all = vec![0.0; N];
     let mut worst: Option<(&Affine<N>, f64)> = None;
     for (number, place) in slacks {
@@ -199,7 +201,7 @@ fn weigh_open<const N: usize>(
     }
 }
 
-/// Random signs (SplitMix64: Steele, Lea and Flood 2014).
+/// Returns random signs (SplitMix64: Steele, Lea and Flood 2014).
 fn signs(state: &mut u64, count: usize) -> Vec<f64> {
     let mut bits = || {
         *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);

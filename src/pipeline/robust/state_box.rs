@@ -1,4 +1,4 @@
-//! Boxes of states.
+//! Boxes of states: an interval for each uncertain number.
 
 use crate::dynamics::plan::{Configuration, JointMotion, Plan};
 use crate::law::Friction;
@@ -20,23 +20,23 @@ pub(crate) enum Quantity {
     RotorInertia(usize),
 }
 
-/// A box: an interval for each uncertain number, closed, with f64 ends.
+/// A box: a closed interval with f64 ends for each uncertain number.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct StateBox {
     pub quantities: Vec<Quantity>,
-    /// Least and greatest value of each.
+    /// The least and greatest value of each quantity.
     pub ends: Vec<[f64; 2]>,
-    /// The f64 nearest to both ends of the whole box that lie in it: half-widths are meant exactly, and `ends` cover
+    /// The outermost f64 that lie within the whole box. Half-widths are exact, and `ends` are rounded outward to cover
     /// them.
     inner: Vec<[f64; 2]>,
 }
 
 impl StateBox {
-    /// The whole box of a state whose contacts are on `links`.
+    /// Creates the whole box of a state whose contacts are on `links`.
     pub fn new(robot: &Robot, state: &State, uncertainty: &Uncertainty, links: &[usize]) -> Self {
         let mut whole = Self { quantities: Vec::new(), ends: Vec::new(), inner: Vec::new() };
         let base = robot.base_dofs();
-        // Nothing depends on where the base is, and with a stance its velocity follows from the rest.
+        // The position of a floating base has no effect, and with a stance its velocity follows from the other numbers.
         let placed = robot.base == Base::Floating;
         let follows = placed && state.scene.stance.is_some();
         for coordinate in 0..robot.dofs() {
@@ -56,7 +56,7 @@ impl StateBox {
             }
         }
         for (joint, &width) in uncertainty.rotor_inertia.iter().enumerate() {
-            // A braked joint has no equation of its own for its rotor to enter.
+            // A braked joint has no equation of its own that its rotor could enter.
             if !state.scene.braked.contains(&joint) {
                 let value = state.scene.rotor_inertia.get(joint).copied().unwrap_or(0.0);
                 whole.add(Quantity::RotorInertia(joint), value, width, 0.0);
@@ -75,20 +75,20 @@ impl StateBox {
         }
     }
 
-    /// The middle of the quantity's interval, within it.
+    /// Returns the middle of a quantity's interval, rounded into the interval.
     pub fn middle(&self, index: usize) -> f64 {
         let [low, high] = self.ends[index];
         let [least, greatest] = self.inner[index];
         (low + (high - low) / 2.0).clamp(low, high).max(least).min(greatest)
     }
 
-    /// The middle of every interval.
+    /// Returns the middle of every interval.
     pub fn center(&self) -> Vec<f64> {
         (0..self.ends.len()).map(|index| self.middle(index)).collect()
     }
 
-    /// The corner in `direction`: the greatest value if it is positive, the least if it is negative, the middle if it
-    /// is zero or not given.
+    /// Returns the corner in `direction`: the greatest value where the direction is positive, the least where it is
+    /// negative, the middle where it is zero or missing.
     pub fn corner(&self, direction: &[f64]) -> Vec<f64> {
         let towards = |(index, &[low, high]): (usize, &[f64; 2])| match direction.get(index) {
             Some(&along) if along > 0.0 => high.min(self.inner[index][1]),
@@ -98,7 +98,7 @@ impl StateBox {
         self.ends.iter().enumerate().map(towards).collect()
     }
 
-    /// Both halves along a quantity; `None` if no f64 lies between its ends.
+    /// Returns both halves along a quantity; `None` if no f64 lies between its ends.
     pub fn halves(&self, index: usize) -> Option<[Self; 2]> {
         let (middle, [low, high]) = (self.middle(index), self.ends[index]);
         let half = |ends: [f64; 2]| {
@@ -109,7 +109,7 @@ impl StateBox {
         (low < middle && middle < high).then(|| [half([low, middle]), half([middle, high])])
     }
 
-    /// How wide the positions are; everything else enters linearly and counts zero.
+    /// The widths of the positions; zero for all other quantities, which enter linearly.
     pub fn spreads(&self) -> Vec<f64> {
         let spread = |(quantity, [low, high]): (&Quantity, &[f64; 2])| match quantity {
             Quantity::Position(_) => high - low,
@@ -118,15 +118,15 @@ impl StateBox {
         self.quantities.iter().zip(&self.ends).map(spread).collect()
     }
 
-    /// The quantity's whole interval; `None` if it is certain.
+    /// Returns the index, the middle and the radius of a quantity's interval; `None` if it is certain.
     fn find(&self, quantity: Quantity) -> Option<(usize, f64, f64)> {
         let index = self.quantities.iter().position(|own| *own == quantity)?;
         let (middle, [low, high]) = (self.middle(index), self.ends[index]);
-        // One rounding of each difference.
+        // The factor covers the rounding of each difference.
         Some((index, middle, (high - middle).max(middle - low) * (1.0 + f64::EPSILON)))
     }
 
-    /// The quantity as a number; `certain` is its value if it is not uncertain.
+    /// Returns the quantity as a number; `certain` is its value if it is certain.
     pub fn number<const N: usize>(&self, quantity: Quantity, certain: f64) -> Affine<N> {
         match self.find(quantity) {
             Some((index, middle, radius)) => Affine::varying(middle, radius, index),
@@ -134,7 +134,7 @@ impl StateBox {
         }
     }
 
-    /// Turns and displacements of all positions in the box, by a motion from its middle.
+    /// Returns the rotations and displacements of all positions in the box, as motions from its middle.
     pub fn configuration<const N: usize>(&self, plan: &Plan<Affine<N>>, position: &[f64]) -> Configuration<Affine<N>> {
         let mut middle = position.to_vec();
         for (index, quantity) in self.quantities.iter().enumerate() {
@@ -165,13 +165,13 @@ impl StateBox {
         configuration
     }
 
-    /// All velocities in the box.
+    /// Returns all velocities in the box.
     pub fn velocity<const N: usize>(&self, velocity: &[f64]) -> Vec<Affine<N>> {
         let entries = velocity.iter().enumerate();
         entries.map(|(coordinate, &entry)| self.number(Quantity::Velocity(coordinate), entry)).collect()
     }
 
-    /// The robot with all rotors in the box.
+    /// Returns the robot with all rotor inertias in the box.
     pub fn plan<const N: usize>(&self, robot: &Robot, braked: &[usize], rotor_inertia: &[f64]) -> Plan<Affine<N>> {
         let mut plan = Plan::new(robot, braked, rotor_inertia);
         for (body, own) in plan.bodies.iter_mut().zip(&robot.bodies) {
@@ -189,7 +189,7 @@ impl StateBox {
     }
 }
 
-/// The two f64 around `value` + `shift`, the farther from `value` first; equal if the sum is one itself.
+/// Returns the two f64 around `value` + `shift`, the one farther from `value` first; equal if the sum is an f64.
 fn around(value: f64, shift: f64) -> (f64, f64) {
     let (sum, missing) = two_sum(value, shift);
     let onward = |number: f64| if shift > 0.0 { number.next_up() } else { number.next_down() };
@@ -218,7 +218,7 @@ mod tests {
 
     #[test]
     fn the_box_is_covered_and_its_corners_lie_in_it() {
-        // 1.3229729102424725 + 0.05 is no f64: the nearest lies above it.
+        // 1.3229729102424725 + 0.05 is not an f64: the nearest f64 lies above it.
         let (value, width) = (1.322_972_910_242_472_5, 0.05);
         let (beyond, short) = around(value, width);
         assert_eq!(beyond, short.next_up());
