@@ -9,7 +9,7 @@ use crate::error::{Error, Reason, Result, finite};
 use crate::planar::{Rotation, Vector};
 use crate::scalar::{Real, Trigonometry};
 
-/// What the robot strikes.
+/// The ground that the robot strikes.
 ///
 /// ```
 /// # fn main() -> heelstrike::Result<()> {
@@ -22,9 +22,9 @@ use crate::scalar::{Real, Trigonometry};
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub enum Ground {
-    /// A line through the world's origin by its slope \[rad\], uphill toward +x; level ground is the slope 0.
+    /// A line through the world's origin, given by its slope \[rad\], uphill toward +x; level ground has slope 0.
     Slope(f64),
-    /// Steps, stairs, gaps.
+    /// Segments: steps, stairs, gaps.
     Profile(Profile),
 }
 
@@ -35,8 +35,8 @@ impl Default for Ground {
 }
 
 impl Ground {
-    /// The turn from the world's axes to those of a contact (tangent, normal) that detection found to be `found`, in
-    /// numbers of any kind: that of a slope from its angle, that of a profile by the very f64 numbers.
+    /// Returns the rotation from the world's axes to those of a contact (tangent, normal), in numbers of any kind. For
+    /// a slope it is computed from the angle; for a profile it is exactly the f64 rotation `found` by detection.
     pub fn axes<T: Real + Trigonometry>(&self, found: Rotation<f64>) -> Rotation<T> {
         match self {
             Self::Slope(slope) => {
@@ -48,20 +48,19 @@ impl Ground {
     }
 }
 
-/// A ground of straight segments between points of rising x; what lies below it is solid, what lies beyond its ends is
-/// void.
+/// A ground of straight segments between points of rising x. It is solid below, and there is no ground beyond its ends.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
-    /// At least two, by rising x \[m\].
+    /// At least two points, by rising x \[m\].
     points: Vec<Vector<f64>>,
 }
 
 impl Profile {
-    /// The profile through `points`, `[x, z]` in the world \[m\].
+    /// Creates the profile through `points`, `[x, z]` in the world \[m\].
     ///
     /// # Errors
-    /// [`Reason::Inconsistent`] for fewer than two points, an x that does not rise and points too far apart for f64,
-    /// [`Reason::NotFinite`]; the place is the point's, as in `[3]`.
+    /// Returns [`Reason::Inconsistent`] if there are fewer than two points, x does not rise or points are too far apart
+    /// for f64, and [`Reason::NotFinite`]. The error's place is the point's index, as in `[3]`.
     pub fn new(points: Vec<Vector<f64>>) -> Result<Self> {
         if points.len() < 2 {
             let reason = format!("a profile has at least two points, not {}", points.len());

@@ -1,4 +1,4 @@
-//! One pre-impact state: coordinates, velocities and scene, resolved against a robot.
+//! One pre-impact state: coordinates, velocities and scene, with all names resolved to indices of a robot.
 
 mod ground;
 mod named;
@@ -17,7 +17,7 @@ use crate::error::{Error, Reason, Result};
 use crate::law::Friction;
 use crate::robot::Robot;
 
-/// A state just before the impact; every name in it is resolved to an index of its robot.
+/// A state just before the impact. Every name in it is resolved to an index of its robot.
 ///
 /// ```
 /// # fn main() -> heelstrike::Result<()> {
@@ -36,20 +36,20 @@ use crate::robot::Robot;
 /// ```
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct State {
-    /// What the user calls it: a JSON string or number.
+    /// The user's name for the state: a JSON string or number.
     pub id: Option<serde_json::Value>,
-    /// q = [x, z, pitch, joints...] \[m, rad\]; with a stance x and z are placeholders until the base is placed.
+    /// q = [x, z, pitch, joints...] \[m, rad\]. With a stance, x and z are placeholders until the base is placed.
     pub position: Vec<f64>,
-    /// v = dq/dt \[m/s, rad/s\]; with a stance its x and z are placeholders, too.
+    /// v = dq/dt \[m/s, rad/s\]. With a stance, those of x and z are placeholders, too.
     pub velocity: Vec<f64>,
-    /// Everything else.
+    /// Everything that is not position or velocity.
     pub scene: Scene,
-    /// How far the numbers may be off; `None` if they are exact.
+    /// Half-widths of the uncertain numbers; `None` if all are exact.
     pub uncertainty: Option<Uncertainty>,
 }
 
 impl State {
-    /// The robot at rest, every coordinate zero, on level ground without friction of its own.
+    /// Creates the state of a robot at rest, with every coordinate zero, on level ground without a friction value.
     pub fn zero(robot: &Robot) -> Self {
         Self { position: vec![0.0; robot.dofs()], velocity: vec![0.0; robot.dofs()], ..Self::default() }
     }
@@ -57,13 +57,13 @@ impl State {
     /// Sets a coordinate by its name: x, z or pitch of the base \[m, rad\], or a joint \[rad, m\].
     ///
     /// # Errors
-    /// [`Reason::UnknownName`] for a name that is none of [`Robot::coordinates`], [`Reason::Inconsistent`] for a list
-    /// that is neither empty nor as long as the robot has coordinates.
+    /// Returns [`Reason::UnknownName`] if the name is none of [`Robot::coordinates`], and [`Reason::Inconsistent`] if
+    /// the list is neither empty nor as long as the robot has coordinates.
     pub fn set_position(&mut self, robot: &Robot, name: &str, value: f64) -> Result<()> {
         set(&mut self.position, "position", robot, name, value)
     }
 
-    /// Sets the rate of a coordinate by its name \[m/s, rad/s\], as [`State::set_position`].
+    /// Sets the rate of a coordinate by its name \[m/s, rad/s\], with the errors of [`State::set_position`].
     pub fn set_velocity(&mut self, robot: &Robot, name: &str, value: f64) -> Result<()> {
         set(&mut self.velocity, "velocity", robot, name, value)
     }
@@ -91,22 +91,22 @@ pub(crate) fn check_length(place: &'static str, found: usize, wanted: usize) -> 
     Err(Error::new(reason).at(place).hint("begin with State::zero, which has an entry per coordinate"))
 }
 
-/// Half-widths: each number of the state may be anything within its half-width of what is given. All are finite and not
-/// negative.
+/// Half-widths: each number of the state may be anything within its half-width of the given value. All half-widths are
+/// finite and not negative.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Uncertainty {
-    /// Of q, by coordinate \[m, rad\]. Those of the base's x and z have no effect: an impact depends on neither.
+    /// For q, by coordinate \[m, rad\]. Those of the base's x and z have no effect: an impact depends on neither.
     pub position: Vec<f64>,
-    /// Of v, by coordinate \[m/s, rad/s\]; with a stance those of the base's x and z have no effect.
+    /// For v, by coordinate \[m/s, rad/s\]. With a stance, those of the base's x and z have no effect.
     pub velocity: Vec<f64>,
-    /// Of the friction of each contact's link; it is cut off at zero, and infinite friction is certain.
+    /// For the friction of each contact's link. Friction does not go below zero, and infinite friction is certain.
     pub friction: ByLink<f64>,
-    /// Of the rotor inertia, by joint \[kg m^2\]; it is cut off at zero.
+    /// For the rotor inertia, by joint \[kg m^2\]. It does not go below zero.
     pub rotor_inertia: Vec<f64>,
 }
 
 impl Uncertainty {
-    /// That its box is the state alone, in words.
+    /// Returns a note if all half-widths are zero.
     pub(crate) fn without_width(&self) -> Option<String> {
         let friction = self.friction.default.iter().chain(self.friction.links.values());
         let mut widths = self.position.iter().chain(&self.velocity).chain(&self.rotor_inertia).chain(friction);
@@ -116,7 +116,7 @@ impl Uncertainty {
     }
 }
 
-/// What a state takes from elsewhere if it does not give it itself.
+/// Values for states that do not give their own.
 ///
 /// ```
 /// # fn main() -> heelstrike::Result<()> {
@@ -131,10 +131,10 @@ impl Uncertainty {
 /// ```
 #[derive(Debug, Clone, Default)]
 pub struct Defaults {
-    /// Friction of every link to which the state gives none.
+    /// Friction of every link for which the state gives none.
     pub friction: Option<Friction>,
     /// Whether states without a stance put their lowest foot on the ground ([`Scene::place_lowest`]).
     pub place_lowest: bool,
-    /// Loops of every state that gives none of its own.
+    /// Loops of every state without loops of its own.
     pub loops: Vec<NamedLoop>,
 }

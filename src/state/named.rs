@@ -6,7 +6,7 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::sync::Arc;
 
-/// Values with names, in a fixed order; written as a JSON object. Lists of the same names share them.
+/// Values with names in a fixed order, written as a JSON object. Lists with the same names share their memory.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Named<T = f64> {
     names: Arc<[String]>,
@@ -14,7 +14,7 @@ pub struct Named<T = f64> {
 }
 
 impl<T> Named<T> {
-    /// As many values as names.
+    /// Combines names with the same number of values.
     pub fn new(names: Arc<[String]>, values: Vec<T>) -> Self {
         Self { names, values }
     }
@@ -24,7 +24,7 @@ impl<T> Named<T> {
         &self.values
     }
 
-    /// Each name with its value.
+    /// Iterates over the names with their values.
     pub fn iter(&self) -> impl Iterator<Item = (&str, &T)> {
         self.names.iter().map(String::as_str).zip(&self.values)
     }
@@ -49,7 +49,7 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Named<T> {
     }
 }
 
-/// Keys and values of an object in their order, no key left out that stands twice.
+/// The keys and values of an object in their order. Keys that occur twice are kept twice.
 pub(crate) struct Entries<K, V>(pub Vec<(K, V)>);
 
 impl<'de, K: Deserialize<'de>, V: Deserialize<'de>> Deserialize<'de> for Entries<K, V> {

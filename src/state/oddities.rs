@@ -1,18 +1,18 @@
-//! What is odd about the numbers of a state: joints outside the limits of the robot's file, angles and rates that look like
-//! degrees, speeds, slopes and places that no legged robot has.
+//! Oddities among the numbers of a state: joints outside the limits of the robot's file, angles and rates that look
+//! like degrees, and speeds, slopes and places that no legged robot has.
 
 use super::{Ground, State};
 use crate::robot::{Joint, Robot};
 use std::f64::consts::TAU;
 use std::fmt;
 
-/// Files and recordings round limits and positions by this part of the limits.
+/// Rounding of limits and positions in files and recordings, as a fraction of the limits.
 const ROUNDING: f64 = 1e-6;
 
-/// No legged robot moves faster \[m/s\], and few parts turn faster \[rad/s\].
+/// Greater speeds get a note: no legged robot moves faster \[m/s\], and few parts rotate faster \[rad/s\].
 const FASTEST: f64 = 100.0;
 
-/// A slope beyond this is one of degrees \[rad\].
+/// A slope beyond this was probably meant in degrees \[rad\].
 const STEEP: f64 = 0.8;
 
 /// A joint that is outside its limits by more than rounding.
@@ -20,14 +20,14 @@ const STEEP: f64 = 0.8;
 pub struct OutsideLimits<'r> {
     /// The joint.
     pub joint: &'r Joint,
-    /// Where it is \[rad or m\].
+    /// Its coordinate \[rad or m\].
     pub position: f64,
-    /// Between which values the file has it \[rad or m\].
+    /// The limits in the file \[rad or m\].
     pub limits: [f64; 2],
 }
 
 impl State {
-    /// The joints and mimic joints that are outside the limits of the file of `robot`.
+    /// Finds the joints and mimic joints that are outside the limits of the robot's file.
     pub fn outside_limits<'r>(&self, robot: &'r Robot) -> impl Iterator<Item = OutsideLimits<'r>> {
         let joints = self.position.get(robot.base_dofs()..).unwrap_or_default();
         let own = robot.joints.iter().zip(joints.iter().copied());
@@ -41,15 +41,15 @@ impl State {
             if !beyond(0.0) {
                 return None;
             }
-            // An infinite end is none.
+            // An infinite limit has no rounding.
             let slack =
                 limits.iter().filter(|end| end.is_finite()).fold(0.0, |most: f64, end| most.max(ROUNDING * end.abs()));
             beyond(slack).then_some(OutsideLimits { joint, position, limits })
         })
     }
 
-    /// What is odd about the numbers, in sentences: joints outside their limits, and what looks like degrees or
-    /// millimeters.
+    /// Describes oddities among the numbers in sentences: joints outside their limits, and numbers that look like
+    /// degrees or millimeters.
     pub fn oddities(&self, robot: &Robot) -> Vec<String> {
         let mut odd = Vec::new();
         self.outside_limits(robot).for_each(|outside| odd.push(outside.to_string()));
@@ -64,7 +64,7 @@ impl State {
         odd
     }
 
-    /// The rates that no robot has, but those of wheels without limits.
+    /// Describes rates that no robot has, except those of wheels, whose joints have no limits.
     fn fast(&self, robot: &Robot) -> impl Iterator<Item = String> {
         let base = robot.base_dofs();
         let rates = self.velocity.iter().copied().take(robot.dofs()).enumerate();
@@ -79,7 +79,7 @@ impl State {
         })
     }
 
-    /// That the ground is steeper than a legged robot stands on.
+    /// Notes that the ground is steeper than a legged robot can stand on.
     fn steep(&self) -> Option<String> {
         let Ground::Slope(slope) = self.scene.ground else { return None };
         (slope.abs() > STEEP).then(|| {
@@ -88,8 +88,8 @@ impl State {
         })
     }
 
-    /// The pitch and the joints without limits that are more than a turn, as degrees are: name and angle \[rad\]. Wheels,
-    /// which carry no other joint, do turn so far: of these the whole numbers, as degrees written by hand are.
+    /// Finds the pitch and the joints without limits whose angle exceeds a turn, as degrees do: name and angle \[rad\].
+    /// Wheels, which carry no other joint, do turn so far: for them only whole numbers count, as in degrees by hand.
     fn like_degrees<'r>(&self, robot: &'r Robot) -> impl Iterator<Item = (&'r str, f64)> {
         let base = robot.base_dofs();
         let is_free_angle = move |at: usize| match at.checked_sub(base) {
@@ -104,7 +104,7 @@ impl State {
     }
 }
 
-/// Whether nothing else moves with what a coordinate turns.
+/// Returns whether the body that a coordinate rotates carries no other joint.
 fn is_wheel(robot: &Robot, at: usize) -> bool {
     let mut joints = robot.joints.iter().chain(robot.mimic_joints.iter().map(|mimic| &mimic.joint));
     match at.checked_sub(robot.base_dofs()) {

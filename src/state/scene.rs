@@ -1,4 +1,4 @@
-//! What surrounds the robot: ground, friction, restitution, braked joints, loops, applied impulses, gravity, torques.
+//! The surroundings of the robot: ground, friction, restitution, braked joints, loops, impulses, gravity, torques.
 
 use super::ground::Ground;
 use crate::error::{Error, Reason, Result};
@@ -8,7 +8,7 @@ use crate::robot::{LONGEST, Robot};
 use crate::scalar::Real;
 use std::collections::BTreeMap;
 
-/// Everything about a state that is not position or velocity; indices are those of the [`Robot`].
+/// Everything about a state that is not position or velocity. Indices are those of the [`Robot`].
 ///
 /// ```
 /// # fn main() -> heelstrike::Result<()> {
@@ -23,33 +23,33 @@ use std::collections::BTreeMap;
 /// ```
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Scene {
-    /// What the robot strikes.
+    /// The ground that the robot strikes.
     pub ground: Ground,
-    /// Friction of each contact's link; none if neither the state nor its [`Defaults`](super::Defaults) give any.
+    /// Friction of each contact's link; empty if neither the state nor its [`Defaults`](super::Defaults) give any.
     pub friction: ByLink<Friction>,
     /// Newton restitution of each contact's link, 0 to 1; 0 if none is given.
     pub restitution: ByLink<f64>,
-    /// The link whose lowest point is placed on the ground at x = 0 and is at rest.
+    /// The link whose lowest point is placed on the ground at x = 0 and at rest.
     pub stance: Option<usize>,
-    /// Whether the base is moved along z such that the lowest foot, or the lowest named contact, is on the ground; it
-    /// moves as it does.
+    /// Whether the base is moved along z so that the lowest foot, or the lowest named contact, is on the ground. The
+    /// velocity stays as given.
     pub place_lowest: bool,
-    /// Joints that keep their velocity through the impact.
+    /// Joints that keep their velocity through one impact.
     pub braked: Vec<usize>,
-    /// Rotor inertia at each joint and then at each mimic joint \[kg m^2\]; empty for none. It is added to the mass
-    /// matrix's diagonal, that of a mimic joint times multiplier^2.
+    /// Rotor inertia of each joint and then of each mimic joint \[kg m^2\]; empty for none. It is added to the diagonal
+    /// of the mass matrix, for a mimic joint times multiplier^2.
     pub rotor_inertia: Vec<f64>,
-    /// Contacts named by hand; `None` if they are detected.
+    /// The contacts that the state names; `None` if contacts are detected.
     pub contacts: Option<Vec<NamedContact>>,
-    /// Pairs of points that stay together.
+    /// Pairs of points that stay together (closed loops).
     pub loops: Vec<NamedLoop>,
     /// Impulses applied at the instant of the impact.
     pub impulses: Vec<AppliedImpulse>,
-    /// Gravity along -z of the world \[m/s^2\], of forces alone; [`Scene::GRAVITY`] if none is given.
+    /// Gravity along -z of the world \[m/s^2\], used by forces only; `None` stands for [`Scene::GRAVITY`].
     pub gravity: Option<f64>,
-    /// Torque, or of a slide force, of each joint, of forces alone \[N m, N\]; empty for none.
+    /// Torque (or force of a prismatic joint) of each joint, used by forces only \[N m, N\]; empty for none.
     pub torque: Vec<f64>,
-    /// Virtual springs and dampers, which further torques of the joints imitate; of forces alone.
+    /// Virtual springs and dampers, which are imitated by additional joint torques; used by forces only.
     pub springs: Vec<VirtualSpring>,
 }
 
@@ -62,7 +62,7 @@ impl Scene {
         self.gravity.unwrap_or(Self::GRAVITY)
     }
 
-    /// Whether friction that is `given` for all states is not that of every link.
+    /// Returns whether some link's friction is not the one that is `given` for all states.
     pub fn has_own_friction(&self, given: Option<Friction>) -> bool {
         let ByLink { default, links } = &self.friction;
         given.is_some() && (*default != given || links.values().any(|own| Some(*own) != given))
@@ -104,19 +104,19 @@ pub struct ByLink<T> {
     pub links: BTreeMap<usize, T>,
 }
 
-/// A contact point of a link that the user names.
+/// A contact point that the user names on a link.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NamedContact {
     /// The link, by index.
     pub link: usize,
-    /// Point (or center of the circle) in the link's 3-D frame \[m\].
+    /// The point, or the center of the circle, in the link's 3-D frame \[m\].
     pub offset: [f64; 3],
-    /// Radius of the circle against the ground's normal \[m\]; 0 for a point.
+    /// Radius of the circle \[m\]; 0 for a point.
     pub radius: f64,
 }
 
 impl NamedContact {
-    /// That it is farther from its link than any part of a legged robot, in words.
+    /// Returns a note if the contact is farther from its link than any part of a legged robot.
     pub fn out_of_scale(&self, robot: &Robot) -> Option<String> {
         let link = robot.links.get(self.link).map_or("", |link| &link.name);
         let far = self.offset.iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
@@ -132,7 +132,7 @@ impl NamedContact {
     }
 }
 
-/// Two points of links that stay together, as the pin does that a URDF, being a tree, cannot hold.
+/// Two points of links that stay together, like a pin that URDF cannot describe because it is a tree.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NamedLoop {
     /// The point on which the loop's impulse acts.
@@ -141,7 +141,7 @@ pub struct NamedLoop {
     pub b: LinkPoint,
 }
 
-/// A point of a link, in its 3-D frame \[m\].
+/// A point of a link in its 3-D frame \[m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LinkPoint {
     /// The link, by index.
@@ -150,14 +150,14 @@ pub struct LinkPoint {
     pub offset: [f64; 3],
 }
 
-/// A virtual spring and damper between two points: the joints give what it asks of them, as far as they can.
+/// A virtual spring and damper between two points. The joints supply its force as far as they can.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VirtualSpring {
     /// The point on which the spring's force acts.
     pub a: LinkPoint,
     /// The point on which the opposite force acts.
     pub b: SpringEnd,
-    /// Along x and along z of the world \[N, m\], and about the normal with the links' pitches \[N m, rad\].
+    /// Along x and along z of the world \[N, m\], and about the plane's normal, for the links' pitches \[N m, rad\].
     pub laws: [SpringLaw; 3],
 }
 
@@ -173,18 +173,18 @@ pub enum SpringEnd {
 /// The force of a virtual spring along one axis: constant + stiffness (target - distance) - damping rate.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct SpringLaw {
-    /// \[N/m\], \[N m/rad\] of a pitch.
+    /// \[N/m\], or \[N m/rad\] about the normal.
     pub stiffness: f64,
-    /// \[N s/m, N m s/rad\].
+    /// \[N s/m\], or \[N m s/rad\] about the normal.
     pub damping: f64,
     /// The distance of a from b at which the spring is slack \[m, rad\].
     pub target: f64,
-    /// What acts in addition \[N, N m\].
+    /// Additional force \[N\] or moment \[N m\].
     pub constant: f64,
 }
 
 impl SpringLaw {
-    /// The force on a whose `distance` from b changes at `rate`.
+    /// Returns the force on a; its `distance` from b changes at `rate`.
     pub fn force<T: Real>(&self, distance: T, rate: T) -> T {
         let [stiffness, damping, target, constant] =
             [self.stiffness, self.damping, self.target, self.constant].map(T::from_f64);
@@ -192,7 +192,7 @@ impl SpringLaw {
     }
 }
 
-/// An impulse that acts on a point of a link, in its 3-D frame \[m\], while the robot strikes the ground.
+/// An impulse on a point of a link during the impact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AppliedImpulse {
     /// The link, by index.
@@ -210,12 +210,12 @@ impl<T> Default for ByLink<T> {
 }
 
 impl<T: Copy> ByLink<T> {
-    /// The same value for every link.
+    /// Gives every link the same value.
     pub fn everywhere(value: T) -> Self {
         Self { default: Some(value), links: BTreeMap::new() }
     }
 
-    /// The value of a link; `None` if it has none and there is no default.
+    /// Returns the value of a link; `None` if it has none and there is no default.
     pub fn of(&self, link: usize) -> Option<T> {
         self.links.get(&link).copied().or(self.default)
     }
