@@ -6,58 +6,58 @@ use crate::{Error, Reason, Result};
 use memchr::{memchr, memchr_iter};
 use std::io::{BufRead, BufReader, ErrorKind, Read};
 
-/// How many bytes are requested from the input at once.
+/// Bytes per read from the input.
 const READ: usize = 1 << 16;
 
-/// How many records make a task at most: few, so that the threads share short inputs.
+/// Records per task, at most: few, so that the threads share short inputs.
 const RECORDS: usize = 16;
 
 /// Longer records are skipped and refused \[bytes\].
 pub const RECORD_LIMIT: usize = 1 << 24;
 
-/// Some consecutive whole records.
+/// Consecutive whole records.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Chunk {
     bytes: Vec<u8>,
-    /// On which line each record begins and where it ends in the bytes.
+    /// For each record, its first line and the end of its bytes.
     ends: Vec<(usize, usize)>,
-    /// The line of a following record that was skipped because it is longer than [`RECORD_LIMIT`].
+    /// The line of a record behind these that was skipped because it is longer than [`RECORD_LIMIT`].
     pub too_long: Option<usize>,
 }
 
-/// Cuts an input into chunks, and never waits for more input while it has a whole record.
+/// Cuts an input into chunks. It never waits for more input while a whole record is buffered.
 ///
-/// A line of a table whose quote is not closed, is closed only before text, or has whole rows before its end is a
-/// record of its own: the lines behind it are read again.
+/// A line of a table is a record of its own if its quote is not closed, is closed only before text, or would enclose
+/// whole rows. The lines behind it are then read again.
 #[derive(Debug)]
 pub struct Chunks<R> {
     input: BufReader<R>,
-    /// Lines that were read and are read again, and how many of these bytes already were.
+    /// Bytes that are read a second time, and the number of these that were consumed already.
     again: (Vec<u8>, usize),
-    /// Where a line break may stand within a record.
+    /// The state of the quotes, which may enclose line breaks; `None` for lines of JSON.
     quotes: Option<Quotes>,
-    /// How many columns the table has, if that is known.
+    /// The number of columns, if it is known.
     columns: Option<usize>,
-    /// Before this line an open quote is known to find no end.
+    /// No quote that is open at the end of a line before this line is closed correctly.
     hopeless: usize,
     line: usize,
-    /// Nothing was read yet.
+    /// Whether nothing was read yet.
     fresh: bool,
 }
 
 impl<R: Read + Send> Chunks<R> {
-    /// An input with one record per line.
+    /// Reads an input with one record per line.
     pub fn of_lines(input: R) -> Self {
         let input = BufReader::with_capacity(READ, input);
         Self { input, again: (Vec::new(), 0), quotes: None, columns: None, hopeless: 0, line: 1, fresh: true }
     }
 
-    /// An input as a table of this form.
+    /// Reads an input as a table of this form.
     pub fn of_table(input: R, form: Form) -> Self {
         Self { quotes: (form != Form::Ndjson).then(|| form.quotes()), ..Self::of_lines(input) }
     }
 
-    /// Says how many columns the table has, so that a quote around several rows is seen.
+    /// Sets the number of columns, so that a quote around several rows is detected.
     pub fn expect_columns(&mut self, columns: usize) {
         self.columns = Some(columns);
     }
@@ -67,10 +67,10 @@ impl<R: Read + Send> Chunks<R> {
         refuse_foreign(self.fill()?)
     }
 
-    /// The first record that is not blank, with the line on which it begins, from 1; `None` if there is none.
+    /// Returns the first record that is not blank and the line on which it begins, from 1; `None` if there is none.
     ///
     /// # Errors
-    /// A record longer than [`RECORD_LIMIT`], and those of reading.
+    /// Returns an error if a record is longer than [`RECORD_LIMIT`] or reading fails.
     pub fn first(&mut self) -> Result<Option<(usize, Vec<u8>)>> {
         while let Some(chunk) = self.record()? {
             if let Some(line) = chunk.too_long {
@@ -84,7 +84,7 @@ impl<R: Read + Send> Chunks<R> {
         Ok(None)
     }
 
-    /// What `decide` says of the first line of which it says something, and the line's number; all lines are read again.
+    /// Returns the first line for which `decide` returns something: its number and that. All lines are read again.
     pub fn peek<T>(&mut self, decide: impl Fn(&[u8]) -> Option<T>) -> Result<Option<(usize, T)>> {
         let (mut seen, mut start, mut line) = (Vec::new(), 0, self.line);
         let decided = loop {
@@ -109,7 +109,7 @@ impl<R: Read + Send> Chunks<R> {
         Ok(decided)
     }
 
-    /// Whether nothing but blank lines is left.
+    /// Returns whether only blank lines are left.
     pub fn is_empty(&mut self) -> Result<bool> {
         let quotes = self.quotes.unwrap_or(Form::Ndjson.quotes());
         loop {
@@ -123,20 +123,20 @@ impl<R: Read + Send> Chunks<R> {
         }
     }
 
-    /// The next record alone; `None` at the end of the input.
+    /// Returns the next record alone; `None` at the end of the input.
     pub fn record(&mut self) -> Result<Option<Chunk>> {
         self.records(1)
     }
 
-    /// The next records, as many as a thread answers at once; `None` at the end of the input.
+    /// Returns the next records, as many as one task holds; `None` at the end of the input.
     ///
     /// # Errors
-    /// Those of reading.
+    /// Returns an error if reading fails.
     pub fn task(&mut self) -> Result<Option<Chunk>> {
         self.records(RECORDS)
     }
 
-    /// Drops the next `count` records that are not blank.
+    /// Skips the next `count` records that are not blank.
     pub fn skip(&mut self, mut count: usize) -> Result<()> {
         while count > 0 {
             let Some(chunk) = self.record()? else { break };
@@ -146,13 +146,13 @@ impl<R: Read + Send> Chunks<R> {
         Ok(())
     }
 
-    /// Whether a record has no answer.
+    /// Returns whether a record is blank, so that it has no answer.
     fn is_blank(&self, record: &[u8]) -> bool {
         let quotes = self.quotes.unwrap_or(Form::Ndjson.quotes());
         record.iter().all(|&byte| quotes.is_blank(byte))
     }
 
-    /// Takes up to `most` lines of those that are whole in the buffer, in one piece.
+    /// Takes up to `most` of the whole lines in the buffer, with one copy.
     fn take_lines(&mut self, most: usize, chunk: &mut Chunk) -> Result<()> {
         let line = self.line;
         let ready = self.fill()?;
@@ -165,13 +165,13 @@ impl<R: Read + Send> Chunks<R> {
         Ok(())
     }
 
-    /// Whether no whole line is buffered.
+    /// Returns whether no whole line is buffered.
     pub fn keeps_waiting(&self) -> bool {
         let again = &self.again.0[self.again.1..];
         memchr(b'\n', again).is_none() && memchr(b'\n', self.input.buffer()).is_none()
     }
 
-    /// Up to `most` records, fewer if the input would have to be waited for.
+    /// Returns up to `most` records, or fewer if the next one would have to be waited for.
     fn records(&mut self, most: usize) -> Result<Option<Chunk>> {
         let mut chunk = Chunk::default();
         if self.quotes.is_none() {
@@ -180,7 +180,7 @@ impl<R: Read + Send> Chunks<R> {
                 return Ok(Some(chunk));
             }
         }
-        // Where the current record and its last line begin, the record's first line and its length so far.
+        // The starts of the current record and of its last line, the record's first line, and its length so far.
         let (mut start, mut line_start, mut first, mut length) = (0, 0, self.line, 0);
         loop {
             let ready = self.fill()?;
@@ -227,14 +227,14 @@ impl<R: Read + Send> Chunks<R> {
         }
     }
 
-    /// Whether the quotes of a record of several lines hold other rows.
+    /// Returns whether the quotes of a record of several lines enclose other rows.
     fn swallows_rows(&self, record: &[u8]) -> bool {
         self.quotes.zip(self.columns).is_some_and(|(quotes, columns)| quotes.swallow_rows(record, columns))
     }
 
-    /// Ends the record that begins at `start` on line `first` behind that line; the lines behind it are read again.
-    /// Before line `hopeless` no quote that is open at the end of a line is closed as it should be, so none of these
-    /// lines is read a third time.
+    /// Ends the record that begins at `start` on line `first` after that line. The lines behind it are read again. No
+    /// quote that is open at the end of a line before line `hopeless` is closed correctly, so no line is read a third
+    /// time.
     fn end_with_line(&mut self, chunk: &mut Chunk, (start, first): (usize, usize), hopeless: usize) {
         self.hopeless = self.hopeless.max(hopeless);
         self.quotes = self.quotes.map(Quotes::fresh);
@@ -248,7 +248,7 @@ impl<R: Read + Send> Chunks<R> {
         }
     }
 
-    /// Drops the first bytes of [`Self::fill`].
+    /// Removes the first bytes of [`Self::fill`].
     fn consume(&mut self, count: usize) {
         match self.again.1 < self.again.0.len() {
             true => self.again.1 += count,
@@ -256,7 +256,7 @@ impl<R: Read + Send> Chunks<R> {
         }
     }
 
-    /// The buffered bytes, at least one unless the input has ended; without a byte order mark.
+    /// Returns the buffered bytes without a byte order mark: at least one, unless the input has ended.
     fn fill(&mut self) -> Result<&[u8]> {
         if self.again.1 < self.again.0.len() {
             return Ok(&self.again.0[self.again.1..]);
@@ -280,14 +280,14 @@ impl<R: Read + Send> Chunks<R> {
     }
 }
 
-/// The refusal of a record longer than [`RECORD_LIMIT`].
+/// The error for a record longer than [`RECORD_LIMIT`].
 pub(super) fn too_long() -> Error {
     let reason = Reason::Unsupported(format!("the record is longer than {} MiB", RECORD_LIMIT >> 20));
     Error::new(reason).hint("is a line break or a closing quote missing?")
 }
 
 impl Chunk {
-    /// The records with the line breaks that end them, each with the line on which it begins, from 1.
+    /// Iterates over the records, with their line breaks and the lines on which they begin, from 1.
     pub fn records(&self) -> impl Iterator<Item = (usize, &[u8])> {
         let starts = std::iter::once(0).chain(self.ends.iter().map(|&(_, end)| end));
         starts.zip(&self.ends).map(|(start, &(line, end))| (line, &self.bytes[start..end]))
@@ -298,7 +298,7 @@ impl Chunk {
 mod tests {
     use super::*;
 
-    /// Gives one part after the other.
+    /// A reader that returns one part per call.
     struct Parts<'p>(Vec<&'p [u8]>);
 
     impl Read for Parts<'_> {
@@ -307,7 +307,7 @@ mod tests {
         }
     }
 
-    /// The records of each chunk with their lines.
+    /// The records of each chunk, with their lines.
     fn chunks(mut chunks: Chunks<impl Read + Send>) -> Vec<String> {
         let chunks = std::iter::from_fn(|| chunks.task().unwrap());
         let shown = |(line, record): (usize, &[u8])| format!("{line}:{}", record.escape_ascii());
@@ -329,7 +329,7 @@ mod tests {
     #[test]
     fn a_line_whose_quote_stays_open_swallows_no_other() {
         for (text, expected) in [
-            // Never closed, and closed before text.
+            // A quote that is never closed, and one that is closed before text.
             ("a\n\"b\nc\nd", "1:a 2:\"b 3:c 4:d"),
             ("\"a\nb\nc\"d\ne\n", "1:\"a 2:b 3:c\"d 4:e"),
             ("x,\"a\nb\nx,\"c\nd\n", "1:x,\"a 2:b 3:x,\"c 4:d"),
@@ -350,7 +350,7 @@ mod tests {
 
     #[test]
     fn each_line_is_read_twice_at_most() {
-        // Read from its beginning each line opens a quote; read in quotes, none of them is closed before text.
+        // On its own, each line opens a quote; inside quotes, none of these quotes is closed before text.
         let line = "a\",\"b\n";
         let count = RECORD_LIMIT / line.len() + 100_000;
         let text = line.repeat(count);

@@ -1,11 +1,11 @@
-//! Answers many states: one line or row each.
+//! Answers many states, one per line or row.
 //!
 //! ```text
 //!     lines, CSV --[chunk]--> chunks of records --[run]--> Batch, one per thread --> blocks of answers, in order
 //!                                                            └──[summary]--> Summary of all
 //! ```
 //!
-//! Nothing here opens a file; only `run` starts threads, if asked to.
+//! This module opens no file. Only `run` starts threads, and only on request.
 
 mod summary;
 mod run;
@@ -36,18 +36,18 @@ use crate::write::{self, Columns, Detail, Refused, Report, Touchdown, short_id};
 use crate::{Error, Reason, Result, Robot};
 use serde_json::Value;
 
-/// What is computed for every state of a batch, and in which form it is written.
+/// The question to all states of a batch, and the form of its answers.
 #[derive(Debug, Clone)]
 pub struct Question<'r> {
     /// The robot of all states.
     pub robot: &'r Robot,
-    /// How contacts are found and what is computed; the summary counts the friction needed if it is.
+    /// Settings of the pipeline. The summary counts the friction needed if it is computed.
     pub options: Options,
-    /// What states take that do not state it.
+    /// Values for states that do not give their own.
     pub defaults: Defaults,
-    /// What records contain.
+    /// The contents of a result.
     pub detail: Detail,
-    /// How much time the states that end beyond their budget may take; `None` for no limit.
+    /// The total time of the states that exceed their own budget; `None` for no limit.
     pub total: Option<TotalBudget>,
     /// The columns of the input table; `None` for lines of JSON.
     pub header: Option<&'r Header>,
@@ -57,16 +57,16 @@ pub struct Question<'r> {
     pub keyframes: bool,
 }
 
-/// At most so much memory is taken for the answers to a chunk before they are known \[bytes\].
+/// Limit of the memory that is reserved for the answers to a chunk \[bytes\].
 const ROOM: usize = 1 << 20;
 
-/// Answers records, with memory that it reuses.
+/// Answers records, in reused memory.
 pub struct Batch<'q> {
     reader: Reader<'q>,
     answerer: Answerer<'q>,
     /// The state of the last row.
     state: State,
-    /// The most that a chunk of records has led to so far \[bytes\].
+    /// The size of the largest answers to a chunk so far, up to [`ROOM`] \[bytes\].
     most: usize,
 }
 
@@ -82,16 +82,16 @@ enum Reader<'q> {
     Rows(Rows<'q>),
 }
 
-/// The context of a state in its input.
+/// The place of a state in its input.
 #[derive(Debug, Clone, Copy, Default)]
 struct Around<'a> {
-    /// On which the state begins.
+    /// The line on which the state begins.
     line: usize,
-    /// Empty if an excerpt was kept in its place.
+    /// The record; empty if an excerpt was kept instead.
     record: &'a [u8],
     excerpt: Option<&'a Excerpt>,
     carried: Option<&'a Carried>,
-    /// Of a sample \[s\].
+    /// The time of a sample \[s\].
     time: Option<f64>,
     landing: Option<&'a Landing>,
 }
@@ -107,9 +107,9 @@ impl Around<'_> {
 }
 
 impl<'q> Batch<'q> {
-    /// With memory that grows with the first records.
+    /// Creates a batch whose memory grows with the first records.
     pub fn new(question: &'q Question<'q>) -> Self {
-        // Keyframes show all.
+        // Keyframes need what a brief result omits.
         let brief = question.detail.brief && !question.keyframes;
         let options = Options { brief, ..question.options.clone() };
         let pipeline = Pipeline::new(question.robot, options);
@@ -119,7 +119,7 @@ impl<'q> Batch<'q> {
         Self { reader, answerer: Answerer { question, pipeline }, state, most: 0 }
     }
 
-    /// Answers records that do not depend on each other.
+    /// Answers records that are independent of each other.
     pub fn records(&mut self, chunk: &Chunk) -> Block {
         let Self { reader, answerer, state, most } = self;
         let mut block = Block { out: Vec::with_capacity(*most), ..answerer.block(chunk.records().count()) };
@@ -141,7 +141,7 @@ impl<'q> Batch<'q> {
         block
     }
 
-    /// Answers rows of columns with types.
+    /// Answers the rows of a part of a table with typed columns.
     #[cfg(feature = "columnar")]
     pub fn part(&mut self, part: &Part) -> Block {
         let Self { answerer, state, .. } = self;
@@ -152,7 +152,7 @@ impl<'q> Batch<'q> {
         block
     }
 
-    /// Answers samples of a recording.
+    /// Answers the samples of a recording.
     pub fn samples(&mut self, samples: Vec<Sampled<RowOrigin>>) -> Block {
         let mut block = self.answerer.block(samples.len());
         for sampled in samples {
@@ -170,16 +170,16 @@ impl<'q> Batch<'q> {
 }
 
 impl Answerer<'_> {
-    /// Answers a line of JSON; a blank one has no answer.
+    /// Answers a line of JSON, unless it is blank.
     fn line(&mut self, lines: &mut StateLines, around: Around<'_>, block: &mut Block) {
-        // Without its line break: an error at the end of a truncated line would be on the next line.
+        // The line break is removed so that an error at the end of a truncated line is not located on the next line.
         let record = around.record.trim_ascii_end();
         if record.is_empty() {
             return;
         }
         let state = lines.read(record).map_err(|error| {
             let error = with_remedy(error, record);
-            // Its place is that in the line alone.
+            // The error's location counts within the line alone.
             match error.location() {
                 Some(Location { column, .. }) => error.on(around.line, column),
                 None => error,
@@ -188,7 +188,7 @@ impl Answerer<'_> {
         self.answer(state, || utf8(record).ok().and_then(State::id_in), Around { record, ..around }, block);
     }
 
-    /// No answer yet of so many records.
+    /// An empty block for the answers to this number of records.
     fn block(&self, #[cfg_attr(not(feature = "columnar"), expect(unused_variables))] records: usize) -> Block {
         Block {
             #[cfg(feature = "columnar")]
@@ -216,7 +216,7 @@ impl Answerer<'_> {
         }
     }
 
-    /// Answers a state, or refuses it under the id that `unread` finds.
+    /// Answers a state, or refuses it with the id that `unread` returns.
     fn answer(
         &mut self,
         state: Result<&State>,
@@ -242,7 +242,7 @@ impl Answerer<'_> {
             Some(total) => total.within(|| self.pipeline.answer(state)),
             None => self.pipeline.answer(state),
         };
-        // By reference: it is large.
+        // The error is only borrowed, because it is large.
         let impact = answer.as_ref().map_err(|error| match error.reason() {
             Reason::Missing(_) if header.is_some() && error.place() == Some("friction") => {
                 error.clone().hint("add a column friction, or give `friction: 0.8` (or infinite)")
@@ -276,9 +276,9 @@ impl Answerer<'_> {
         block.summary.deep += u64::from(around.landing.is_some_and(|landing| landing.is_deep));
         let place = || StateRef { id: state.id.clone().map(short_id), line: around.line };
         if !impact.notes.is_empty() {
-            // They are noted first.
+            // Notes on odd numbers come first in the list.
             let odd = state.oddities(robot);
-            // That nothing touches, the verdict says.
+            // The verdict already tells that nothing touches.
             let mut others = impact.notes.iter().skip(odd.len()).filter(|_| !impact.contacts.is_empty());
             let other = others.find(|note| !note.contains(AT_REST)).cloned();
             let of = |what| OddStates { states: 1, first: Some(Oddity { state: place(), what }) };
@@ -295,7 +295,7 @@ impl Answerer<'_> {
                     u64::from(around.landing.is_some() && analysis.verdict == crate::impact::Verdict::NoImpact);
                 block.summary.count(place, impact, analysis);
             }
-            // The result contains it next to the matrices.
+            // The result contains this error next to the matrices.
             Err(error) => block.refuse(error, around),
         }
         answer.map(|impact| self.pipeline.recycle(impact))
@@ -326,7 +326,7 @@ impl Answerer<'_> {
     }
 }
 
-/// The error with a hint for a line of a table, or a line of JSON that holds no state or several.
+/// Adds a hint to the error if the line is one of a table, or holds no whole state or several.
 fn with_remedy(error: Error, record: &[u8]) -> Error {
     if record.trim_ascii_start().starts_with(b"[") {
         return error.hint("each line must hold one state; `jq -c '.[]'` takes a list apart");
@@ -338,14 +338,14 @@ fn with_remedy(error: Error, record: &[u8]) -> Error {
     if reason == "trailing characters" {
         return error.hint("a line holds one state and nothing after it");
     }
-    // The names of a table's columns.
+    // Column names of a table.
     let column = |name: &[u8]| [&b"q_"[..], b"v_"].iter().any(|prefix| name.starts_with(prefix));
     let header = record.split(|&byte| byte == b',').any(column);
     if header { error.hint("is this a table? then say `input_format: csv`") } else { error }
 }
 
 impl Block {
-    /// Counts and keeps a refusal.
+    /// Counts and stores a refusal.
     fn refuse(&mut self, error: Error, around: Around<'_>) {
         self.summary.states += 1;
         self.summary.refused += 1;

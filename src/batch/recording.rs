@@ -1,5 +1,5 @@
 //! Tables whose rows depend on each other: they are read in order, and the resulting states are answered like any
-//! other.
+//! others.
 
 use super::chunk::{Chunks, too_long};
 use crate::error::excerpt::Excerpt;
@@ -13,24 +13,24 @@ use serde_json::Value;
 use std::io::Read;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-/// How many states make a task at most.
+/// States per task, at most.
 const STATES: usize = 16;
 
-/// The row that a state comes from; for a touchdown the last one before it.
+/// The row from which a state comes; for a touchdown the last row before it.
 #[derive(Debug, Clone, Default)]
 pub struct RowOrigin {
-    /// Its line, from 1.
+    /// The line of the row, from 1.
     pub line: usize,
-    /// The id of its state.
+    /// The id of the row's state.
     pub id: Option<Value>,
-    /// The fields to copy to the result.
+    /// The fields that are copied to the result.
     pub carried: Option<Carried>,
-    /// The line, if it is refused.
+    /// The shortened line, if the row is refused.
     pub excerpt: Option<Excerpt>,
 }
 
-/// The rows of a table with their times. If reading fails, the last sample is refused with [`Reason::Io`]. `pauses` becomes
-/// whether the next row may take long to arrive.
+/// Reads the rows of a table as samples. If reading fails, the last sample is refused with [`Reason::Io`]. Sets
+/// `pauses` to whether the next row may take long to arrive.
 pub(super) fn samples<'h, R: Read + Send>(
     mut chunks: Chunks<R>,
     header: &'h Header,
@@ -64,7 +64,7 @@ pub(super) fn samples<'h, R: Read + Send>(
     })
 }
 
-/// The same of columns with types.
+/// Reads the rows of a table with typed columns as samples.
 #[cfg(feature = "columnar")]
 pub(super) fn samples_of_parts<'h>(
     mut parts: Parts,
@@ -78,7 +78,7 @@ pub(super) fn samples_of_parts<'h>(
     })
 }
 
-/// A row with its time.
+/// Reads a row and its time.
 fn sample(row: Result<Row>, robot: &Robot, defaults: &Defaults) -> Sampled<RowOrigin> {
     let row = row.map_err(|error| (RowOrigin::default(), error))?;
     let source = RowOrigin { line: row.line(), id: row.id(), carried: row.carried(), excerpt: None };
@@ -89,9 +89,9 @@ fn sample(row: Result<Row>, robot: &Robot, defaults: &Defaults) -> Sampled<RowOr
     }
 }
 
-/// Gives the states of a recording, as many at once as a thread answers, and `None` at the end. The samples are of rows of
-/// which [`States::samples`](super::States::samples) says by `pauses` whether the next one may take long to arrive; why they
-/// ended early is reported after what came before.
+/// Groups the states of a recording into tasks; the result returns `None` at the end. A task ends early if `pauses`,
+/// which [`States::samples`](super::States::samples) sets, says that the next row may take long. An error that ends the
+/// samples early is returned after all states before it.
 pub fn recorded(
     mut samples: impl Iterator<Item = Sampled<RowOrigin>> + Send,
     pauses: &AtomicBool,

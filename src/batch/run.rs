@@ -5,9 +5,9 @@
 //! ```
 //!
 //! Each thread takes a task from the source, answers it, and puts the block into the buffer. If all blocks before it
-//! were handed on, and no other thread does so, it hands on what is ready. So no thread waits for another unless
-//! the buffer is full or the source busy, and none has to be woken for a block. No answer depends on another: the bytes
-//! are those of one thread.
+//! were passed on and no other thread is doing so, it passes on all blocks that are ready. A thread therefore waits
+//! only if the buffer is full or the source is busy, and no thread has to be woken for a block. No answer depends on
+//! another: the bytes are those of one thread.
 
 use super::Summary;
 use crate::draw::ListedKeyframe;
@@ -20,7 +20,7 @@ use std::mem;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, Builder};
 
-/// How many blocks per thread the buffer usually holds: while one thread takes long for a task, the others answer as many.
+/// Blocks per thread in the buffer: while one thread works on a slow task, the others answer this many.
 pub const AHEAD: usize = 16;
 
 /// The answers to a task.
@@ -28,7 +28,7 @@ pub const AHEAD: usize = 16;
 pub struct Block {
     /// The answers as text.
     pub out: Vec<u8>,
-    /// The answers as columns, if these are asked for.
+    /// The answers as columns, if the output has typed columns.
     #[cfg(feature = "columnar")]
     pub columns: Option<ColumnBlock>,
     /// The records that were refused, in order.
@@ -40,7 +40,7 @@ pub struct Block {
 }
 
 impl Block {
-    /// Where rows of a table go.
+    /// Returns the destination of table rows.
     pub(super) fn rows(&mut self) -> Rows<'_> {
         #[cfg(feature = "columnar")]
         if let Some(columns) = &mut self.columns {
@@ -50,7 +50,7 @@ impl Block {
     }
 }
 
-/// The rows of a block.
+/// The rows of a block, as text or columns.
 pub(super) enum Rows<'b> {
     Text(&'b mut Vec<u8>),
     #[cfg(feature = "columnar")]
@@ -60,22 +60,22 @@ pub(super) enum Rows<'b> {
 /// A refused record.
 #[derive(Debug)]
 pub struct RefusedRecord {
-    /// Why, with line and column in the input.
+    /// The reason, with line and column in the input.
     pub error: Error,
-    /// The line, shortened, if a place in it is refused.
+    /// The shortened line, if the error has a place in it.
     pub excerpt: Option<Excerpt>,
 }
 
-/// Answers all tasks of `source` in `threads` threads, the caller's among them, each with what `answerer` makes. If fewer
-/// can be started, these do the work.
+/// Answers all tasks of `source` in `threads` threads, with one closure of `answerer` for each. The caller's thread is
+/// one of them. If fewer threads can be started, those do the work.
 ///
-/// The source gives the next task, or `None` at the end; after that, and after an error of reading, it is not asked again.
-/// The buffer holds so many blocks per thread `ahead`, usually [`AHEAD`]. The sink takes the answers in the order of the
-/// tasks, on whichever thread has the next one; more may take long to arrive, so that a sink that others read keeps none
-/// back. After an error of writing it is not called again.
+/// The source returns the next task, or `None` at the end. It is not called again after `None` or an error. The buffer
+/// holds `ahead` blocks per thread, usually [`AHEAD`]. The sink receives the answers in the order of the tasks, on the
+/// thread that has the next one. The following answer may take long, so a sink that others read should hold none back.
+/// After an error the sink is not called again.
 ///
 /// # Errors
-/// Those of the source, with all before it answered, and of the sink, once the source's current call returns.
+/// Returns the source's error, after the answers to all tasks before it, or the sink's, once the source's call ends.
 pub fn run<T, B: Send, F: FnMut(T) -> B>(
     source: impl FnMut() -> Result<Option<T>> + Send,
     threads: usize,
@@ -86,7 +86,7 @@ pub fn run<T, B: Send, F: FnMut(T) -> B>(
     in_threads(source, threads, ahead, answerer, sink, |_| Builder::new())
 }
 
-/// Starts thread `k`, from 1, by `builder(k)`.
+/// Runs the tasks; thread `k`, from 1, is started by `builder(k)`.
 fn in_threads<T, B: Send, F: FnMut(T) -> B>(
     source: impl FnMut() -> Result<Option<T>> + Send,
     threads: usize,
@@ -95,10 +95,10 @@ fn in_threads<T, B: Send, F: FnMut(T) -> B>(
     sink: impl FnMut(B) -> Result<()> + Send,
     builder: impl Fn(usize) -> Builder,
 ) -> Result<()> {
-    // Until it ends or fails.
+    // The source, until it ends or fails.
     let source = Mutex::new(Some(source));
     let buffer = ReorderBuffer::new(ahead * threads.max(1), sink);
-    // The next task and its number. Here a thread waits for the others, for input and for the sink.
+    // Returns the next task and its number. Here a thread waits for the others, for input and for the sink.
     let next_task = || {
         let mut source = source.lock().ok()?;
         let next = source.as_mut().filter(|_| buffer.wait_for_room())?();
@@ -121,25 +121,25 @@ fn in_threads<T, B: Send, F: FnMut(T) -> B>(
     buffer.end()
 }
 
-/// The blocks that are answered before their turn, and where they go.
+/// Buffer for blocks that are answered before their turn, with their sink.
 struct ReorderBuffer<B, K> {
     pending: Mutex<Pending<B, K>>,
     has_room: Condvar,
 }
 
 struct Pending<B, K> {
-    /// From the block that the sink takes next; `None` while it is answered.
+    /// The blocks from the next one for the sink on; `None` for a block that is still being answered.
     blocks: VecDeque<Option<B>>,
     capacity: usize,
-    /// How many blocks the sink has taken.
+    /// The number of blocks that the sink has taken.
     taken: usize,
-    /// `None` while a thread uses it, and after its failure.
+    /// The sink; `None` while a thread uses it, and after its failure.
     sink: Option<K>,
-    /// Whether a thread waits for room.
+    /// Whether a thread waits for room in the buffer.
     is_waited_for: bool,
-    /// Of the sink, or else of the source.
+    /// The error of the sink, or else of the source.
     error: Option<Error>,
-    /// Whether no more tasks are taken, since the sink has failed or a thread panicked.
+    /// Whether no more tasks are handed out, because the sink has failed or a thread panicked.
     is_ending: bool,
 }
 
@@ -157,12 +157,12 @@ impl<B, K: FnMut(B) -> Result<()>> ReorderBuffer<B, K> {
         Self { pending: Mutex::new(pending), has_room: Condvar::new() }
     }
 
-    /// Nothing panics while it holds the blocks.
+    /// Locks the blocks. Poisoning is ignored, because nothing panics while it holds the lock.
     fn lock(&self) -> MutexGuard<'_, Pending<B, K>> {
         self.pending.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Waits until there is room for a block; whether any more is taken.
+    /// Waits until there is room for a block. Returns whether more tasks are handed out.
     fn wait_for_room(&self) -> bool {
         let is_full = |pending: &mut Pending<B, K>| {
             pending.is_waited_for = pending.blocks.len() >= pending.capacity && !pending.is_ending;
@@ -171,7 +171,7 @@ impl<B, K: FnMut(B) -> Result<()>> ReorderBuffer<B, K> {
         !self.has_room.wait_while(self.lock(), is_full).unwrap_or_else(PoisonError::into_inner).is_ending
     }
 
-    /// Numbers a task.
+    /// Assigns a number to a task.
     fn number<T>(&self, task: Result<Option<T>>) -> Option<(T, usize)> {
         let mut pending = self.lock();
         let task = task.unwrap_or_else(|error| {
@@ -182,7 +182,7 @@ impl<B, K: FnMut(B) -> Result<()>> ReorderBuffer<B, K> {
         Some((task, pending.taken + pending.blocks.len() - 1))
     }
 
-    /// Takes the block of a task, and gives the sink what is ready unless another thread does.
+    /// Stores the block of a task, and passes all ready blocks to the sink unless another thread does so.
     fn put(&self, block: B, number: usize) {
         let mut pending = self.lock();
         let at = number - pending.taken;
@@ -203,13 +203,13 @@ impl<B, K: FnMut(B) -> Result<()>> ReorderBuffer<B, K> {
         pending.sink = Some(sink);
     }
 
-    /// Lets no more tasks be taken.
+    /// Stops handing out tasks.
     fn stop(&self, mut pending: MutexGuard<'_, Pending<B, K>>) {
         pending.is_ending = true;
         self.wake(&mut pending);
     }
 
-    /// Wakes the thread that waits for room.
+    /// Wakes the thread that waits for room, if there is one.
     fn wake(&self, pending: &mut Pending<B, K>) {
         if mem::take(&mut pending.is_waited_for) {
             self.has_room.notify_one();
@@ -222,7 +222,7 @@ impl<B, K: FnMut(B) -> Result<()>> ReorderBuffer<B, K> {
     }
 }
 
-/// Lets the other threads end if one panics, for whose block they would wait.
+/// Ends the other threads if one panics; otherwise they would wait for its block.
 struct EndOnPanic<'b, B, K: FnMut(B) -> Result<()>>(&'b ReorderBuffer<B, K>);
 
 impl<B, K: FnMut(B) -> Result<()>> Drop for EndOnPanic<'_, B, K> {
@@ -241,7 +241,7 @@ mod tests {
     use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
     use std::time::{Duration, Instant};
 
-    /// The numbers below a limit, and then the end or an error.
+    /// Returns the numbers below a limit, and then the end or an error.
     fn numbers(end: u32, fails: bool) -> impl FnMut() -> Result<Option<u32>> {
         let mut next = 0;
         move || {
@@ -262,7 +262,7 @@ mod tests {
         }
     }
 
-    /// Until a count is reached, and then until it might have gone on.
+    /// Waits until a count is reached, and then a little longer in case it goes on.
     fn wait_until(count: &AtomicUsize, reached: usize) {
         let start = Instant::now();
         while count.load(Relaxed) < reached {
@@ -272,7 +272,7 @@ mod tests {
         thread::sleep(Duration::from_millis(5));
     }
 
-    /// Answers each number by itself.
+    /// Answers each number with itself, and counts.
     fn counting(answered: &AtomicUsize) -> impl Fn(u32) -> u32 + Copy {
         |number| {
             answered.fetch_add(1, Relaxed);
@@ -283,7 +283,7 @@ mod tests {
     #[test]
     fn threads_that_cannot_be_started_are_done_without() {
         for missing in [vec![], vec![2], vec![1, 2]] {
-            // No system has room for such a stack.
+            // No system has room for a stack of this size.
             let stack = |thread| if missing.contains(&thread) { usize::MAX / 4 } else { 1 << 20 };
             let builder = |thread| Builder::new().stack_size(stack(thread));
             let mut found = Vec::new();
@@ -327,7 +327,7 @@ mod tests {
         }
     }
 
-    /// Writes the numbers; at the last one it waits until so many are answered, and fails.
+    /// Collects the numbers; at the `last` one it waits until `until` numbers are answered, and fails.
     fn failing<'a>(
         written: &'a mut Vec<u32>,
         last: u32,
@@ -349,7 +349,7 @@ mod tests {
         for threads in 1..4 {
             let answered = AtomicUsize::new(0);
             let answer = counting(&answered);
-            // The other threads answer what there is room for.
+            // The other threads answer as many as the buffer has room for.
             let until = if threads == 1 { 71 } else { 71 + AHEAD * threads };
             let mut found = Vec::new();
             let sink = failing(&mut found, 70, &answered, until);
@@ -367,13 +367,13 @@ mod tests {
             let mut found = Vec::new();
             let error = run(numbers(10, true), threads, AHEAD, || answer, written(&mut found)).unwrap_err();
             assert_eq!((&found, error.reason()), (&Vec::from_iter(0..10), &Reason::BeyondBudget));
-            // By then the source has failed, unless one thread does all.
+            // The source has failed before the sink does, unless there is only one thread.
             answered.store(0, Relaxed);
             let until = if threads == 1 { 4 } else { 10 };
             let sink = failing(&mut found, 3, &answered, until);
             let error = run(numbers(10, true), threads, AHEAD, || answer, sink).unwrap_err();
             assert!(matches!(error.reason(), Reason::Io(_)), "{error}");
-            // Or it fails afterwards: asked for the second time, once the sink has.
+            // In this case the source fails after the sink: its second call waits for the sink's failure.
             let (asked, failed) = (AtomicUsize::new(0), AtomicUsize::new(0));
             let source = || {
                 if asked.fetch_add(1, Relaxed) == 0 {
@@ -397,7 +397,7 @@ mod tests {
         for threads in 1..4 {
             let (asked, written) = (AtomicUsize::new(0), AtomicUsize::new(0));
             let mut numbers = numbers(10, false);
-            // It gives the next number once all before it are written.
+            // This source returns the next number only after all numbers before it are written.
             let source = || {
                 wait_until(&written, asked.fetch_add(1, Relaxed));
                 numbers()

@@ -1,4 +1,4 @@
-//! The states of an input, whatever it is written as.
+//! The states of an input in any format.
 
 use super::chunk::Chunks;
 use super::recording::{RowOrigin, samples};
@@ -16,28 +16,28 @@ use std::sync::atomic::AtomicBool;
 
 /// The states of an input.
 pub enum States {
-    /// Lines of JSON, or a table that is text.
+    /// Lines of JSON, or a table as text.
     Text(Chunks<Box<dyn Read + Send>>, Form),
-    /// A table whose columns have types.
+    /// A table with typed columns.
     #[cfg(feature = "columnar")]
     Columns(Parts),
 }
 
 impl States {
-    /// An input of text.
+    /// Reads an input of text.
     ///
     /// # Errors
-    /// First bytes that show that it is compressed, a spreadsheet or the like, and those of reading.
+    /// Returns an error if the first bytes show a compressed file, a spreadsheet or the like, or if reading fails.
     pub fn of_text(input: impl Read + Send + 'static, form: Form) -> Result<Self> {
         let mut chunks = Chunks::of_table(Box::new(input) as Box<dyn Read + Send>, form);
         chunks.check_format()?;
         Ok(Self::Text(chunks, form))
     }
 
-    /// Whether nothing is left.
+    /// Returns whether no states are left.
     ///
     /// # Errors
-    /// Those of reading.
+    /// Returns an error if reading fails.
     pub fn is_empty(&mut self) -> Result<bool> {
         match self {
             Self::Text(chunks, _) => chunks.is_empty(),
@@ -46,11 +46,11 @@ impl States {
         }
     }
 
-    /// The columns of a table, with one of the time if its rows are read `in_order`; `None` for lines of JSON that are
-    /// not flat and for text without a line.
+    /// Returns the columns of a table; one of them must be the time if its rows are read `in_order`. `None` for lines
+    /// of JSON that are not flat and for text without a line.
     ///
     /// # Errors
-    /// As [`Header::read`] and [`Header::with_time`], of text with the line.
+    /// Returns the errors of [`Header::read`] and [`Header::with_time`]; for text with the line.
     pub fn header(
         &mut self,
         robot: &Robot,
@@ -84,7 +84,7 @@ impl States {
         with_time(header).map(Some).map_err(|error| refused(error.on(line, 1)))
     }
 
-    /// The rows with their times; `pauses` becomes whether the next row may take long to arrive.
+    /// Reads the rows as samples. Sets `pauses` to whether the next row may take long to arrive.
     pub fn samples<'h>(
         self,
         header: &'h Header,

@@ -11,76 +11,76 @@ use serde_json::Value;
 use std::fmt;
 use std::sync::Arc;
 
-/// How many states with the smallest margins are listed.
+/// The number of states with the smallest margins that are listed.
 const NAMED: usize = 10;
 
-/// How many different lists of modes are counted separately.
+/// The number of different lists of modes that are counted separately.
 const LISTS: usize = 1000;
 
-/// Counts over the states of a batch. Its size is bounded, and it does not depend on how threads share the states.
+/// Counts over the states of a batch. Its size is bounded, and does not depend on how threads share the states.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Summary {
-    /// What was asked about the states.
+    /// The question about the states.
     #[serde(skip_serializing_if = "Aspect::is_impact")]
     pub question: Aspect,
-    /// All states, refused ones too.
+    /// All states, including refused ones.
     pub states: u64,
-    /// States that were refused, also those whose matrices are known.
+    /// States that were refused, including those with too many contacts, whose matrices are still written.
     pub refused: u64,
-    /// How many of the others have which verdict.
+    /// The number of other states with each verdict.
     pub verdicts: Verdicts,
     /// States that are undecided because the budget of work ended.
     #[serde(skip_serializing_if = "is_zero")]
     pub beyond_budget: u64,
-    /// The states nearest to another answer, the nearest first; outcomes without impulse are skipped.
+    /// The states nearest to another answer, nearest first. Outcomes without impulses are skipped.
     pub smallest_margins: Vec<Nearest>,
     /// States in which feet slide because friction is too small.
     pub more_friction: MoreFriction,
-    /// States in which some foot slides in every outcome whatever the friction is.
+    /// States in which some foot slides in every outcome, whatever the friction is.
     #[serde(skip_serializing_if = "is_zero")]
     pub slides_regardless: u64,
-    /// States of which another one within their uncertainty has other outcomes.
+    /// States for which another state within the uncertainty has other outcomes.
     #[serde(skip_serializing_if = "is_zero")]
     pub not_holding: u64,
     /// States with an uncertainty.
     #[serde(skip)]
     pub uncertain: u64,
-    /// States with contacts that were taken as exactly at rest, because they are slow (`resting_speed`).
+    /// States with contacts that were taken as exactly at rest because they are slow (`resting_speed`).
     pub resting: u64,
-    /// The modes of the contacts, in the order of their first appearance, at most 1,000 different lists.
+    /// The modes of the contacts, in the order of their first appearance: at most 1,000 different lists.
     pub modes: Vec<ModeCount>,
-    /// Outcomes with further lists of modes.
+    /// The number of outcomes with further lists of modes.
     pub other_modes: u64,
-    /// States with friction of their own, where another one is given for states without.
+    /// States that give friction of their own although one is given for all states.
     #[serde(skip_serializing_if = "is_zero")]
     pub own_friction: u64,
-    /// States with odd numbers: beyond limits, or as in other units.
+    /// States with odd numbers: outside limits, or as if in other units.
     #[serde(skip_serializing_if = "OddStates::is_empty")]
     pub odd_states: OddStates,
-    /// States with other notes than on these and on contacts at rest.
+    /// States with notes other than on odd numbers and on contacts at rest.
     #[serde(skip_serializing_if = "OddStates::is_empty")]
     pub noted: OddStates,
-    /// Touchdowns that were taken above the ground, of feet whose heights have no noise.
+    /// Touchdowns whose state is taken above the ground, for feet whose heights have no noise.
     #[serde(skip_serializing_if = "is_zero")]
     pub early: u64,
-    /// Touchdowns whose feet have fallen more than twice as fast shortly before.
+    /// Touchdowns whose feet fell more than twice as fast shortly before.
     #[serde(skip_serializing_if = "is_zero")]
     pub slowed: u64,
-    /// Touchdowns of feet that are far under the ground in the recording.
+    /// Touchdowns of feet that are far below the ground in the recording.
     #[serde(skip_serializing_if = "is_zero")]
     pub deep: u64,
-    /// Touchdowns whose foot does not come down at the moment that was taken, so that nothing strikes.
+    /// Touchdowns whose foot does not come down at the chosen moment, so that nothing strikes.
     #[serde(skip_serializing_if = "is_zero")]
     pub no_strike: u64,
-    /// Columns of coordinates that the table of states does not have, which are 0 in all of them.
+    /// Coordinates that have no column in the table; they are 0 in all states.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub missing_columns: Vec<String>,
 }
 
-/// The verdicts in the words of the text.
+/// The words for the verdicts in the text.
 const WORDS: [&str; 6] = ["unique", "ambiguous", "without outcome", "undecided", "without impact", "without contact"];
 
-/// How many states have which verdict; written as an object.
+/// The number of states with each verdict, written as an object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Verdicts([u64; 6]);
 
@@ -93,33 +93,33 @@ impl Serialize for Verdicts {
 /// A state of the batch, and its smallest margin.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Nearest {
-    /// Which state it is.
+    /// The state.
     #[serde(flatten)]
     pub state: StateRef,
-    /// The margin of its outcomes that is nearest to zero, free of units.
+    /// The margin that is nearest to zero among its outcomes, free of units.
     pub margin: f64,
 }
 
-/// Which state of the input.
+/// A reference to a state of the input.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StateRef {
-    /// Its id, shortened if it is long.
+    /// The id of the state, shortened if it is long.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub id: Option<Value>,
-    /// Its line, from 1.
+    /// The line of the state, from 1.
     pub line: usize,
 }
 
-/// States in which a foot slides because friction is too small: they are unique or ambiguous, every outcome has a
-/// sliding contact, and with infinite friction there is an outcome without one.
+/// States in which a foot slides because friction is too small. They are unique or ambiguous, every outcome has a
+/// sliding contact, and with infinite friction some outcome has none.
 ///
-/// The friction that a state needs is the greatest |L_t| / L_n of the contacts that stick in that outcome; of several
-/// such outcomes, the one that needs least.
+/// The friction that a state needs is the greatest |L_t| / L_n of the sticking contacts in an outcome without sliding.
+/// Among several, the outcome that needs least counts.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct MoreFriction {
-    /// How many there are.
+    /// The number of these states.
     pub states: u64,
-    /// The one that needs most; of equal ones the first.
+    /// The state that needs most friction; among equal ones the first.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub greatest: Option<Needed>,
 }
@@ -127,19 +127,19 @@ pub struct MoreFriction {
 /// States with odd numbers (see [`State::oddities`](crate::State::oddities)), or with other notes.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct OddStates {
-    /// How many there are.
+    /// The number of these states.
     pub states: u64,
-    /// The first of them.
+    /// The first of these states.
     pub first: Option<Oddity>,
 }
 
-/// A state of the batch, and the first thing that is odd about it.
+/// A state of the batch, and its first oddity.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Oddity {
-    /// Which state it is.
+    /// The state.
     #[serde(flatten)]
     pub state: StateRef,
-    /// In words.
+    /// The oddity in words.
     pub what: String,
 }
 
@@ -148,7 +148,7 @@ impl OddStates {
         self.states == 0
     }
 
-    /// Adds those of the states that follow.
+    /// Adds the counts of the states that follow.
     pub fn add(&mut self, following: Self) {
         self.states += following.states;
         self.first = self.first.take().or(following.first);
@@ -158,7 +158,7 @@ impl OddStates {
 /// A state of the batch, and the friction that it needs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Needed {
-    /// Which state it is.
+    /// The state.
     #[serde(flatten)]
     pub state: StateRef,
     /// The coefficient, or "infinite" if a contact sticks without a normal impulse.
@@ -172,17 +172,17 @@ pub struct ModeCount {
     /// The names of the contacts.
     #[serde(serialize_with = "strings")]
     pub contacts: Vec<Arc<str>>,
-    /// The mode of each of them.
+    /// The mode of each contact.
     pub modes: Vec<Mode>,
     /// How many outcomes have these modes.
     pub outcomes: u64,
-    /// By which most lists differ at once.
+    /// A hash by which most different lists are told apart quickly.
     #[serde(skip)]
     key: u64,
 }
 
 impl Summary {
-    /// Counts a state that has outcomes.
+    /// Counts a state that was analyzed.
     pub fn count(&mut self, state: impl Fn() -> StateRef, impact: &Impact, analysis: &Analysis) {
         self.states += 1;
         self.verdicts.0[analysis.verdict as usize] += 1;
@@ -234,7 +234,7 @@ impl Summary {
         self.resting += following.resting;
         for list in following.modes {
             let known = |known: &&mut ModeCount| known.modes == list.modes && known.contacts == list.contacts;
-            // The limit holds only here: applied to parts, the result would depend on them.
+            // The limit applies only here: if it applied to parts, the result would depend on how states are divided.
             let room = self.modes.len() < LISTS;
             match self.modes.iter_mut().find(known) {
                 Some(known) => known.outcomes += list.outcomes,
@@ -252,7 +252,7 @@ impl Summary {
         self.no_strike += following.no_strike;
     }
 
-    /// What a reader should know of the touchdowns.
+    /// Returns notes on the touchdowns.
     pub fn of_touchdowns(&self) -> impl Iterator<Item = String> {
         let Self { early, slowed, deep, no_strike, .. } = *self;
         notes::odd_touchdowns([early, slowed, deep, no_strike])
@@ -261,7 +261,7 @@ impl Summary {
     fn near(&mut self, state: impl Fn() -> StateRef, outcomes: &[Outcome]) {
         let farthest = self.smallest_margins.get(NAMED - 1).map(|farthest| farthest.margin.abs());
         let is_near = |margin: &f64| farthest.is_none_or(|farthest| margin.abs() < farthest);
-        // Without any impulse all of its slacks are zero, which says nothing.
+        // An outcome without any impulse has only slacks of zero, which mean nothing.
         let pressed = |outcome: &Outcome| outcome.impulse.iter().flatten().any(|&entry| entry != 0.0);
         let near = outcomes.iter().filter_map(|outcome| {
             let margin = outcome.margin.filter(is_near)?;
@@ -272,7 +272,7 @@ impl Summary {
         }
     }
 
-    /// Inserts after those that are equally near, which came earlier.
+    /// Inserts behind states that are equally near, which came earlier.
     fn insert(&mut self, near: Nearest) {
         let at = self.smallest_margins.partition_point(|other| other.margin.abs() <= near.margin.abs());
         if at < NAMED {
@@ -316,12 +316,12 @@ impl fmt::Display for StateRef {
     }
 }
 
-/// A margin with two digits.
+/// Formats a margin with two digits.
 fn two_digits(margin: f64) -> String {
     if (0.01..10.0).contains(&margin.abs()) { format!("{margin:.2}") } else { format!("{margin:.1e}") }
 }
 
-/// How many of each kind the text shows.
+/// How many entries of each kind the text shows.
 const SHOWN: usize = 5;
 
 impl fmt::Display for Summary {
