@@ -1,4 +1,4 @@
-//! The state with which a point strikes.
+//! The state at which a point strikes.
 
 use super::carry::{Interpolation, down_to, on_line};
 use super::points::Points;
@@ -6,22 +6,22 @@ use super::strike::{Strike, Way};
 use super::window::{BEFORE, Frame, Window};
 use super::{At, Heights, Sample};
 
-/// A moment between two rows is halved until it is known to 2^-44 of their distance.
+/// Number of bisections of the interval between two rows: the moment is known to 2^-44 of it.
 const HALVINGS: usize = 44;
 
-/// What the state at a strike is found from.
+/// The data from which the state at a strike is computed.
 #[derive(Debug)]
 pub(super) struct Arrival<'a, 'r, S> {
     pub window: &'a Window<S>,
     pub points: &'a mut Points<'r>,
     pub at: At,
     pub heights: Heights,
-    /// A point that is no higher above where it touches is there \[m\].
+    /// Tolerance of the height at which a point touches \[m\].
     pub level: f64,
 }
 
 impl<S: Clone> Arrival<'_, '_, S> {
-    /// The sample at the moment of a strike; its row and source are those of the row before.
+    /// Returns the sample at the moment of a strike. Its row and source are those of the row before.
     pub fn sample(&mut self, &Strike { point, row, height, smooth, onward }: &Strike) -> Sample<S> {
         match (onward, height) {
             (Way::Through(rows), height) => return self.through(point, row, rows, height),
@@ -54,8 +54,8 @@ impl<S: Clone> Arrival<'_, '_, S> {
         sample
     }
 
-    /// The sample of `row`, the last one above the ground, at the moment at which `point` is down at `level`, if that
-    /// is before the next row, by the polynomial through `most` rows.
+    /// Returns the sample at the moment at which `point` reaches `level`, by the polynomial through `most` rows. `row`
+    /// is the last one above the ground; the moment is before the next row.
     fn through(&mut self, point: usize, row: usize, most: usize, level: Option<f64>) -> Sample<S> {
         let mut sample = self.window.frames[row].sample.clone();
         let motion = self.window.motion(row, most, self.heights == Heights::True);
@@ -78,7 +78,7 @@ impl<S: Clone> Arrival<'_, '_, S> {
             let onward = self.window.onward(&motion, sample.time);
             let used = |entry: usize| match (is_difference(&sample), self.heights) {
                 (true, _) => motion.position[entry].max(2),
-                // Recorded rates may have noise that heights do not show.
+                // Recorded rates may have noise even if heights have none.
                 (false, Heights::Recorded) => 2,
                 (false, Heights::True) => motion.velocity[entry],
             };
@@ -88,7 +88,7 @@ impl<S: Clone> Arrival<'_, '_, S> {
         sample
     }
 
-    /// Takes the time and the positions of a sample of `row` to where the point is at `level` on the line to the next row.
+    /// Moves a sample of `row` in time and positions to where the point crosses `level` on the line to the next row.
     fn between(&self, point: usize, row: usize, level: f64, sample: &mut Sample<S>) {
         let [from, to] = [row, row + 1].map(|row| self.window.height(point, row) - level);
         let part = if to < from { (from / (from - to)).clamp(0.0, 1.0) } else { 0.0 };
@@ -99,7 +99,7 @@ impl<S: Clone> Arrival<'_, '_, S> {
         }
     }
 
-    /// The sample at `time` on the line through `rows`, the last one first.
+    /// Returns the sample at `time` on the least-squares line through `rows`, which begin with the last one.
     fn on_line_of(&self, rows: &[usize], time: f64) -> Sample<S> {
         let mut sample = self.window.frames[rows[0]].sample.clone();
         let times = self.window.times(rows.iter().copied());
@@ -115,7 +115,7 @@ impl<S: Clone> Arrival<'_, '_, S> {
         sample
     }
 
-    /// Gives a sample the velocity of `rows`: as recorded, or the rate of their positions; each entry by its own way.
+    /// Sets a sample's velocity from `rows` by weights `onward`: recorded velocities, or the rate of positions.
     fn carry_velocity<'i>(&self, rows: &[usize], onward: impl Fn(usize) -> &'i Interpolation, sample: &mut Sample<S>) {
         let state = |at: usize| &self.window.frames[rows[at]].sample.state;
         let differences = is_difference(sample);
@@ -127,8 +127,8 @@ impl<S: Clone> Arrival<'_, '_, S> {
         }
     }
 
-    /// How much later than row `at` the parabola through the last rows from `first` on has the point at `height`, if that
-    /// is before the next row, and how it goes on until then.
+    /// Returns how much later than row `at` the point is at `height`, on the parabola through the last rows from
+    /// `first` on, and the extrapolation to that moment. `None` if that is after the next row.
     fn onward(&self, point: usize, first: usize, at: usize, height: f64) -> Option<(Interpolation, f64)> {
         let times = self.window.times((first..=at).rev().take(BEFORE));
         let next = self.window.frames[at + 1].sample.time - times[0];
@@ -136,7 +136,7 @@ impl<S: Clone> Arrival<'_, '_, S> {
         (later <= next).then(|| (Interpolation::at(times[0] + later, &times), later))
     }
 
-    /// Replaces `velocity` by that at `time`, from the rows `first` to `smooth`.
+    /// Replaces `velocity` by the one at `time`, computed from the rows `first` to `smooth`.
     fn velocity(&self, first: usize, smooth: usize, time: f64, velocity: &mut [f64]) {
         let ends = self.window.frames[smooth].sample.time;
         let middle = |sample: &Sample<S>| 0.5 * (sample.rate_over[0] + sample.rate_over[1]);
@@ -155,7 +155,7 @@ impl<S: Clone> Arrival<'_, '_, S> {
     }
 }
 
-/// Whether the velocity of a sample was taken from rows.
+/// Returns whether the velocity of a sample was computed as a difference of rows.
 pub(super) fn is_difference<S>(sample: &Sample<S>) -> bool {
     sample.rate_over[0] < sample.rate_over[1]
 }

@@ -1,11 +1,11 @@
-//! A motion carried on from its last rows, to a moment at which there is no row.
+//! Extrapolation of a motion from its last rows to a moment between rows.
 
-/// A motion is carried on by so many times the distance of its last rows at most.
+/// The longest extrapolation, as a multiple of the distance of the last rows.
 pub(super) const REACH: f64 = 2.5;
 
-/// How much later \[s\] than the last of some rows the parabola through the values at the last three (a line where there
-/// are two) is down at `level`, if it gets there at all, and the rows are not too near to each other for a moment `most`
-/// later. Their `times` and values are given the last one first.
+/// Returns the time \[s\] from the last row until the parabola through the values of the last three rows (a line
+/// through two) falls to `level`. `None` if it never does, or if a time of `most` is beyond [`REACH`]. `times` and
+/// values begin with the last row.
 pub(super) fn down_to(level: f64, times: &[f64], value: impl Fn(usize) -> f64, most: f64) -> Option<f64> {
     let &[last, before, ..] = times else { return None };
     let (step, rate) = (last - before, (value(0) - value(1)) / (last - before));
@@ -15,20 +15,20 @@ pub(super) fn down_to(level: f64, times: &[f64], value: impl Fn(usize) -> f64, m
     });
     let (slope, height) = (rate + curvature * step, value(0) - level);
     let discriminant = slope * slope - 4.0 * curvature * height;
-    // Of two roots the first; the usual formula would cancel digits where the curvature is small.
+    // This is the first of two roots. The usual formula would cancel digits if the curvature is small.
     let later = 2.0 * height / (discriminant.sqrt() - slope);
     (most <= REACH * step && later.is_finite() && later >= 0.0).then_some(later)
 }
 
-/// How the values at some moments, or rather their polynomial, give that at another.
+/// Weights of an interpolation or extrapolation: the value at a moment from the values at other moments.
 #[derive(Debug, Clone)]
 pub(super) struct Interpolation {
-    /// Of each moment in the value, and in its rate \[1/s\].
+    /// For each of these moments, its weight in the value and in the rate \[1/s\].
     weights: Vec<(f64, f64)>,
 }
 
 impl Interpolation {
-    /// At `time`, from values at different `times`: Lagrange's polynomial.
+    /// Weights for the value at `time` from values at different `times`, by Lagrange's polynomial.
     pub fn at(time: f64, times: &[f64]) -> Self {
         let others = |own: usize| (0..times.len()).filter(move |&other| other != own);
         let weights = (0..times.len()).map(|own| {
@@ -40,9 +40,9 @@ impl Interpolation {
         Self { weights: weights.collect() }
     }
 
-    /// At `time`, from values at at least two different `times`: the line of least squares.
+    /// Weights for the value at `time` from values at two or more different `times`, by the least-squares line.
     pub fn along(time: f64, times: &[f64]) -> Self {
-        // The number of rows of a window.
+        // The count is the number of rows of a window, so it is exact as an f64.
         #[allow(clippy::cast_precision_loss)]
         let share = 1.0 / times.len() as f64;
         let middle = share * times.iter().sum::<f64>();
@@ -51,7 +51,7 @@ impl Interpolation {
         Self { weights: times.iter().map(|own| (share + (time - middle) * rate(own), rate(own))).collect() }
     }
 
-    /// How much the value differs from that recorded if all have a noise of one.
+    /// Returns the standard deviation of the difference from a recorded value if all values have a noise of one.
     pub fn noise(&self) -> f64 {
         self.weights.iter().fold(1.0, |sum, (weight, _)| sum + weight * weight).sqrt()
     }
@@ -65,7 +65,7 @@ impl Interpolation {
     }
 }
 
-/// The value at `time` on the line through two others, each behind its time; the later one where that is too far away.
+/// Returns the value at `time` on the line through two others, each after its time; the later one if that is too far.
 pub(super) fn on_line([(from, start), (to, end)]: [(f64, f64); 2], time: f64) -> f64 {
     if to > from && time - to <= REACH * (to - from) { end + (time - to) / (to - from) * (end - start) } else { end }
 }

@@ -1,22 +1,22 @@
-//! Where a recording is one motion, and where another begins.
+//! Clips: the boundaries between the motions of one recording.
 
-/// How much longer than all before a step of one clip may be.
+/// A step more than this many times as long as all before it starts a new clip.
 const LONGER: f64 = 10.0;
 
-/// Follows the time of a recording.
+/// Tracks the time of a recording.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Clock {
     last: Option<f64>,
     longest: f64,
 }
 
-/// From one sample to the next.
+/// The step from one sample to the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum ClockStep {
     NewClip,
-    /// The time stands still: an impact lies between.
+    /// The time is the same: an impact lies between the samples.
     Impact,
-    /// So much later \[s\].
+    /// The next sample is this much later \[s\].
     Later(f64),
 }
 

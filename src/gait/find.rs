@@ -1,4 +1,4 @@
-//! Finds the touchdowns of a recording, sample by sample, in memory for the last moments alone.
+//! Finds the touchdowns of a recording sample by sample, and keeps only the last moments in memory.
 
 use super::arrival::{Arrival, is_difference};
 use super::carry::{Interpolation, REACH};
@@ -17,23 +17,23 @@ use crate::{Error, Reason, Result};
 use std::collections::VecDeque;
 use std::sync::Mutex;
 
-/// Heights have no noise that is a greater part of [`Thresholds::above`].
+/// Heights count as free of noise if it is at most this fraction of [`Thresholds::above`].
 const EXACT: f64 = 1e-3;
-/// Noise hides an impact for no more rows, and is no more times its standard deviation.
+/// Noise hides an impact for at most `HIDDEN` rows, and is at most `NOISE` times its standard deviation.
 const HIDDEN: usize = 8;
 const NOISE: f64 = 5.0;
-/// What falls in such a time shows how fast a foot was \[s\].
+/// The time over which the earlier speed of a foot is measured \[s\].
 const SHORTLY: f64 = 0.01;
-/// A leg does not slow its foot down by more than this times [`Thresholds::slow`] in a second: 25 m/s^2.
+/// The greatest deceleration of a foot by its leg, as a multiple of [`Thresholds::slow`] per second: 25 m/s^2.
 const BRAKES: f64 = 500.0;
-/// Feet do not sink by more times the usual [`Thresholds::ground`].
+/// The greatest depth to which feet sink, as a multiple of the default [`Thresholds::ground`].
 const DEEP: f64 = 5.0;
 
-/// The touchdowns in `samples`, states of `robot` with the `feet` that were added to it: each the sample at the moment
-/// of contact, with its landing. Refused samples stay in their place.
+/// Finds the touchdowns in `samples`, which are states of `robot` with its additional `feet`. Each touchdown is the
+/// sample at the moment of contact, with its landing. Refused samples stay in their place.
 ///
 /// # Errors
-/// [`Reason::Missing`] for a robot that has nothing to touch the ground with.
+/// Returns [`Reason::Missing`] if the robot has nothing that can touch the ground.
 pub fn find<'r, S: Clone, I: Iterator<Item = Sampled<S>>>(
     samples: I,
     robot: &'r Robot,
@@ -74,37 +74,37 @@ pub struct Touchdowns<'r, S, I> {
     robot: &'r Robot,
     points: Points<'r>,
     thresholds: Thresholds,
-    /// What is lower is not a foot that sinks \[m\].
+    /// A greater depth is not that of a foot that sinks \[m\].
     deep: f64,
     at: At,
     touching: Touching,
     heights: Heights,
-    /// A point that stops no higher is on the ground, where heights are true \[m\].
+    /// With true heights, a point that stops at most this high is on the ground \[m\].
     level: f64,
-    /// What has been seen of the recording.
+    /// Collects what is seen of the recording.
     seen: Option<&'r Mutex<Seen>>,
     clock: Clock,
-    /// Samples so far, refused ones too.
+    /// The number of samples so far, including refused ones.
     counted: usize,
-    /// The last samples of the clip: as far back as a descent that ends now can have been above its end, and some more.
+    /// The last samples of the clip: those in which a descent that ends now can have been above its end, and some more.
     window: Window<S>,
-    /// One per point.
+    /// The descent of each point.
     descents: Vec<Descent>,
     ready: VecDeque<Sampled<S>>,
 }
 
-/// How a point moves.
+/// The state of a point's motion.
 #[derive(Debug, Clone, Copy)]
 struct Descent {
-    /// Its greatest height since it last was not falling \[m\].
+    /// The point's greatest height since it last was not falling \[m\].
     from: f64,
     falling: bool,
-    /// Whether it has struck and goes on into the ground.
+    /// Whether the point has struck and continues into the ground.
     sinks: bool,
 }
 
 impl Descent {
-    /// None yet, from this height on.
+    /// A point that does not fall yet, at this height.
     fn from(height: f64) -> Self {
         Self { from: height, falling: false, sinks: false }
     }
@@ -137,17 +137,17 @@ impl<S: Clone, I: Iterator<Item = Sampled<S>>> Iterator for Touchdowns<'_, S, I>
 }
 
 impl<'r, S, I> Touchdowns<'r, S, I> {
-    /// The touchdowns by other thresholds than those of the robot's size.
+    /// Replaces the thresholds, which follow from the robot's size by default.
     pub fn with(self, thresholds: Thresholds) -> Self {
         Self { thresholds, ..self }
     }
 
-    /// The touchdowns of a recording whose heights are meant so.
+    /// Sets the meaning of the recorded heights.
     pub fn meaning(self, heights: Heights) -> Self {
         Self { heights, ..self }
     }
 
-    /// The same touchdowns; what is seen of the recording is added to `seen`.
+    /// Adds what is seen of the recording to `seen`.
     pub fn noting(self, seen: &'r Mutex<Seen>) -> Self {
         Self { seen: Some(seen), ..self }
     }
@@ -171,7 +171,7 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
             }
             ClockStep::Later(_) => {}
         }
-        // A point that falls at `slow` or faster was `above` its level no longer ago than this; twice that is kept.
+        // A point that falls at `slow` or faster was `above` its level at most this long ago. Twice that time is kept.
         let oldest = sample.time - 2.0 * self.thresholds.above / self.thresholds.slow;
         let kept = if self.heights == Heights::True { SMOOTH + FORETOLD + 1 } else { 3 * MEASURED };
         while self.window.frames.get(kept).is_some_and(|frame| frame.sample.time < oldest) {
@@ -186,7 +186,7 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
         }
     }
 
-    /// Follows every point to the last row of the window, where heights are true.
+    /// Follows every point to the last row of the window, with true heights.
     fn reach_ground(&mut self) {
         let Some(row) = self.window.frames.len().checked_sub(2) else { return };
         let mut strikes = Vec::new();
@@ -198,8 +198,8 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
                 let found = if last > self.level && height < -self.level {
                     Some((row, Some(0.0)))
                 } else if last > self.level && falling && height >= last {
-                    // It has bounced since the row before or the one before that: at most twice as fast, and so no
-                    // higher than twice as far as it would have gone into the ground.
+                    // The point has bounced since this row or the one before. It rebounds at most twice as fast, so at
+                    // most twice as far as it would have gone into the ground.
                     let mut rows = [before, Some(row)].into_iter().flatten();
                     let bounces = |row: &usize| {
                         let onward = self.onward_height(point, *row);
@@ -209,8 +209,8 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
                 } else if last.abs() <= self.level && falling && self.window.frames[row].before_impact {
                     Some((row, None))
                 } else if last.abs() <= self.level && falling {
-                    // In the first row on the ground it may have been stopped already, and where heights are rounded
-                    // as much as that, also in the row before.
+                    // The point may be stopped already in the first row on the ground. If heights are rounded by as
+                    // much as `level`, it may be stopped in the row before, too.
                     let mut rows = [row.checked_sub(2), before].into_iter().flatten();
                     let found = rows.find(|&row| self.onward_height(point, row) <= self.level);
                     Some((found.or(before).unwrap_or(row), Some(0.0)))
@@ -232,7 +232,7 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
         self.strike(strikes);
     }
 
-    /// Notes how high the lowest foot has ended a descent that is no touchdown, or goes on in the ground.
+    /// Notes the height at which the lowest foot ends a descent that is no touchdown, or that continues in the ground.
     fn see_end(&self, row: usize, end: f64) {
         let Frame { places, row, .. } = &self.window.frames[row];
         let lowest = places.iter().fold(f64::INFINITY, |least, place| least.min(place.z));
@@ -241,7 +241,7 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
         }
     }
 
-    /// Whether a point has fallen more than twice as fast shortly before a sample, and is slowed down already.
+    /// Returns whether a point fell more than twice as fast shortly before a sample, and is slowed down already.
     fn is_slowed(&mut self, point: usize, sample: &Sample<S>) -> bool {
         let before = |time: f64| self.window.frames.iter().rposition(|frame| frame.sample.time <= time);
         let Some(to) = before(sample.time - SHORTLY) else { return false };
@@ -253,14 +253,14 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
         passed <= 3.0 * SHORTLY && fell > f64::max(2.0 * falls, falls + BRAKES * self.thresholds.slow * passed)
     }
 
-    /// How high a point would be at the row after `row` \[m\].
+    /// Returns the height at the row after `row` to which a point's motion leads \[m\].
     fn onward_height(&mut self, point: usize, row: usize) -> f64 {
         let (motion, next) = (self.window.motion(row, SMOOTH, true), self.window.frames[row + 1].sample.time);
         let position = self.window.onward_position(&motion, next);
         self.points.at(&position)[point].z
     }
 
-    /// Follows every point to the last row of the window, `passed` \[s\] after the one before.
+    /// Follows every point to the last row of the window, which is `passed` \[s\] after the one before.
     fn follow(&mut self, passed: f64) {
         let Thresholds { drop, slow, ground, .. } = self.thresholds;
         let now = self.window.frames.len() - 1;
@@ -299,8 +299,8 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
         self.strike(ended.into_iter().filter_map(stopped).collect());
     }
 
-    /// A strike with no row after the impact, where recorded velocities show that its point was stopped at once on its
-    /// level: noise of its height may hide that for some rows.
+    /// Moves a strike before the impact if recorded velocities show that its point was stopped at once on its level.
+    /// Noise of the point's height may hide this for some rows.
     fn before_stop(&mut self, strike: Strike) -> Strike {
         let Strike { point, row, height, smooth, onward } = strike;
         let Some(height) = height.filter(|_| !is_difference(&self.window.frames[row].sample)) else { return strike };
@@ -323,11 +323,11 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
         Strike { row: row.min(last), smooth: last, ..strike }
     }
 
-    /// Ends the clip: a point that is still falling has reached the ground if it is at z = 0.
+    /// Ends the clip. A point that is still falling has reached the ground if it is at z = 0.
     fn end_clip(&mut self) {
         let (Thresholds { drop, above, .. }, is_true) = (self.thresholds, self.heights == Heights::True);
         let end = self.window.frames.len().saturating_sub(1);
-        // Of two rows with the same time the first.
+        // The first of two rows with the same time.
         let before = end.checked_sub(1);
         let before_impact = before.filter(|&before| self.window.frames[before].before_impact);
         let strike = |(point, &Descent { from, falling, .. }): (usize, &Descent)| {
@@ -340,7 +340,7 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
             } else if last >= -above {
                 Some(Strike { point, row: before_impact.unwrap_or(end), height: None, smooth: end, onward: Way::Soft })
             } else {
-                // It goes on through the ground, which this recording does not know of.
+                // The point continues through the ground, which this recording does not show.
                 self.window.moment(point, 0.0, end, end)
             }
         };
@@ -350,7 +350,7 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
         self.window.last = None;
     }
 
-    /// Makes touchdowns of the points that strike and are free to; those that strike together are one.
+    /// Makes touchdowns of the strikes whose points are free toward the ground. Simultaneous strikes are one touchdown.
     fn strike(&mut self, mut strikes: Vec<Strike>) {
         let (together, at, touching) = (self.thresholds.together, self.at, self.touching);
         strikes.retain(|strike| self.points.is_free(strike.point, &self.window.frames[strike.row].places, together));
@@ -374,7 +374,7 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
             let is_slowed = heights == Heights::Recorded && self.is_slowed(first.point, &sample);
             let row = self.window.frames[first.row].row;
             let is_deep = shift_z > self.deep;
-            // Another row's heights are not those of the ground, and what is deep is noted by itself.
+            // The heights of another row are not those of the ground, and deep touchdowns get a note of their own.
             let is_level = heights == Heights::Recorded && at == At::Crossing && !is_deep;
             if let Some(Ok(mut seen)) = self.seen.map(Mutex::lock) {
                 seen.add_touchdown(is_level.then_some(shift_z));

@@ -5,76 +5,75 @@
 //!     --[find]--> touchdowns: time, state, Landing (row, striking contact)
 //! ```
 //!
-//! Recorded feet do not reach z = 0: they float or sink by centimeters, sink slowly while they stand, and may be
-//! scuffed over the ground. So a touchdown is recognized by motion: the height of every point that can touch (a
-//! circle's lowest, a polygon's corners) is followed. A *descent* is a run of rows in which it falls faster than
-//! [`Thresholds::slow`]. It is a touchdown if the point has come down by [`Thresholds::drop`] or more since it was last
-//! not falling, ends no higher than [`Thresholds::ground`] above z = 0, and is free toward the ground: the lowest of
-//! its body over a ground of some slope m near to level.
+//! Recorded feet do not reach z = 0: they float or sink by centimeters, sink slowly while they stand, and may scuff
+//! over the ground. A touchdown is therefore recognized by motion: the height of every point that can touch (the lowest
+//! of a circle, the corners of a polygon) is followed. A *descent* is a run of rows in which a point falls faster than
+//! [`Thresholds::slow`]. It is a touchdown if the point has come down by [`Thresholds::drop`] or more since it last
+//! stopped falling, ends no higher than [`Thresholds::ground`] above z = 0, and is free toward the ground: on ground of
+//! some slope m near to level, it is the lowest of its body.
 //!
 //! ```text
 //!     z_i - m x_i <= z_j - m x_j  for all points j of the body of i,        with one |m| <= 0.15
 //! ```
 //!
-//! So the toe of a flat foot comes down though the heel is recorded a little lower, and the upper side of a sole or
-//! what is inside a round foot does not. The thresholds are lengths, because how far feet float is a matter of
-//! recording and not of the robot; they can be set ([`Touchdowns::with`]). A robot smaller than [`SMALL`] lifts its
-//! feet less, and has them in proportion.
+//! The toe of a flat foot therefore touches down even if the heel is recorded a little lower, but the upper side of a
+//! sole or points inside a round foot do not. The thresholds are lengths, because the floating of feet depends on the
+//! recording and not on the robot. They can be set ([`Touchdowns::with`]). A robot smaller than [`SMALL`] lifts its
+//! feet less, so its thresholds are proportionally smaller.
 //!
-//! The *noise* of a point's height is measured on the last rows of the clip: the median distance of a row from the
-//! polynomial through the six before it, over 0.67 and over what that polynomial makes of a noise of one. If from row
-//! to row it is faster than [`Thresholds::slow`], the rate of a row is that of the line of least squares through the
-//! last n rows, whose noise is two thirds of that, and the level on which a descent ends is the mean height of the
-//! later half of them.
+//! The *noise* of a point's height is measured on the last rows of the clip. It is the median distance of a row from
+//! the polynomial through the six rows before it, divided by 0.67 and by the factor by which this distance amplifies a
+//! noise of one. If the noise from row to row is faster than [`Thresholds::slow`], the rate of a row is the slope of
+//! the least-squares line through the last n rows. n is such that the noise of this slope is two thirds of that
+//! threshold. The descent then ends on the mean height of the later half of these rows.
 //!
-//! The moment of contact is
+//! The moment of contact is one of three:
 //!
-//! * with noise the one at which the line of least squares through the last n falling rows is down at that level;
-//! * of a foot that is stopped at once (that is carried on to the level, at more than twice [`Thresholds::slow`],
-//!   before the next row) the one at which the polynomial through the rows before reaches the level: six rows if their
-//!   noise is no more than a ten-thousandth of the fall from row to row, else three;
-//! * else the one at which the point is [`Thresholds::above`] over that level; before it the foot still has the
-//!   velocity with which it strikes.
+//! * With noise, it is the moment at which the least-squares line through the last n falling rows reaches that level.
+//! * A foot may be stopped at once: its motion, continued at more than twice [`Thresholds::slow`], reaches the level
+//!   before the next row. Then it is the moment at which the polynomial through the rows before reaches the level. Six
+//!   rows are used if their noise is at most a ten-thousandth of the fall from row to row, else three.
+//! * Else it is the moment at which the point is [`Thresholds::above`] over that level. Before that, the foot still has
+//!   the velocity with which it strikes.
 //!
 //! With [`At::Row`] the state is the last row before that moment; without noise, before the third of these moments.
-//! With [`At::Crossing`] it is the state at the moment. In the first two cases positions are those of line and
-//! polynomial, and velocities their rates if they are differences; recorded velocities are on a line through the same
-//! rows with noise, else through the last two. Noise may put the moment up to eight rows behind the impact. So where a
-//! point's recorded velocity loses more than half of a fall that is faster than twice [`Thresholds::slow`] from one row
-//! to the next, on its level or rebounding from it, the row before that is the last one that counts, in each of the
-//! three cases. In the last case:
+//! With [`At::Crossing`] it is the state at the moment. In the first two cases, positions are on the line or
+//! polynomial. Velocities from differences are replaced by its rates; recorded velocities are on a line, with noise
+//! through the same rows, else through the last two. Noise may put the moment up to eight rows after the impact.
+//! Recorded velocities correct this in all three cases: where a fall faster than twice [`Thresholds::slow`] loses more
+//! than half of its speed from one row to the next, on the point's level or rebounding from it, the row before is the
+//! last one that counts. In the last case:
 //!
-//! * If the next row is before the impact too (the point goes on falling after it), positions lie on the line between
+//! * If the next row is before the impact, too (the point goes on falling after it), positions are on the line between
 //!   the two rows.
-//! * Else time and positions go on from the last three rows before it by the parabola through them (a line through
-//!   two), until the point is where it touches. If it does not get there before the next row, or the next row is far,
-//!   they lie on the line between the two rows after all.
-//! * Velocities are on the line through those of the two rows around the moment if both are before the impact, else of
-//!   the last two, carried on. A velocity from differences belongs to the middle of its rows, and does not count if one
-//!   of them is after the impact.
+//! * Else time and positions are extrapolated by the parabola through the last three rows before the moment (a line
+//!   through two) until the point touches. If it does not touch before the next row, or the next row is far away,
+//!   positions are on the line between the two rows after all.
+//! * Velocities are on the line through the two rows around the moment if both are before the impact; else they are
+//!   extrapolated from the last two. A velocity from differences belongs to the middle of its rows. It does not count
+//!   if one of these rows is after the impact.
 //! * If the descent ends above that height, the row at which it ends is taken as it is.
 //!
-//! None goes back over two rows of one time: between them another foot may have struck.
+//! No extrapolation uses rows from before two rows of one time: between those another foot may have struck.
 //!
-//! A row within that distance that is followed by one of the same time is the state just before the impact, and is
-//! taken as it is, either way. So is the last row of a clip whose descent ends with the clip, if the point is within
-//! [`Thresholds::above`] of z = 0; if it is below, the moment is the one at which it crosses z = 0. In every case the
-//! base is then shifted along z so that the striking point is at z = 0 (a base that is fixed to the world is not).
+//! If a row within that distance is followed by one of the same time, it is the state just before the impact, and is
+//! taken as it is with either [`At`]. So is the last row of a clip whose descent ends with the clip, if the point is
+//! within [`Thresholds::above`] of z = 0; if it is below, the moment is its crossing of z = 0. In every case the base
+//! is then shifted along z so that the striking point is at z = 0 (a base that is fixed to the world is not).
 //!
-//! A simulation without noise can be taken at its word ([`Heights::True`]): a point touches the ground when it crosses
-//! z = 0, or stops within a millionth of the robot's size of it, after a descent of [`Thresholds::drop`] or more. The
-//! moment is where its height is zero if all coordinates go on as the polynomial through up to six rows before it, none
-//! of them from before the last touchdown or from before two rows of one time. With six rows and more each coordinate and
-//! each rate goes on by as many as have foretold its last two values best: accelerations may jump
-//! from row to row, as a controller's do.
-//! Velocities go on as recorded; differences are replaced by the rates of the polynomial. If that does not reach the
-//! ground before the next row, time and positions lie on the line between both rows. A clip that ends aloft ends
-//! without a touchdown.
+//! The heights of a simulation without noise can be taken as exact ([`Heights::True`]). A point then touches the ground
+//! when it crosses z = 0, or stops within a millionth of the robot's size of it, after a descent of
+//! [`Thresholds::drop`] or more. At the moment of contact its height is zero if all coordinates continue on the
+//! polynomial through up to six rows before. None of these rows is before the last touchdown, or before two rows of one
+//! time. With six rows and more, each coordinate and each rate uses as many rows as have predicted its last two values
+//! best, because accelerations may jump from row to row, as with a controller. Recorded velocities are extrapolated;
+//! differences are replaced by the rates of the polynomial. If the polynomial does not reach the ground before the next
+//! row, time and positions are on the line between both rows. A clip that ends aloft ends without a touchdown.
 //!
 //! A jump back in time starts a new clip, and so does a step more than ten times the longest of the clip so far. A
-//! refused sample is passed on in its place and left out of the motion. Touchdowns come in the order of the ends of
-//! their descents and, of one time, of the links. Their contacts are named and closed: the striking one, those that
-//! strike with it (both ends of a flat foot, both feet of a hop), and those that [`Touching`] adds.
+//! refused sample is passed on in its place and left out of the motion. Touchdowns come in the order in which their
+//! descents end; those of one time come in the order of the links. Their contacts are named and closed: the striking
+//! contact, those that strike with it (both ends of a flat foot, both feet of a hop), and those that [`Touching`] adds.
 
 mod carry;
 mod clip;
@@ -101,98 +100,98 @@ use crate::{Error, Reason, Robot};
 use std::fmt;
 use std::str::FromStr;
 
-/// Robots of this size and larger \[m\] have the same thresholds; the size is the greatest distance from the root's
+/// Robots of this size and larger have the same thresholds \[m\]. The size is the greatest distance from the root's
 /// origin to a foot or CoG with all joints at zero.
 pub const SMALL: f64 = 0.25;
 
-/// What counts as a touchdown; of a robot smaller than [`SMALL`] the same part of each as its size is of that.
+/// The thresholds of a touchdown. For a robot smaller than [`SMALL`], each is smaller in proportion to its size.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Thresholds {
-    /// The least height of a descent: 12 mm \[m\].
+    /// The least height of a descent \[m\]: 12 mm.
     pub drop: f64,
-    /// A point that falls more slowly has ended its descent: 0.05 m/s \[m/s\].
+    /// The speed below which a falling point has ended its descent \[m/s\]: 0.05 m/s.
     pub slow: f64,
-    /// The highest level on which a descent may end: 20 mm \[m\].
+    /// The greatest height at which a descent may end \[m\]: 20 mm.
     pub ground: f64,
-    /// How far above the level on which its descent ends a point touches the ground if it slows down: 2 mm \[m\].
+    /// The height above the end of its descent at which a point that slows down touches the ground \[m\]: 2 mm.
     pub above: f64,
-    /// Points that strike at the same row and are no more apart in height strike together: 1 um \[m\].
+    /// The greatest difference in height of points that strike together at one row \[m\]: 1 um.
     pub together: f64,
 }
 
 impl Thresholds {
-    /// Those for `robot` with the `feet` that were added to it.
+    /// Returns the thresholds for `robot` with its additional `feet`.
     pub fn of(robot: &Robot, feet: &[NamedContact]) -> Self {
         let part = (Feet::new(robot, feet).size() / SMALL).min(1.0);
         Self { drop: 0.012 * part, slow: 0.05 * part, ground: 0.02 * part, above: 0.002 * part, together: 1e-6 * part }
     }
 }
 
-/// A state of a recording.
+/// A state of a recording, with its time.
 #[derive(Debug, Clone)]
 pub struct Sample<S> {
-    /// When \[s\].
+    /// The time \[s\].
     pub time: f64,
-    /// The state; without a stance, and without contacts until it is that of a touchdown.
+    /// The state. It has no stance, and no contacts before it becomes a touchdown.
     pub state: State,
-    /// From when to when its velocity was taken \[s\]: at its own time alone, or of differences between two rows.
+    /// The times between which its velocity was measured \[s\]: both its own time, or those of a difference's rows.
     pub rate_over: [f64; 2],
-    /// What the plane does not hold of a base in three dimensions, until the motion is projected (`sagittal`).
+    /// The motion outside the plane of a three-dimensional base, until it is projected (`sagittal`).
     pub spatial: Option<spatial::Spatial>,
-    /// How it reaches the ground, of a touchdown.
+    /// How the foot reaches the ground, if this is a touchdown.
     pub landing: Option<Landing>,
-    /// What the caller knows it by; for a touchdown between two rows the first of them.
+    /// The caller's reference for it; for a touchdown between two rows, that of the first row.
     pub source: S,
 }
 
-/// A sample, or what stands in its place where it was refused.
+/// A sample, or the error of a refused one with its source.
 pub type Sampled<S> = std::result::Result<Sample<S>, (S, Error)>;
 
-/// How a foot reaches the ground, just after a state.
+/// Data of a touchdown.
 #[derive(Debug, Clone)]
 pub struct Landing {
-    /// The sample that it is, or the last one before it, counted from 0 with the refused ones.
+    /// Index of the sample, or of the last sample before the touchdown. It counts from 0 and includes refused samples.
     pub row: usize,
-    /// The name of the contact that reaches the ground, as in the result; of several at once the first.
+    /// The name of the contact that reaches the ground, as in the result; the first one if there are several.
     pub striking: String,
-    /// What was added to the base's z \[m\].
+    /// The shift of the base along z \[m\].
     pub shift_z: f64,
-    /// Which state was taken.
+    /// The state that was taken.
     pub at: At,
-    /// Which other points were taken to touch the ground.
+    /// The other points that were taken to touch the ground.
     pub touching: Touching,
-    /// Whether the foot slows down to the ground and its height has no noise, as in a simulation: the state is then one
-    /// before the impact.
+    /// Whether the foot slows down toward the ground while its height has no noise, as in a simulation. The state is
+    /// then one before the impact.
     pub is_early: bool,
-    /// Whether the foot has fallen more than twice as fast shortly before, as on soft ground: the state may be one after
+    /// Whether the foot fell more than twice as fast shortly before, as on soft ground. The state may then be one after
     /// the impact.
     pub is_slowed: bool,
-    /// Whether it is far under z = 0, as in a recording of other axes or units.
+    /// Whether the foot is far below z = 0, as in a recording with other axes or units.
     pub is_deep: bool,
 }
 
-/// How recorded heights are meant.
+/// The meaning of recorded heights.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Heights {
-    /// Feet float and sink: the ground is where a descent ends.
+    /// Inexact: feet float and sink, so the ground is where a descent ends.
     #[default]
     Recorded,
-    /// As a simulator has them: the ground is z = 0.
+    /// Exact, as in a simulator: the ground is z = 0.
     True,
 }
 
-/// Which state of a touchdown is taken.
+/// The state that is taken for a touchdown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum At {
-    /// At the moment of contact, between two rows.
+    /// The state at the moment of contact, between two rows.
     #[default]
     Crossing,
-    /// The last row before it.
+    /// The last row before that moment.
     Row,
 }
 
 impl At {
-    /// As it is spelled on the command line and in results.
+    /// Returns the name on the command line and in results.
     pub fn name(self) -> &'static str {
         match self {
             Self::Crossing => "crossing",
@@ -201,18 +200,18 @@ impl At {
     }
 }
 
-/// Which points touch the ground in addition to the striking one.
+/// The points that touch the ground in addition to the striking one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[allow(missing_docs, reason = "the text of each variant names its fields")]
 pub enum Touching {
-    /// None.
+    /// No other points.
     Strike,
-    /// Of every other body the lowest point, if it is slower than `speed` \[m/s\] and its height differs from the
-    /// striking point's by no more than `height` \[m\]. Where heights are true ([`Heights::True`]), also every point
-    /// on the ground, or in it by up to `height`, that is slower or goes down: of each body the outer two.
+    /// The lowest point of every other body, if it is slower than `speed` \[m/s\] and its height differs from the
+    /// striking point's by at most `height` \[m\]. With [`Heights::True`], also every point on the ground, or in it by
+    /// up to `height`, that is slower than `speed` or goes down; only the outer two of each body.
     Slow { speed: f64, height: f64 },
-    /// Every point free toward the ground whose height differs from the striking point's by no more than `height`
-    /// \[m\], however it moves.
+    /// Every point that is free toward the ground and whose height differs from the striking point's by at most
+    /// `height` \[m\], however it moves.
     Near { height: f64 },
 }
 
@@ -224,7 +223,7 @@ impl Default for Touching {
 }
 
 impl fmt::Display for Touching {
-    /// As it is read.
+    /// Writes the format that `from_str` reads.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Strike => f.write_str("strike"),

@@ -1,18 +1,18 @@
-//! The noise of heights, and lines through so many rows that they show the motion in it.
+//! The noise of heights, and lines through enough rows to show the motion despite it.
 
 use super::carry::Interpolation;
 use super::window::{SMOOTH, Window};
 use crate::planar::Vector;
 
-/// The noise of a height is measured on so many rows, and a line is laid through no more.
+/// The number of rows on which the noise of a height is measured, and the most rows of a line.
 pub(super) const MEASURED: usize = 64;
-/// So many rows of a clip and more measure noise.
+/// The fewest rows that measure noise.
 const FEWEST: usize = 12;
-/// The median of |x| over the standard deviation of a normal x.
+/// The ratio of the median of |x| to the standard deviation for a normally distributed x.
 const MEDIAN: f64 = 0.6745;
 
 impl<S> Window<S> {
-    /// The noise of all points, at `places` after the window's rows.
+    /// Returns the noise of all points, which are at `places` in the row after the window's rows.
     pub fn noise(&self, time: f64, places: &[Vector<f64>]) -> Vec<f64> {
         let Some(first) = self.frames.len().checked_sub(SMOOTH) else { return Vec::new() };
         let rows = || self.frames.range(first..);
@@ -25,12 +25,12 @@ impl<S> Window<S> {
         places.iter().enumerate().map(|(point, place)| (height(point) - place.z).abs() / noise).collect()
     }
 
-    /// The standard deviation of a point's noise \[m\]: by its median, so that impacts do not count.
+    /// Returns the standard deviation of a point's noise \[m\], from the median, so that impacts do not affect it.
     pub fn deviation(&self, point: usize) -> f64 {
         self.measured(point).unwrap_or(0.0)
     }
 
-    /// The same; `None` if too few rows measure it.
+    /// The same as [`Window::deviation`]; `None` if too few rows measure it.
     pub fn measured(&self, point: usize) -> Option<f64> {
         let noise = self.frames.iter().rev().filter_map(|frame| frame.noise.get(point)).take(MEASURED);
         let mut noise: Vec<f64> = noise.copied().collect();
@@ -41,26 +41,26 @@ impl<S> Window<S> {
         Some(*noise.select_nth_unstable_by(middle, f64::total_cmp).1 / MEDIAN)
     }
 
-    /// How many rows, each `passed` \[s\] after the one before, show the rate of a point: two, or if their noise is
-    /// faster than `slow` \[m/s\], so many that that of the line through them is two thirds of it.
+    /// Returns how many rows, each `passed` \[s\] after the one before, show the rate of a point: two or, if their
+    /// noise is faster than `slow` \[m/s\], enough for a line whose slope has a noise of two thirds of `slow`.
     pub fn rows_of_rate(&self, point: usize, passed: f64, slow: f64) -> usize {
         let noise = self.deviation(point) / (slow * passed);
         if 2.0 * noise * noise <= 1.0 {
             return 2;
         }
-        // The slope of n rows has the variance 12 / (n^3 - n) of one row's.
+        // The variance of the slope of n rows is 12 / (n^3 - n) times that of one row.
         let shows = |&rows: &usize| 27.0 * noise * noise <= (rows * rows * rows - rows) as f64;
         (3..MEASURED).find(shows).unwrap_or(MEASURED)
     }
 
-    /// The mean height of a point in the last `rows` rows.
+    /// Returns the mean height of a point in the last `rows` rows.
     pub fn mean(&self, point: usize, rows: usize) -> f64 {
         let sum: f64 = self.frames.iter().rev().take(rows).map(|frame| frame.places[point].z).sum();
         sum / rows as f64
     }
 
-    /// When the line through the last `rows` rows of a point up to `row` is down at `level`, and these rows, the last
-    /// one first.
+    /// Returns the time at which the line through a point's last `rows` rows up to `row` reaches `level`, and these
+    /// rows, which begin with the last one.
     pub fn along(&self, point: usize, row: usize, rows: usize, level: f64) -> Option<(f64, Vec<usize>)> {
         let before = self.smooth_rows(row, rows);
         let times = self.times(before.iter().copied());

@@ -1,4 +1,4 @@
-//! The points of a robot that can touch the ground, and where they are.
+//! The points of a robot that can touch the ground, and their places.
 
 use super::Touching;
 use crate::contact::{Circle, Feet, HalfPlane, Placement, Point, points};
@@ -9,10 +9,10 @@ use crate::robot::{Base, Robot};
 use crate::state::{NamedContact, State};
 use std::cmp::Ordering;
 
-/// Ground and soles that are taken for level are so up to this slope.
+/// Up to this slope, ground and soles count as level.
 const SLOPE: f64 = 0.15;
 
-/// All points of a robot's feet, in the order of its links, and the memory to place them.
+/// All points of a robot's feet in the order of its links, with memory for their places.
 #[derive(Debug)]
 pub(super) struct Points<'r> {
     robot: &'r Robot,
@@ -27,7 +27,7 @@ impl<'r> Points<'r> {
         let mut all: Vec<(usize, Point)> = Vec::new();
         for (link, point) in Feet::new(robot, feet).iter().flat_map(|foot| points(foot).map(|point| (foot.link, point)))
         {
-            // Shapes of a link may share a corner; it is one point all the same.
+            // Shapes of a link may share a corner, which is one point.
             if !all.contains(&(link, point)) {
                 all.push((link, point));
             }
@@ -41,7 +41,7 @@ impl<'r> Points<'r> {
         self.points.is_empty()
     }
 
-    /// Where the points are at `position` (q), `[x, z]` in the world \[m\].
+    /// Returns the places `[x, z]` of the points in the world \[m\], in the configuration `position` (q).
     pub fn at(&mut self, position: &[f64]) -> Vec<Vector<f64>> {
         let placement = self.placement(position);
         self.points.iter().map(|&(_, point)| HalfPlane::LEVEL.lowest(&placement, point)).collect()
@@ -55,11 +55,11 @@ impl<'r> Points<'r> {
         Placement::new(&self.plan, &self.workspace, base)
     }
 
-    /// Whether on some ground between the slopes ±[`SLOPE`] a point touches before all others of its body, or with them
-    /// to within `together` \[m\]; all are at `places`.
+    /// Returns whether a point touches before all others of its body, on some ground between the slopes ±[`SLOPE`], or
+    /// with them up to `together` \[m\]. All points are at `places`.
     pub fn is_free(&self, point: usize, places: &[Vector<f64>], together: f64) -> bool {
         let Vector { x, z } = places[point];
-        // Over the slope m a point is z - m x high.
+        // Above ground of slope m, the height of a point is z - m x.
         let (mut least, mut most) = (-SLOPE, SLOPE);
         for other in self.of_body(self.body(point)) {
             let [across, above] = [x - places[other].x, z - places[other].z - together];
@@ -74,10 +74,10 @@ impl<'r> Points<'r> {
         least <= most
     }
 
-    /// Shifts `state` along z so that the point `striking` is at z = 0, and names its contacts, those that strike as
-    /// well (`also`) among them, `together` as in [`Points::is_free`]. Where heights are true, points touch that are no
-    /// higher than `level` \[m\], of whatever body, and that stand or go down. Gives the shift \[m\] and the striking one's
-    /// name.
+    /// Shifts `state` along z so that the point `striking` is at z = 0, and names its contacts, including the points
+    /// `also` that strike with it; `together` is that of [`Points::is_free`]. With true heights, points of any body
+    /// that are no higher than `level` \[m\] and stand or go down touch as well. Returns the shift \[m\] and the name
+    /// of the striking contact.
     pub fn touch(
         &mut self,
         state: &mut State,
@@ -98,7 +98,7 @@ impl<'r> Points<'r> {
                 feet.retain(|&point| above(point) <= height && moving(point).length() < speed);
                 closed.append(&mut feet);
                 if let Some(level) = level {
-                    // As of a sole, the outer two of each body; into soft ground they sink.
+                    // Only the outer two of each body, as for a sole. Points may be deep in soft ground.
                     let is_down = |point: usize| {
                         let moving = moving(point);
                         (-height..=level).contains(&places[point].z) && (moving.length() < speed || moving.z < 0.0)
@@ -121,7 +121,7 @@ impl<'r> Points<'r> {
                 closed.extend((0..places.len()).filter(near));
             }
         }
-        // As detected contacts: in the order of the links, within a link along x.
+        // The order is that of detected contacts: by link, and within a link along x.
         let link = |point: usize| self.points[point].0;
         closed.sort_by(|&a, &b| link(a).cmp(&link(b)).then(places[a].x.total_cmp(&places[b].x)));
         state.scene.contacts = Some(closed.iter().map(|&point| self.named(point, &placement)).collect());
@@ -138,7 +138,7 @@ impl<'r> Points<'r> {
         (shift, name)
     }
 
-    /// The lowest point of every body of which none strikes.
+    /// Returns the lowest point of every body without a striking point.
     fn lowest_of_other_bodies(&self, strikers: &[usize], places: &[Vector<f64>]) -> Vec<usize> {
         let striking: Vec<usize> = strikers.iter().map(|&point| self.body(point)).collect();
         let others = (0..self.robot.bodies.len()).filter(|body| !striking.contains(body));
@@ -155,13 +155,13 @@ impl<'r> Points<'r> {
         (0..self.points.len()).filter(move |&point| self.body(point) == body)
     }
 
-    /// How fast a point rises \[m/s\].
+    /// Returns the vertical velocity of a point, positive upward \[m/s\].
     pub fn rate(&mut self, point: usize, state: &State) -> f64 {
         let placement = self.placement(&state.position);
         self.velocity(point, &placement, &state.velocity).z
     }
 
-    /// The velocity of a point after `placement` \[m/s\].
+    /// Returns the velocity of a point \[m/s\]. Requires `placement`.
     fn velocity(&self, point: usize, placement: &Placement, velocity: &[f64]) -> Vector<f64> {
         let Circle { body, center, radius, .. } = HalfPlane::LEVEL.circle(placement, self.points[point].1);
         let arm = ContactPoint { body, center, radius, ground: Rotation::identity() }.arm(&self.workspace);

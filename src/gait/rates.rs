@@ -1,23 +1,23 @@
-//! Velocities of a recording that has none: v = dq/dt by differences of rows.
+//! Velocities for a recording without them: v = dq/dt by differences of rows.
 //!
-//! Rows of one time are an impact: no difference is taken across it, nor from one clip to the next, nor across a
+//! Rows of one time are an impact. No difference is taken across an impact, across the end of a clip, or across a
 //! refused row. At such an end the difference is one-sided.
 
 use super::clip::{Clock, ClockStep};
 use super::{Sample, Sampled};
 use crate::{Error, Reason};
 
-/// Which rows a velocity is taken from.
+/// The rows from which a velocity is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Difference {
-    /// The one before and the one after: smooth, but next to an impact it blends both sides where the recording has no
-    /// two rows of its time.
+    /// The row before and the row after. This is smooth, but next to an impact it blends both sides unless the
+    /// recording has two rows of that time.
     Central,
-    /// The one before and the row itself; of the first row of a clip the row itself and the one after.
+    /// The row before and the row itself; for the first row of a clip, the row itself and the row after.
     Backward,
 }
 
-/// Gives every sample the velocity from its neighbors, one sample late and in order; one without a neighbor is refused.
+/// Computes each sample's velocity from its neighbors, in order and one sample late. Refuses one without a neighbor.
 pub fn rates<S>(samples: impl Iterator<Item = Sampled<S>>, difference: Difference) -> impl Iterator<Item = Sampled<S>> {
     let mut pending = PendingSample { difference, sample: None, before: None };
     let mut clock = Clock::default();
@@ -33,16 +33,16 @@ pub fn rates<S>(samples: impl Iterator<Item = Sampled<S>>, difference: Differenc
     })
 }
 
-/// The sample that waits for the one after it.
+/// The sample that waits for the next one.
 struct PendingSample<S> {
     difference: Difference,
     sample: Option<Sample<S>>,
-    /// Time and position of the neighbor before it.
+    /// Time and position of the sample before it.
     before: Option<(f64, Vec<f64>)>,
 }
 
 impl<S> PendingSample<S> {
-    /// Gives the sample its velocity, `after` being the neighbor that follows.
+    /// Computes the velocity of the sample; `after` is the neighbor that follows.
     fn settle(&mut self, after: Option<&Sample<S>>) -> Option<Sampled<S>> {
         let before = self.before.take();
         let mut sample = self.sample.take()?;

@@ -1,5 +1,5 @@
-//! Motions in three dimensions, projected into the robot's plane row by row ([`project`]), and along the mean heading
-//! of each clip ([`sagittal`]).
+//! Projects motions in three dimensions into the robot's plane: row by row ([`project`]), and along the mean heading of
+//! each clip ([`sagittal`]).
 //!
 //! ```text
 //!     R = rotation(w, x, y, z) P^T        columns of R: the robot's forward f, normal and up in the world, z up
@@ -8,9 +8,9 @@
 //!     left out: h x (x, y), yaw from h, roll
 //! ```
 //!
-//! P are the axes of the robot's plane ([`Plane`]). Heading is the clip's, not the row's: a body that yaws in its
-//! stride does not walk in circles. So turning or shifting a whole clip about the world's z changes nothing but where x
-//! begins. The heading is known at a clip's end, so a clip is held in memory.
+//! P holds the axes of the robot's plane ([`Plane`]). The heading is that of the clip, not of the row: a body that yaws
+//! during its stride does not walk in circles. Turning or shifting a whole clip about the world's z therefore changes
+//! only where x begins. The heading is known at the end of a clip, so the whole clip is held in memory.
 
 use super::clip::{Clock, ClockStep};
 use super::{Sample, Sampled};
@@ -21,26 +21,26 @@ use std::fmt;
 use std::mem::take;
 use std::sync::Mutex;
 
-/// A quaternion whose length is off one by more is none of a rotation: rounding to two digits does not reach it.
+/// The greatest error of a quaternion's length; rounding to two digits stays below it.
 const UNIT: f64 = 0.01;
 
-/// Where a base is and points in the world, as far as the plane does not hold it.
+/// The part of a base's place and orientation that the plane does not hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spatial {
     /// x and y of the root link's origin \[m\].
     pub origin: [f64; 2],
     /// The horizontal part of the robot's forward axis.
     pub forward: [f64; 2],
-    /// The turn about the forward axis \[rad\].
+    /// The rotation about the forward axis \[rad\].
     pub roll: f64,
 }
 
-/// The pitch \[rad\] of a base at x and y `origin` \[m\] with the quaternion `[w, x, y, z]`, which is normalized, and
-/// the rest.
+/// Returns the pitch of a base \[rad\] and its part outside the plane. The base is at x and y `origin` \[m\], with the
+/// quaternion `[w, x, y, z]`, which is normalized.
 ///
 /// # Errors
-/// [`Reason::OutOfRange`] for a quaternion that is not of length one, [`Reason::Inconsistent`] for a robot upside down:
-/// its pitch is not between -pi/2 and pi/2, and a quaternion cannot distinguish a roll from it.
+/// Returns [`Reason::OutOfRange`] if the quaternion's length is not one, and [`Reason::Inconsistent`] if the robot is
+/// upside down: its pitch is then not between -pi/2 and pi/2, and a quaternion cannot distinguish it from a roll.
 pub fn project(origin: [f64; 2], quaternion: [f64; 4], plane: Plane) -> Result<(f64, Spatial)> {
     let length = quaternion.iter().fold(0.0, |length, &part| libm::hypot(length, part));
     if (length - 1.0).abs() > UNIT {
@@ -58,7 +58,7 @@ pub fn project(origin: [f64; 2], quaternion: [f64; 4], plane: Plane) -> Result<(
     Ok((pitch, Spatial { origin, forward: [forward[0], forward[1]], roll }))
 }
 
-/// The rotation of a quaternion of length one; its columns are the turned axes.
+/// Returns the rotation of a quaternion of length one. The columns are the rotated axes.
 fn rotation([w, x, y, z]: [f64; 4]) -> Matrix {
     [
         [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
@@ -72,43 +72,43 @@ fn rotation([w, x, y, z]: [f64; 4]) -> Matrix {
 struct Heading([f64; 2]);
 
 impl Heading {
-    /// `None` if the mean has no direction, as in a whole turn on the spot.
+    /// Returns the mean of a clip; `None` if it has no direction, as in a whole turn on the spot.
     fn mean<'s>(clip: impl Iterator<Item = &'s Spatial>) -> Option<Self> {
         let (mut x, mut y, mut count) = (0.0, 0.0, 0.0);
         for Spatial { forward, .. } in clip {
             (x, y, count) = (x + forward[0], y + forward[1], count + 1.0);
         }
         let length = libm::hypot(x, y);
-        // Below that it is the rounding of the sum.
+        // A shorter sum is rounding.
         (length > count * count * f64::EPSILON).then(|| Self([x / length, y / length]))
     }
 
-    /// A horizontal vector along the heading and to the left of it.
+    /// Returns the components of a horizontal vector along the heading and to its left.
     fn along_and_across(self, [x, y]: [f64; 2]) -> [f64; 2] {
         let Self([cos, sin]) = self;
         [cos * x + sin * y, cos * y - sin * x]
     }
 
-    /// The yaw of a base from the heading, left is positive \[rad\].
+    /// Returns the yaw of a base from the heading, positive to the left \[rad\].
     fn yaw(self, base: &Spatial) -> f64 {
         let [along, across] = self.along_and_across(base.forward);
         libm::atan2(across, along)
     }
 }
 
-/// How much of a motion in three dimensions is not in the plane: of each the largest.
+/// The largest parts of a motion in three dimensions that are not in the plane.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Dropped {
-    /// The turn about the forward axis \[rad\].
+    /// The rotation about the forward axis \[rad\].
     pub roll: f64,
-    /// The turn about the vertical from the clip's heading \[rad\].
+    /// The rotation about the vertical, from the clip's heading \[rad\].
     pub yaw: f64,
     /// The distance from the line along the heading through the middle of the clip \[m\].
     pub sideways: f64,
 }
 
-/// Projects the samples whose base is in three dimensions, a clip late and in order, and adds to `dropped` what is left
-/// out. Samples of a clip that has no heading are refused.
+/// Projects the samples whose base is in three dimensions, in order and one clip late. Adds the parts that are left out
+/// to `dropped`. Refuses the samples of a clip without a heading.
 pub fn sagittal<S>(
     samples: impl Iterator<Item = Sampled<S>>,
     dropped: &Mutex<Dropped>,
@@ -131,7 +131,7 @@ pub fn sagittal<S>(
     })
 }
 
-/// The sample with its x along the heading.
+/// Sets the sample's x to the distance along the heading.
 fn along<S>(heading: Option<Heading>, mut sample: Sample<S>) -> Sampled<S> {
     match (sample.spatial.take(), heading) {
         (Some(Spatial { origin, .. }), Some(heading)) => {
@@ -172,7 +172,7 @@ mod tests {
     use super::*;
     use std::f64::consts::{FRAC_PI_2, PI};
 
-    /// A base that is turned by roll about x, by pitch about y, and then by yaw about z, all axes of the world.
+    /// A base rotated by roll about x, then by pitch about y, then by yaw about z, all of them axes of the world.
     fn turned([yaw, pitch, roll]: [f64; 3], plane: Plane) -> (f64, Spatial) {
         project([3.0, 4.0], quaternion([yaw, pitch, roll]), plane).unwrap()
     }
@@ -184,7 +184,7 @@ mod tests {
     }
 
     fn close(found: f64, expected: f64) {
-        // A handful of roundings of numbers of order one; the arcsine loses digits near its ends.
+        // Allows a few roundings of numbers of order one; the arcsine loses digits near its ends.
         assert!((found - expected).abs() < 1e-14, "{found} {expected}");
     }
 
@@ -202,12 +202,12 @@ mod tests {
 
     #[test]
     fn robot_in_another_plane_keeps_the_floor() {
-        // One that faces its own y axis dips its nose about -x, and heads along the world's y.
+        // This robot faces its own y axis, so its nose dips about -x and it heads along the world's y.
         let (pitch, spatial) = turned([0.0, 0.0, -0.3], Plane::YZ);
         close(pitch, 0.3);
         close(spatial.forward[0], 0.0);
         close(spatial.forward[1], 0.3_f64.cos());
-        // One whose own y axis is up stands upright after a quarter turn about x.
+        // This robot's own y axis is up, so a quarter turn about x puts it upright.
         let (pitch, spatial) = turned([0.0, 0.3, FRAC_PI_2], Plane::XY);
         close(pitch, 0.3);
         close(spatial.roll, 0.0);

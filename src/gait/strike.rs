@@ -1,49 +1,49 @@
-//! When a descent that has ended was a strike.
+//! Decides when a descent that has ended was a strike.
 
 use super::carry::Interpolation;
 use super::window::{BEFORE, SMOOTH, Window};
 use super::{At, Thresholds};
 
-/// A point without noise: that is so small a part of its fall from row to row.
+/// A point has no noise if it is at most this fraction of the point's fall from row to row.
 const CLEAN: f64 = 1e-4;
 
-/// When a point's descent becomes a touchdown.
+/// The moment at which a point's descent becomes a touchdown.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Strike {
     pub point: usize,
-    /// The row of the window that it is, or the last one before it.
+    /// The row in the window at this moment, or the last one before it.
     pub row: usize,
-    /// Of a moment between that row and the next, the point's height \[m\].
+    /// The height of the point at a moment between that row and the next \[m\].
     pub height: Option<f64>,
     /// The last row before the impact.
     pub smooth: usize,
-    /// How the state is found from the rows before.
+    /// The way to the state from the rows before.
     pub onward: Way,
 }
 
-/// How a motion is carried on to a touchdown.
+/// The extrapolation of a motion to a touchdown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Way {
-    /// Slowing down, to a height above its end: by the last rows.
+    /// The point slows down, to a height above the end of its descent: by the last rows.
     Soft,
-    /// To where it ends, by the polynomial through so many rows.
+    /// To the end of the descent, by the polynomial through this many rows.
     Through(usize),
-    /// To where it ends, by the line of least squares through so many rows.
+    /// To the end of the descent, by the least-squares line through this many rows.
     Along(usize),
 }
 
 impl Strike {
-    /// Whether the point is over the level on which it stops.
+    /// Returns whether the point is above the level on which it stops.
     pub fn is_soft(&self) -> bool {
         self.onward == Way::Soft && self.height.is_some()
     }
 }
 
 impl<S> Window<S> {
-    /// The strike of a point whose descent ended at the height `end`, known by its last `rows` rows.
+    /// Returns the strike of a point whose descent ended at the height `end`, as its last `rows` rows show.
     pub fn stopped(&self, point: usize, rows: usize, end: f64, at: At, thresholds: Thresholds) -> Option<Strike> {
         let now = self.frames.len() - 1;
-        // The point came to rest after the row before the last, or after the last.
+        // The point came to rest after the row before the last one, or after the last one.
         let soft = || self.moment(point, end + thresholds.above, now - 1, now.saturating_sub(2));
         if rows > 2 {
             return self.fallen_along(point, rows, end).or_else(soft);
@@ -55,8 +55,8 @@ impl<S> Window<S> {
         }
     }
 
-    /// The strike of a point that was stopped at once, between two of the last three rows; one that falls no faster
-    /// than `slow` \[m/s\] has ended its descent.
+    /// Returns the strike of a point that was stopped at once, between two of the last three rows; `slow` is the speed
+    /// below which a descent has ended \[m/s\].
     fn hit(&self, point: usize, slow: f64) -> Option<Strike> {
         let now = self.frames.len() - 1;
         let end = self.height(point, now).min(self.height(point, now - 1));
@@ -67,19 +67,19 @@ impl<S> Window<S> {
             let times = self.times(rows.iter().copied());
             let onward = Interpolation::at(self.frames[row + 1].sample.time, &times);
             let height = |at: usize| self.height(point, rows[at]);
-            // Twice as fast as a point that does not fall any more.
+            // Twice as fast as a point whose descent has ended.
             let hits = rows.len() > 1 && onward.value(height) <= end && onward.rate(height) < -2.0 * slow;
             hits.then_some(Strike { point, row, height: Some(end), smooth: row, onward: Way::Through(through) })
         })
     }
 
-    /// The strike of a point with noise: where the line through its last `rows` falling rows meets its level.
+    /// Returns the strike of a point with noise: where the line through its last `rows` falling rows reaches its level.
     fn fallen_along(&self, point: usize, rows: usize, level: f64) -> Option<Strike> {
         let now = self.frames.len() - 1;
         let over = level + 2.0 * self.deviation(point);
         let is_over = |row: usize| self.height(point, row) > over;
         let mut row = (1..=now).rev().find(|&row| is_over(row) && is_over(row - 1))?;
-        // Noise decides which row is over it; the line does so less.
+        // Noise affects which row is the last one above the level. It affects the line less.
         for _ in 0..2 {
             let time = self.along(point, row, rows, level)?.0;
             row = (0..=now).rev().find(|&row| self.frames[row].sample.time < time)?;
@@ -89,8 +89,8 @@ impl<S> Window<S> {
         Some(marked.map_or(strike, |row| Strike { row, height: None, onward: Way::Soft, ..strike }))
     }
 
-    /// When the point was last as high as `height`, at row `end` or before; an impact that the recording itself marks
-    /// after that is the moment.
+    /// Returns the moment at which the point was last as high as `height`, at row `end` or before. If the recording
+    /// itself marks an impact after that, this is the moment.
     pub fn moment(&self, point: usize, height: f64, end: usize, smooth: usize) -> Option<Strike> {
         let row = (0..=end).rev().find(|&row| self.height(point, row) >= height)?;
         let after = Strike { point, row, height: Some(height), smooth: smooth.max(row), onward: Way::Soft };
@@ -99,7 +99,7 @@ impl<S> Window<S> {
         Some(marked.unwrap_or(after))
     }
 
-    /// Whether two points strike at the same moment, no more than `within` \[m\] apart in height.
+    /// Returns whether two points strike at the same moment, with a difference in height of at most `within` \[m\].
     pub fn together(&self, one: &Strike, other: &Strike, within: f64) -> bool {
         let close = |a: f64, b: f64| (a - b).abs() <= within;
         one.row == other.row

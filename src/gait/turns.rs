@@ -1,21 +1,21 @@
-//! Angles that a recording gives within one turn, continued over its ends.
+//! Continues angles across full turns that a recording gives within one turn only.
 
 use super::clip::{Clock, ClockStep};
 use super::{Sample, Sampled};
 use crate::robot::{Base, Joint, Robot};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Numbers of few digits may lie so far beyond a turn \[rad\].
+/// Rounded angles may exceed a turn by this much \[rad\].
 const ROUNDED: f64 = 1e-3;
 
-/// The samples with the pitch of the base and the angles of joints without limits continued where they jump by about a
-/// turn from one row to the next within \[-pi, pi\] or \[0, 2 pi\]: whole turns are added to all later ones of the clip.
+/// Continues the pitch of the base and the angles of joints without limits where they jump by about a turn from one row
+/// to the next within \[-pi, pi\] or \[0, 2 pi\]. Whole turns are added to all later rows of the clip.
 pub fn unwrapped<'r, S>(
     samples: impl Iterator<Item = Sampled<S>> + 'r,
     robot: &'r Robot,
 ) -> impl Iterator<Item = Sampled<S>> + 'r {
     let pitch = (robot.base == Base::Floating).then_some(2);
-    // A joint that follows by a part of the angle is elsewhere after a turn.
+    // A mimic joint that follows by a fraction of the angle would be elsewhere after a turn.
     let is_whole = |at: usize| {
         let mut followers = robot.mimic_joints.iter().filter(|mimic| mimic.mimicked == at);
         followers.all(|mimic| mimic.joint.axis.is_revolute() && mimic.multiplier.fract() == 0.0)
@@ -40,7 +40,7 @@ pub fn unwrapped<'r, S>(
     })
 }
 
-/// How many turns an angle jumps.
+/// Returns the number of turns by which an angle jumps.
 fn jump(before: f64, now: f64) -> f64 {
     let within =
         |least: f64, most: f64| [before, now].iter().all(|angle| (least - ROUNDED..=most + ROUNDED).contains(angle));

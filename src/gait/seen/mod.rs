@@ -1,4 +1,4 @@
-//! What a recording shows as a whole: how low its feet come, and whether its rows and its columns fit each other.
+//! A recording as a whole: how low its feet come, and whether its rows and columns are consistent.
 
 mod order;
 mod motion;
@@ -10,29 +10,29 @@ use super::{Heights, Sample, Sampled, Thresholds};
 use crate::Robot;
 use crate::error::rounded;
 
-/// So many touchdowns have a level in common.
+/// The fewest touchdowns or ends of descents from which a common level is computed.
 const ENOUGH: usize = 4;
 
-/// What has been seen of a recording.
+/// Observations of a recording.
 #[derive(Debug, Clone, Default)]
 pub struct Seen {
     /// The least height of a foot \[m\].
     lowest: Option<f64>,
-    /// What is odd about the joints of the first state with such joints, in words.
+    /// The first oddity of the joints of the first state that has one, in words.
     pub oddity: Option<String>,
     order: Order,
     motion: Motion,
-    /// How far below z = 0 each touchdown was found where heights are recorded, apart from deep ones \[m\].
+    /// The depth below z = 0 of each touchdown \[m\], with recorded heights and without deep touchdowns.
     depths: Vec<f64>,
     touchdowns: usize,
-    /// How high the lowest foot has ended descents that are none: too high, or in the ground of a simulation \[m\]; and
-    /// the last row at which it has.
+    /// The heights at which the lowest foot has ended descents that are no touchdowns, because they are too high or in
+    /// the ground of a simulation \[m\]; and the row of the last one.
     ends: Vec<f64>,
     last_end: Option<usize>,
 }
 
 impl Seen {
-    /// That the velocities of samples are not the rates of their positions, as in other units or of other sign.
+    /// Returns a note if velocities are not the rates of positions, as with other units or another sign.
     pub fn misfit<S>(samples: impl Iterator<Item = Sampled<S>>, robot: &Robot) -> Option<String> {
         let (mut clock, mut motion) = (Clock::default(), Motion::default());
         for Sample { state, time, .. } in samples.flatten() {
@@ -41,7 +41,7 @@ impl Seen {
         motion.misfit(robot)
     }
 
-    /// Adds the next sample, whose lowest foot is at this height \[m\].
+    /// Adds the next sample, with the height of its lowest foot \[m\].
     pub(super) fn add<S>(&mut self, sample: &Sample<S>, step: ClockStep, lowest: f64, robot: &Robot) {
         self.lowest = Some(self.lowest.map_or(lowest, |before| before.min(lowest)));
         let Sample { state, time, .. } = sample;
@@ -49,32 +49,32 @@ impl Seen {
             self.oddity = state.oddities(robot).into_iter().next();
         }
         self.order.add(*time, step);
-        // Velocities that were taken from positions fit them.
+        // Velocities that were computed from positions are consistent with them.
         let is_recorded = sample.rate_over == [*time; 2];
         self.motion.add(state, *time, step, is_recorded, robot);
     }
 
-    /// Adds a touchdown, so far below z = 0 where that shows the ground \[m\].
+    /// Adds a touchdown, with its depth below z = 0 if that shows the ground \[m\].
     pub(super) fn add_touchdown(&mut self, depth: Option<f64>) {
         self.touchdowns += 1;
         self.depths.extend(depth);
     }
 
-    /// Adds the height \[m\] at which the lowest foot has ended a descent that is no touchdown, or goes on in the ground;
-    /// several points of one row are one foot.
+    /// Adds the height \[m\] at which the lowest foot has ended a descent that is no touchdown, or that continues in
+    /// the ground. Several points in one row count as one foot.
     pub(super) fn add_end(&mut self, row: usize, height: f64) {
         if self.last_end.replace(row) != Some(row) {
             self.ends.push(height);
         }
     }
 
-    /// What to say if there is no touchdown.
+    /// Returns the message for a recording without touchdowns.
     pub fn nothing_found(&self, thresholds: Thresholds, heights: Heights) -> String {
         if self.order.stands_still() {
             return "no touchdown found: the time never rises from row to row".to_owned();
         }
         let Thresholds { drop, slow, ground, .. } = thresholds;
-        // To 0.1 mm, and 0 in place of -0.
+        // Rounds to 0.1 mm, and turns -0 into 0.
         let lowest = self.lowest.map(|lowest| (1e4 * lowest).round() / 1e4 + 0.0).filter(|lowest| lowest.is_finite());
         let reached = lowest.map_or(String::new(), |lowest| format!("the lowest foot comes to z = {lowest} m; "));
         let must = match heights {
@@ -87,12 +87,12 @@ impl Seen {
         format!("no touchdown found: {reached}a foot must descend {drop:.4} m or more{must}{odd}")
     }
 
-    /// What is odd about the recording.
+    /// Describes oddities of the recording.
     pub fn notes(&self, robot: &Robot, thresholds: Thresholds) -> impl Iterator<Item = String> {
         self.order.notes().chain(self.motion.notes(robot)).chain(self.offset(thresholds)).chain(self.end(thresholds))
     }
 
-    /// That most descents end too high above z = 0, or far below it in a simulation.
+    /// Notes descents that end too high or, in a simulation, far below z = 0: more than half as many as touchdowns.
     fn end(&self, Thresholds { ground, .. }: Thresholds) -> Option<String> {
         let mut ends = self.ends.clone();
         ends.sort_unstable_by(f64::total_cmp);
@@ -114,7 +114,7 @@ impl Seen {
         }
     }
 
-    /// That touchdowns are not at z = 0, most on one side of it.
+    /// Notes that touchdowns are not at z = 0, if most of them are on one side of it.
     fn offset(&self, thresholds: Thresholds) -> Option<String> {
         let mut depths = self.depths.clone();
         depths.sort_unstable_by(f64::total_cmp);

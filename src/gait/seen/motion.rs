@@ -1,4 +1,4 @@
-//! Whether the positions and velocities of a recording fit each other.
+//! Checks whether the positions and velocities of a recording are consistent.
 
 use super::order::Found;
 use crate::Robot;
@@ -7,40 +7,40 @@ use crate::gait::clip::ClockStep;
 use crate::robot::Base;
 use crate::state::State;
 
-/// Velocities fit positions if they are between this part and this many times dq/dt: recordings are noisy.
+/// Velocities are consistent if they are between these multiples of dq/dt: recordings are noisy.
 const FIT: [f64; 2] = [0.55, 1.8];
-/// They are proportional to dq/dt from this correlation on; of noise it is up to 0.5.
+/// From this correlation on, they count as proportional to dq/dt; noise reaches up to 0.5.
 const CORRELATED: f64 = 0.8;
-/// A coordinate that moves at less on average may be noise about one that stands \[m/s, rad/s\].
+/// A coordinate whose mean speed is less may be noise about one that stands \[m/s, rad/s\].
 const MOVING: f64 = 0.1;
-/// So many rows are compared at least.
+/// The fewest steps that are compared.
 const ENOUGH: usize = 30;
-/// No coordinate moves so much faster than its velocity says \[m/s\] \[rad/s\].
+/// A step that differs more from the velocity is a jump \[m/s\] \[rad/s\].
 const FASTEST: [f64; 2] = [8.0, 100.0];
-/// What moves no farther in a step does not jump \[m\] \[rad\].
+/// A step that moves no farther is no jump \[m\] \[rad\].
 const NEAR: f64 = 1e-3;
-/// Turned by the pitch, the base's velocity fits better if the squares of its errors are this part.
+/// Rotated by the pitch, the base's velocity fits better if its squared errors are less than this fraction.
 const BETTER: f64 = 0.5;
-/// So much the base's velocity is in error where it is said to be in its own frame \[m/s\].
+/// The least error of the base's velocity for which it is said to be in its own frame \[m/s\].
 const APART: f64 = 0.01;
 
-/// What has been seen of the motion.
+/// Observations of the motion.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Motion {
-    /// Of each coordinate the sums of v^2, of (dq/dt)^2, of their product, and of the squared change of dq/dt, over
-    /// steps from row to row.
+    /// For each coordinate, sums over the steps from row to row of v^2, of (dq/dt)^2, of their product, and of the
+    /// squared change of dq/dt.
     sums: Vec<[f64; 4]>,
     /// dq/dt in the step before.
     rates: Vec<f64>,
-    /// Of the base's velocity, as it is and turned by the pitch, the sums of squared differences from dq/dt.
+    /// Sums of squared differences from dq/dt of the base's velocity, as it is and rotated by the pitch.
     errors: [f64; 2],
     steps: usize,
-    /// Where positions stand still for a row while the robot moves, and where they jump.
+    /// Rows at which positions stand still while the robot moves, and rows at which positions jump.
     repeats: Found,
     jumps: Found,
-    /// The first coordinate that jumps, and how fast.
+    /// The first coordinate that jumps, and its speed.
     jumped: Option<String>,
-    /// Whether it moved to the row before, and since when it has stood still after that \[s\].
+    /// Whether the robot moved in the step before, and the time since which it has stood still after that \[s\].
     moved: bool,
     stands_since: Option<f64>,
     /// Positions and velocities of the row before.
@@ -48,7 +48,7 @@ pub(super) struct Motion {
 }
 
 impl Motion {
-    /// Adds the next row at `time` \[s\]; whether its velocity `is_recorded`, and not taken from positions.
+    /// Adds the next row at `time` \[s\]. `is_recorded` is false if its velocity was computed from positions.
     pub fn add(&mut self, state: &State, time: f64, step: ClockStep, is_recorded: bool, robot: &Robot) {
         if let ClockStep::Later(passed) = step {
             let rates: Vec<f64> =
@@ -70,11 +70,11 @@ impl Motion {
         }
     }
 
-    /// Looks for rows that repeat the one before, and for jumps, in a step to this time, which `passed` \[s\].
+    /// Looks for rows that repeat the one before and for jumps, in a step of length `passed` that ends at `time` \[s\].
     fn follow(&mut self, rates: &[f64], velocities: &[f64], (time, passed): (f64, f64), robot: &Robot) {
         let moves = rates.iter().any(|rate| rate.abs() > MOVING);
         let stands = rates.iter().all(|rate| *rate == 0.0);
-        // What comes to rest repeats its position, too, and does not move on.
+        // A robot that comes to rest repeats its position, too, but does not move on.
         match self.stands_since.take() {
             Some(since) if moves => self.repeats.add([since; 2]),
             since if stands => self.stands_since = since.or(self.moved.then_some(time)),
@@ -93,7 +93,7 @@ impl Motion {
         }
     }
 
-    /// Compares recorded velocities with positions, `half` a step \[s\] after the middle.
+    /// Compares recorded velocities with positions. The `state` is `half` a step \[s\] after the middle of the step.
     fn compare(&mut self, rates: &[f64], velocities: &[f64], half: f64, state: &State, robot: &Robot) {
         self.sums.resize(rates.len(), [0.0; 4]);
         self.rates.resize(rates.len(), 0.0);
@@ -112,7 +112,7 @@ impl Motion {
         }
     }
 
-    /// What is odd about it.
+    /// Describes oddities of the motion.
     pub fn notes(&self, robot: &Robot) -> impl Iterator<Item = String> {
         let misfit = self.misfit(robot);
         let repeats = self.repeats.text().map(|when| {
@@ -121,7 +121,7 @@ impl Motion {
                  may be missed or false; leave such rows out"
             )
         });
-        // In other units velocities say nothing about jumps.
+        // Velocities in other units are no measure of jumps.
         let jumps = self.jumps.text().zip(self.jumped.as_ref()).filter(|_| misfit.is_none()).map(|(when, jumped)| {
             format!(
                 "positions jump {when} ({jumped}): touchdowns there may be false; leave outliers out, and let time \
@@ -138,12 +138,12 @@ impl Motion {
         [repeats, jumps, turned, misfit].into_iter().flatten()
     }
 
-    /// That velocities of the recording are not the rates of its positions, as in other units or of other sign.
+    /// Notes that velocities are not the rates of positions, as with other units or another sign.
     pub fn misfit(&self, robot: &Robot) -> Option<String> {
         let misfit = |(name, &[squared, rates, product, changes]): (&str, &[f64; 4])| {
             let (correlation, factor) = (product / (squared * rates).sqrt(), product / rates);
             if changes > rates {
-                // Poses without an order, or too far apart for a difference to be a rate.
+                // The poses have no order, or are too far apart for their difference to be a rate.
                 None
             } else if squared == 0.0 && rates > MOVING * MOVING * self.steps as f64 {
                 Some(format!("{name} is 0 although it moves"))

@@ -1,24 +1,24 @@
-//! Whether the rows of a recording follow each other in time.
+//! Checks whether the rows of a recording follow each other in time.
 
 use crate::error::{rounded, shortest_within};
 use crate::gait::clip::ClockStep;
 
-/// Time that goes back by no more steps is that of rows out of order.
+/// If time goes back by at most this many steps, rows are out of order.
 const FEW_STEPS: f64 = 10.0;
-/// A step of time lacks rows if it is so many times the next one and the longest of those before that do not.
+/// Rows are missing in a step that is this many times as long as the next one and as the longest before without a gap.
 const GAP: f64 = 1.8;
 /// A recording of a gait has several rows in this time \[s\].
 const LONG: f64 = 0.5;
-/// A time is shown to this \[s\].
+/// The accuracy with which a time is shown \[s\].
 const ACCURATE: f64 = 1e-6;
-/// More gaps, as a part of all rows, are those of uneven steps.
+/// If more than this fraction of rows has a gap, steps are uneven and no rows are missing.
 const FEW_GAPS: f64 = 0.05;
 
-/// What has been seen of the times.
+/// Observations of the times.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Order {
     rows: usize,
-    /// Where it goes back by a few steps, within the clip.
+    /// Where time goes back by a few steps, within the clip.
     returns: Found,
     gaps: Found,
     /// Where three rows have the same time.
@@ -28,13 +28,13 @@ pub(super) struct Order {
     /// The shortest step forward of all, and the last one of the clip \[s\].
     shortest: Option<f64>,
     last_step: Option<f64>,
-    /// The longest step of the clip before the last one, apart from gaps \[s\].
+    /// The longest step of the clip before the last step, without gaps \[s\].
     longest: Option<f64>,
-    /// How many rows have this time.
+    /// The number of rows that have the current time.
     together: usize,
 }
 
-/// How often something was found, and from when to when the first time \[s\].
+/// The number of findings, and the times between which the first one lies \[s\].
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Found {
     count: usize,
@@ -47,7 +47,7 @@ impl Found {
         self.first.get_or_insert(first);
     }
 
-    /// How often and when.
+    /// Describes how often and when; `None` if nothing was found.
     pub fn text(&self) -> Option<String> {
         let [from, to] = self.first?;
         let times = if self.count == 1 { "once".to_owned() } else { format!("{} times", self.count) };
@@ -82,7 +82,7 @@ impl Order {
             ClockStep::Impact if self.together == 2 => self.halts.add([time; 2]),
             ClockStep::Impact => {}
             ClockStep::NewClip => {
-                // A clip of its own begins anywhere.
+                // A clip of its own may begin at any time.
                 let few = self.last_step.map_or(0.0, |step| FEW_STEPS * step);
                 if first < time && time < before && before - time <= few {
                     self.returns.add([before, time]);
@@ -94,12 +94,12 @@ impl Order {
         self.clip = [if step == ClockStep::NewClip { time } else { first }, time];
     }
 
-    /// Whether time rises from no row to the next.
+    /// Returns whether time never rises from one row to the next.
     pub fn stands_still(&self) -> bool {
         self.rows > 1 && self.shortest.is_none()
     }
 
-    /// What is odd about them.
+    /// Describes oddities of the times.
     pub fn notes(&self) -> impl Iterator<Item = String> {
         let few_gaps = self.gaps.count as f64 <= FEW_GAPS * self.rows as f64;
         let gaps = self.gaps.text().filter(|_| few_gaps);
