@@ -5,38 +5,38 @@
 //!     N at five points --quartic--> sign changes, least |N| --bisected on N itself--> places to ask
 //! ```
 //!
-//! Where a link rolls from one corner to another, both are closed for a moment: such places are bisected and asked, too.
+//! A link that rolls from one corner to another closes both for a moment: these places are bisected and asked, too.
 //!
-//! A combination that one clearly violated inequality excludes, on the whole interval or near a zero, is not followed
-//! there. Nothing here decides anything: at every place where a zero may be, the regime itself is asked for. What N
-//! does between the five points beyond its fourth differences is not seen; that is the part that is not guaranteed.
+//! A combination is not followed where one clearly violated inequality excludes it, on the whole interval or near a
+//! zero. This search decides nothing: wherever a zero may be, the regime itself is asked for. It does not see changes
+//! of N between the five points beyond its fourth differences; that part is not guaranteed.
 //!
-//! Where the regimes of two points differ, [`decisive_zero`] says where the border between them is likely.
+//! If the regimes of two points differ, [`decisive_zero`] returns the likely place of the border between them.
 
 use super::model::Watched;
 use crate::budget::is_spent;
 use std::sync::Arc;
 
-/// Points at which quantities are computed in an interval: its ends and three between them.
+/// The number of points in an interval at which quantities are computed: its ends and three between them.
 const NODES: usize = 5;
 
-/// How far beside a zero or a turn of the quartic the quantity itself is asked, in steps between the points.
+/// The distance from a zero or turn of the quartic at which the quantity itself is computed, in steps between points.
 const STEP: f64 = 0.125;
 
-/// To what zeros and turns of the quartic are found, in these steps.
+/// The accuracy of zeros and turns of the quartic, in the same steps.
 const NODE_RESOLUTION: f64 = 1e-9;
 
-/// An interval is halved while fourth differences are greater than this part of the numbers, so many times at most.
+/// An interval is halved up to `HALVINGS` times while fourth differences exceed this fraction of the numbers.
 const SMOOTH: f64 = 0.05;
 const HALVINGS: usize = 5;
 
-/// A least |N| is searched for where the quartic comes as near to zero as this part of the numbers.
+/// A minimum of |N| is searched for if the quartic comes as near to zero as this fraction of the numbers.
 const NEAR: f64 = 0.05;
 
-/// What f64 leaves of a zero, as part of the numbers.
+/// The rounding of a zero in f64, as a fraction of the numbers.
 const ROUNDING: f64 = 1e-9;
 
-/// The most places that are asked in one interval.
+/// The greatest number of places that are asked in one interval.
 const MOST: usize = 200;
 
 /// A quantity that is followed, by its index in [`Watched`].
@@ -44,14 +44,14 @@ const MOST: usize = 200;
 enum Tracked {
     Determinant(usize),
     Numerator(usize),
-    /// The least inequality of a combination: positive where it is an outcome.
+    /// The least of the inequalities of a combination: positive where it is an outcome.
     Combination(usize),
     Clearance(usize),
 }
 
 impl Tracked {
-    /// Whether `watched` holds the same quantity as `node`: inequalities depend on the set of contacts, heights of feet
-    /// do not.
+    /// Returns whether `watched` holds the same quantity as `node`: inequalities depend on the set of contacts, but
+    /// heights of feet do not.
     fn is_in(self, watched: &Watched, node: &Watched) -> bool {
         match self {
             Self::Clearance(at) => at < watched.clearance.len(),
@@ -81,7 +81,7 @@ impl Tracked {
         }
     }
 
-    /// Whether other inequalities clearly exclude its combination at both of two places, given between 0 and 4.
+    /// Returns whether other inequalities clearly exclude its combination at both of two places, given from 0 to 4.
     fn is_excluded(self, nodes: &[Arc<Watched>], places: [f64; 2]) -> bool {
         let inequalities = &nodes[0].inequalities;
         let combination = match self {
@@ -107,13 +107,13 @@ impl Tracked {
     }
 }
 
-/// Whether both have the inequalities of the same combinations of the same contacts.
+/// Returns whether both have the inequalities of the same combinations of the same contacts.
 fn same_combinations(one: &Watched, other: &Watched) -> bool {
     one.inequalities.ends == other.inequalities.ends && one.contacts == other.contacts
 }
 
-/// Places between `a` and `b`, in ascending order, at which the regime may differ from that at both ends; zeros nearer
-/// to each other than `resolution` count as one.
+/// Returns the places between `a` and `b`, in ascending order, at which the regime may differ from the one at both
+/// ends. Zeros with a distance of less than `resolution` count as one.
 pub fn suspects(watch: &mut impl FnMut(f64) -> Option<Arc<Watched>>, a: f64, b: f64, resolution: f64) -> Vec<f64> {
     let mut search = Search { watch, resolution, found: Vec::new() };
     search.interval(a, b, HALVINGS);
@@ -124,8 +124,8 @@ pub fn suspects(watch: &mut impl FnMut(f64) -> Option<Arc<Watched>>, a: f64, b: 
     found
 }
 
-/// Where the quantity is zero that decides between `a` and `b`: whether a foot is down, or a combination an outcome;
-/// `None` if no such quantity differs in sign.
+/// Returns the zero of the quantity that decides between `a` and `b`: whether a foot is down, or whether a combination
+/// is an outcome. `None` if no quantity of this kind differs in sign.
 pub fn decisive_zero(
     watch: &mut impl FnMut(f64) -> Option<Arc<Watched>>,
     a: f64,
@@ -151,7 +151,7 @@ struct Search<'w, W> {
     found: Vec<f64>,
 }
 
-/// Places in an interval where a quantity is zero, and where it comes near zero.
+/// Places in an interval where a quantity is zero, and places where it comes near zero.
 #[derive(Default)]
 struct Zeros {
     crossed: Vec<f64>,
@@ -164,7 +164,7 @@ impl<W: FnMut(f64) -> Option<Arc<Watched>>> Search<'_, W> {
             return;
         }
         let place = |k: f64| a + (b - a) * (k / (NODES - 1) as f64);
-        // The same numbers as those of its halves.
+        // The same numbers as the places of the interval's halves.
         let middle = 0.5 * (a + b);
         let places: [f64; NODES] = [a, 0.5 * (a + middle), middle, 0.5 * (middle + b), b];
         let nodes: Option<Vec<Arc<Watched>>> = places.iter().map(|&at| (self.watch)(at)).collect();
@@ -175,7 +175,7 @@ impl<W: FnMut(f64) -> Option<Arc<Watched>>> Search<'_, W> {
             self.found.extend(&places[1..NODES - 1]);
             return;
         };
-        // Its halves have nothing to add.
+        // The halves of an interval would find nothing more.
         if halvings == HALVINGS {
             for (at, ends) in places.windows(2).zip(nodes.windows(2)) {
                 self.rolls([(at[0], &ends[0]), (at[1], &ends[1])]);
@@ -212,7 +212,7 @@ impl<W: FnMut(f64) -> Option<Arc<Watched>>> Search<'_, W> {
         self.found.extend(touched.into_iter().chain(crossed));
     }
 
-    /// Adds the places between two at which a link rolls from one corner to another: both may be closed there.
+    /// Adds the places between two others at which a link rolls from one corner to another: both may be closed there.
     fn rolls(&mut self, [(mut a, first), (mut b, last)]: [(f64, &Arc<Watched>); 2]) {
         while first.corners != last.corners && b - a > self.resolution && !is_spent() {
             let middle = 0.5 * (a + b);
@@ -232,7 +232,7 @@ impl<W: FnMut(f64) -> Option<Arc<Watched>>> Search<'_, W> {
         }
     }
 
-    /// Adds the places where a quantity with these `values` at the nodes is zero or comes near zero.
+    /// Adds the places at which a quantity with these `values` at the nodes is zero or comes near zero.
     fn zeros(
         &mut self,
         quantity: Tracked,
@@ -253,7 +253,7 @@ impl<W: FnMut(f64) -> Option<Arc<Watched>>> Search<'_, W> {
         let mut breaks = vec![ends[0]];
         breaks.extend(turns.iter().map(|&turn| (turn, curve.at(turn))));
         breaks.push(ends[1]);
-        // A step aside, within a piece of the curve.
+        // The places one step to either side, within a piece of the curve.
         let beside = |x: f64, [from, to]: [f64; 2]| [(x - STEP).max(from), (x + STEP).min(to)];
         for pair in breaks.windows(2) {
             let [(from, first), (to, last)] = [pair[0], pair[1]];
@@ -282,7 +282,7 @@ impl<W: FnMut(f64) -> Option<Arc<Watched>>> Search<'_, W> {
     }
 }
 
-/// The quantities of all combinations that no inequality clearly excludes, and their values at the nodes.
+/// Returns the quantities of all combinations that no inequality clearly excludes, with their values at the nodes.
 fn followed(nodes: &[Arc<Watched>]) -> Vec<(Tracked, [f64; NODES])> {
     let inequalities = &nodes[0].inequalities;
     let mut all: Vec<Tracked> = (0..nodes[0].clearance.len()).map(Tracked::Clearance).collect();
@@ -301,7 +301,7 @@ fn followed(nodes: &[Arc<Watched>]) -> Vec<(Tracked, [f64; NODES])> {
     all.into_iter().map(|quantity| (quantity, quantity.values(nodes))).collect()
 }
 
-/// Whether the curve through these values clearly keeps its sign; one that is zero throughout has none to change.
+/// Returns whether the curve through these values clearly keeps its sign. A constant curve does, even if it is zero.
 fn is_clear(values: &[f64; NODES]) -> bool {
     let least = values.iter().fold(f64::INFINITY, |least, value| least.min(value.abs()));
     let same = values.iter().all(|&value| (value < 0.0) == (values[0] < 0.0));
@@ -318,11 +318,11 @@ fn fourth_difference([a, b, c, d, e]: &[f64; NODES]) -> f64 {
     a - 4.0 * b + 6.0 * c - 4.0 * d + e
 }
 
-/// A polynomial of fourth degree, by ascending powers.
+/// A polynomial of degree four, by ascending powers.
 struct Quartic([f64; NODES]);
 
 impl Quartic {
-    /// Through the values at 0, 1, 2, 3, 4, by Newton's forward differences.
+    /// The quartic through the values at 0, 1, 2, 3, 4, by Newton's forward differences.
     fn through(values: &[f64; NODES]) -> Self {
         let mut differences = *values;
         for order in 1..NODES {
@@ -344,7 +344,7 @@ impl Quartic {
         horner(&self.0, x)
     }
 
-    /// Where it turns between 0 and 4.
+    /// Returns its turning points between 0 and 4.
     fn turns(&self) -> Vec<f64> {
         sign_changes(&slope(&self.0))
     }
@@ -358,7 +358,7 @@ fn slope(polynomial: &[f64]) -> Vec<f64> {
     polynomial.iter().enumerate().skip(1).map(|(power, coefficient)| power as f64 * coefficient).collect()
 }
 
-/// Where a polynomial changes its sign between 0 and 4, in ascending order: once at most between two turns.
+/// Returns the sign changes of a polynomial between 0 and 4, ascending: at most one between two turning points.
 fn sign_changes(polynomial: &[f64]) -> Vec<f64> {
     if polynomial.len() < 2 {
         return Vec::new();
@@ -371,13 +371,13 @@ fn sign_changes(polynomial: &[f64]) -> Vec<f64> {
     breaks.windows(2).filter(differ).map(|pair| zero(&mut |x| value(x), pair[0], pair[1], NODE_RESOLUTION)).collect()
 }
 
-/// A zero of `f` between `a` and `b`, if its signs there differ, else the middle; or a place where it is not a number.
+/// Returns a zero of `f` between `a` and `b` if the signs there differ, else the middle; or a place where `f` is NaN.
 fn zero(f: &mut impl FnMut(f64) -> f64, mut a: f64, mut b: f64, resolution: f64) -> f64 {
     let (mut at_a, mut at_b) = (f(a), f(b));
     if (at_a < 0.0) == (at_b < 0.0) {
         return 0.5 * (a + b);
     }
-    // False position with the Illinois rule, and bisection where it does not shrink the bracket fast.
+    // False position with the Illinois rule, and bisection when that does not shrink the bracket fast.
     let mut kept = 0_i32;
     for step in 0..100 {
         if b - a <= 0.1 * resolution {
@@ -405,9 +405,9 @@ fn zero(f: &mut impl FnMut(f64) -> f64, mut a: f64, mut b: f64, resolution: f64)
     0.5 * (a + b)
 }
 
-/// The place of the least `f` between two places with its values there (golden section), or any place where it is
-/// negative or not a number: there the scene is another one. `None` once it clearly stays above zero: where it is at
-/// least half of what it is at the ends, no bend of its own brings it there.
+/// Returns the place of the minimum of `f` between two places with given values (golden section), or any place where
+/// `f` is negative or NaN (there the scene is another one). `None` once `f` clearly stays above zero: if it is more
+/// than half of its values at the ends, its curvature does not bring it to zero.
 fn least_place(
     f: &mut impl FnMut(f64) -> f64,
     [(mut a, mut at_a), (mut b, mut at_b)]: [(f64, f64); 2],
@@ -458,7 +458,7 @@ mod tests {
 
     #[test]
     fn every_turn_of_a_quartic_is_found() {
-        // Its slope is (x - 0.001) (x - 0.003) (x - 3.999).
+        // The slope is (x - 0.001) (x - 0.003) (x - 3.999).
         let [a, b, c] = [0.001, 0.003, 3.999];
         let powers = [0.5, -a * b * c, (a * b + b * c + c * a) / 2.0, -(a + b + c) / 3.0, 0.25];
         let turns = Quartic(powers).turns();

@@ -5,18 +5,18 @@ use super::line::{Along, Bracket, Landscape, Probe, RESOLUTION, bisect};
 use super::model::Solver;
 use std::sync::Arc;
 
-/// How often a cell is quartered, and into how many cells at most.
+/// The number of times that a cell is quartered, and the number of cells that this makes, at most.
 const QUARTERINGS: usize = 9;
 const MOST_CELLS: usize = 400;
 
-/// How far a curve may be from its chord, as part of the ranges, and to what its points between crossings are found.
+/// The greatest distance of a curve from its chord, as a fraction of the ranges, and the accuracy of its inner points.
 const STRAIGHT: f64 = 5e-5;
 const FOUND: f64 = 1e-9;
 
-/// How often a chord is halved.
+/// The number of times that a chord is halved, at most.
 const BENDS: usize = 6;
 
-/// Where a cell is divided: near its middle, which may be a special place.
+/// The place where a cell is divided: near its middle, since the middle itself may be a special place.
 const HALF: f64 = 0.506_17;
 
 /// A cell: its least and its greatest corner, and its edges below, to the right, above and to the left.
@@ -29,14 +29,14 @@ pub struct GridCell {
 /// Traces borders through cells.
 pub struct Trace<'s, 'm> {
     pub solver: &'s mut Solver<'m>,
-    /// To which borders are found along each parameter.
+    /// The accuracy of borders along each parameter.
     pub resolution: [f64; 2],
-    /// So far.
+    /// The number of cells so far.
     pub cells: usize,
     pub segments: Vec<Segment>,
 }
 
-/// A border that enters a cell, met on a walk around it, counter-clockwise; what was met before is on its left.
+/// A border that enters a cell, met on a counter-clockwise walk around it. Its left side is the one met before.
 #[derive(Debug, Clone)]
 struct BorderEntry {
     point: [f64; 2],
@@ -44,14 +44,14 @@ struct BorderEntry {
 }
 
 impl BorderEntry {
-    /// The piece of the border from here to `to`.
+    /// Returns the segment of the border from here to `to`.
     fn segment(&self, to: [f64; 2]) -> Segment {
         Segment { from: self.point, to, sides: self.sides.clone() }
     }
 }
 
 impl GridCell {
-    /// All borders that enter, counter-clockwise from the least corner.
+    /// Returns all borders that enter the cell, counter-clockwise from the least corner.
     fn entries(&self) -> Vec<BorderEntry> {
         let [[x0, y0], [x1, y1]] = self.corners;
         let corners = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
@@ -60,7 +60,7 @@ impl GridCell {
         let mut entries = Vec::new();
         let mut before = walk[3].last();
         for (edge, point) in walk.iter().zip(corners) {
-            // A border may pass through a corner itself: then two edges do not agree about it.
+            // A border may pass through the corner itself; the two edges then disagree about the corner.
             if *before != edge.first {
                 let sides = Sides { left: Arc::clone(before), right: Arc::clone(&edge.first), transition: None };
                 entries.push(BorderEntry { point, sides });
@@ -80,7 +80,7 @@ impl GridCell {
 }
 
 impl<'s, 'm> Trace<'s, 'm> {
-    /// Finds the segments of a cell that was quartered so often.
+    /// Finds the segments of a cell, which is the result of this many `quarterings`.
     pub fn cell(&mut self, cell: GridCell, quarterings: usize) {
         self.cells += 1;
         let entries = cell.entries();
@@ -103,7 +103,7 @@ impl<'s, 'm> Trace<'s, 'm> {
         }
     }
 
-    /// Adds a segment of a cell with these `corners`, with points of the border between its ends as long as it is not
+    /// Adds a segment of a cell with these `corners`. Points of the border are inserted until the segments are
     /// straight.
     fn bend(&mut self, chord: Segment, corners: &[[f64; 2]; 2], bends: usize) {
         match self.off_chord(&chord, corners).filter(|_| bends > 0) {
@@ -116,8 +116,8 @@ impl<'s, 'm> Trace<'s, 'm> {
         }
     }
 
-    /// The point of the border next to a chord's middle, within the cell; `None` if the chord is straight enough, or the
-    /// point is not found.
+    /// Returns the point of the border nearest to a chord's middle, within the cell; `None` if the chord is straight
+    /// enough or the point is not found.
     fn off_chord(&mut self, chord: &Segment, corners: &[[f64; 2]; 2]) -> Option<[f64; 2]> {
         let ranges = self.resolution.map(|resolution| resolution / RESOLUTION);
         let along = [0, 1].map(|axis| (chord.to[axis] - chord.from[axis]) / ranges[axis]);
@@ -126,10 +126,10 @@ impl<'s, 'm> Trace<'s, 'm> {
             return None;
         }
         let middle = [0, 1].map(|axis| 0.5 * (chord.from[axis] + chord.to[axis]));
-        // To the chord's left, for each unit of the ranges.
+        // A unit of the ranges to the left of the chord.
         let left_of = [-along[1] / length * ranges[0], along[0] / length * ranges[1]];
         let off_middle = |off: f64| [0, 1].map(|axis| middle[axis] + off * left_of[axis]);
-        // How far it is to the cell's edge on either side, and a little beyond it, where the chord may lie on it.
+        // The distance to the cell's edge on one side, and a little more, because the chord may lie on the edge.
         let room = |way: f64| {
             let to_edge = |axis: usize| {
                 let [low, high] = corners.map(|corner| corner[axis]);
@@ -151,13 +151,13 @@ impl<'s, 'm> Trace<'s, 'm> {
             }
             let mut found = Vec::new();
             bisect(&mut line, &below, &above, FOUND, &mut found);
-            // Other borders may be near.
+            // Only borders between these two regimes count: others may be near.
             let own = found.iter().filter(|border| border.below.regime == *right && border.above.regime == *left);
             let off = own.map(Bracket::at).min_by(|a, b| a.abs().total_cmp(&b.abs()));
             if let Some(off) = off {
                 return (off.abs() > STRAIGHT).then(|| off_middle(off));
             }
-            // A third region lies between both here.
+            // Both sides are there without a common border: a third region lies between them.
             if below.regime == *right && above.regime == *left {
                 return None;
             }
@@ -168,7 +168,7 @@ impl<'s, 'm> Trace<'s, 'm> {
         }
     }
 
-    /// The quarters of a cell; only the lines between them are searched again.
+    /// Returns the quarters of a cell. Only the lines between them are searched anew.
     fn quarters(&mut self, cell: &GridCell) -> [GridCell; 4] {
         let ([x0, y0], [x, y], [x1, y1]) = (cell.corners[0], cell.middle(), cell.corners[1]);
         let [below, right, above, left] = &cell.edges;
@@ -192,8 +192,8 @@ impl<'s, 'm> Trace<'s, 'm> {
     }
 }
 
-/// Pairs each entry with the one that has the same regimes the other way round and is `alike`; `None` if an entry has
-/// no such partner or several, or if pieces between them would cross.
+/// Pairs each entry with the one that has the same regimes in reverse and is `alike`. `None` if an entry has no partner
+/// or several, or if the segments between partners would cross.
 fn pairs(entries: &[BorderEntry], alike: impl Fn(&Sides, &Sides) -> bool) -> Option<Vec<[usize; 2]>> {
     let mut pairs = Vec::new();
     for (at, BorderEntry { sides, .. }) in entries.iter().enumerate() {

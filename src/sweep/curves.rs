@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 /// The outcomes of one region, at ascending values of the parameter.
 #[derive(Debug, Clone, Default)]
 pub struct RegionCurves {
-    /// At the region's ends and as many places between them as the curves need.
+    /// The points at the region's ends and as many between them as the curves need.
     pub places: Vec<CurvePoint>,
 }
 
@@ -25,28 +25,27 @@ pub struct RegionCurves {
 pub struct CurvePoint {
     /// The value of the parameter.
     pub at: f64,
-    /// Every outcome's modes and motion, in the order of modes, which all points of a region share.
+    /// The modes and motion of every outcome, in the order of modes, which all points of a region share.
     pub outcomes: Vec<(Vec<Mode>, Motion)>,
-    /// The paper's section 4 for each contact, if it was asked for and G is regular.
+    /// The paper's section 4 for each contact, if it was requested and G is regular.
     pub explanation: Option<Explanation>,
 }
 
-/// The whole range has so many even intervals, and a region at least so many.
+/// The number of even intervals in the whole range, and the least number in a region.
 const EVEN: f64 = 160.0;
 const LEAST: f64 = 8.0;
 
-/// An interval is halved where its middle lies farther off the line than this part of the largest value.
+/// An interval is halved if its middle is farther off the line than this fraction of the largest value.
 const STRAIGHT: f64 = 5e-4;
 
-/// How often an interval is halved at most.
+/// The number of times that an interval is halved, at most.
 const HALVINGS: usize = 7;
 
-/// The largest velocity after and impulse of each contact in turn, in all places, by which deviations are measured.
+/// Scales of deviations: the largest velocity after the impact and largest impulse of each contact, at all points.
 type Scales = Vec<f64>;
 
 impl RegionCurves {
-    /// The curves of all regions that were found in `model`; reports [`RegionCurves::work`] pieces of work to
-    /// `workers`.
+    /// Computes the curves of all regions found in `model`. Reports [`RegionCurves::work`] pieces of work to `workers`.
     pub fn of(model: &RobotStudy, survey: &Survey, workers: Workers) -> Vec<Self> {
         let Some(parameter) = model.study.parameters().first() else { return Vec::new() };
         let range = parameter.range();
@@ -80,14 +79,14 @@ impl RegionCurves {
         courses
     }
 
-    /// How many pieces of work the courses of a survey of `model` are.
+    /// Returns the number of pieces of work for the curves of a survey of `model`.
     pub fn work(model: &RobotStudy, survey: &Survey) -> usize {
         let range = model.study.parameters().first().map_or(0.0, |parameter| parameter.range());
         2 * survey.regions.iter().map(|region| even(region, range).len()).sum::<usize>()
     }
 }
 
-/// Even places in a region, from one border to the other, of which it stays a little away.
+/// Returns evenly spaced places in a region, from just inside one border to just inside the other.
 fn even(region: &Region, range: f64) -> Vec<f64> {
     let width = region.to - region.from;
     let inside = (RESOLUTION * range).min(0.25 * width);
@@ -96,7 +95,7 @@ fn even(region: &Region, range: f64) -> Vec<f64> {
     (0..=count as usize).map(|k| from + (to - from) * (k as f64 / count)).collect()
 }
 
-/// Adds the points that straight lines between two neighbors need in between.
+/// Adds the points between two neighbors that straight lines need.
 fn between(
     solver: &mut Solver,
     (a, b): (&CurvePoint, &CurvePoint),
@@ -118,7 +117,7 @@ fn between(
 }
 
 impl CurvePoint {
-    /// The outcomes at `at`; `None` if they are not those of the regime.
+    /// Returns the outcomes at `at`; `None` if they are not those of the regime.
     fn of(solver: &mut Solver, at: f64, regime: &Regime) -> Option<Self> {
         let answer = solver.answer(&[at]);
         let same = Regime::of(&answer) == *regime;
@@ -130,7 +129,7 @@ impl CurvePoint {
         Some(Self { at, outcomes, explanation: analysis.explanation })
     }
 
-    /// The velocity after and the impulse of each contact in turn, outcome by outcome.
+    /// Returns the velocity after the impact and the impulse of each contact in turn, outcome by outcome.
     fn numbers(&self) -> impl Iterator<Item = [f64; 2]> {
         let motions = self.outcomes.iter().map(|(_, motion)| motion.velocity_after.iter().zip(&motion.impulse));
         motions.flatten().flat_map(|(velocity, impulse)| [*velocity, *impulse])
@@ -143,7 +142,7 @@ impl CurvePoint {
         }
     }
 
-    /// Whether it lies on the straight line between its neighbors, as far as is visible.
+    /// Returns whether the point is visibly on the straight line between its neighbors.
     fn is_on_line(&self, a: &Self, b: &Self, scales: &Scales) -> bool {
         let ends = a.numbers().zip(b.numbers());
         let straight = self.numbers().zip(ends).zip(scales.iter().cycle()).all(|((own, (a, b)), scale)| {
@@ -155,7 +154,7 @@ impl CurvePoint {
         let turns = angles(self).into_iter().zip(angles(a).into_iter().zip(angles(b)));
         straight
             && turns.into_iter().all(|(own, (a, b))| {
-                // From a full turn less: an angle goes on at -pi where it leaves pi.
+                // Whole turns are removed, because an angle that leaves pi continues at -pi.
                 let off = libm::remainder(own - a, 2.0 * PI) + libm::remainder(own - b, 2.0 * PI);
                 off.abs() <= STRAIGHT * 2.0 * PI
             })

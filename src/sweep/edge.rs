@@ -1,4 +1,4 @@
-//! The borders that cross an edge of a cell in the plane of two parameters.
+//! The borders that cross one edge of a cell in the plane of two parameters.
 
 use super::line::{Along, Bracket, Probe, brackets, stretches};
 use super::model::Solver;
@@ -11,7 +11,7 @@ use std::sync::Arc;
 pub struct GridLine {
     /// The parameter that varies.
     pub axis: usize,
-    /// The other one's value.
+    /// The value of the other parameter.
     pub fixed: f64,
 }
 
@@ -21,12 +21,12 @@ impl GridLine {
     }
 }
 
-/// What lies on both sides of a border, and what changes there.
+/// The regimes on both sides of a border, and the change between them.
 #[derive(Debug, Clone)]
 pub struct Sides {
     pub left: Arc<Regime>,
     pub right: Arc<Regime>,
-    /// With the left side below; `None` at a corner and along the frame.
+    /// The transition from left (`below`) to right; `None` at a corner and along the frame.
     pub transition: Option<Arc<Transition>>,
 }
 
@@ -45,7 +45,7 @@ impl Sides {
     }
 }
 
-/// A border that crosses an edge; smaller values are on its left.
+/// A border that crosses an edge. Its left side has the smaller values.
 #[derive(Debug, Clone)]
 pub struct Crossing {
     pub at: f64,
@@ -60,11 +60,11 @@ pub struct Edge {
     pub to: f64,
     /// The regime at `from`.
     pub first: Arc<Regime>,
-    /// In ascending order.
+    /// All crossings, in ascending order.
     pub crossings: Vec<Crossing>,
 }
 
-/// A straight piece of a border, or of the frame around everything, which has the regime of its left on both sides.
+/// A straight piece of a border, or of the frame of the map. A piece of the frame has its left regime on both sides.
 #[derive(Debug, Clone)]
 pub struct Segment {
     pub from: [f64; 2],
@@ -109,14 +109,14 @@ impl Edge {
         self.part(at, self.to).first
     }
 
-    /// The same edge, walked the other way.
+    /// Returns the same edge in the opposite direction.
     pub fn reversed(&self) -> Self {
         let reversed = |crossing: &Crossing| Crossing { at: crossing.at, sides: crossing.sides.reversed() };
         let crossings = self.crossings.iter().rev().map(reversed).collect();
         Self { line: self.line, from: self.to, to: self.from, first: Arc::clone(self.last()), crossings }
     }
 
-    /// Its pieces of one regime each, which lies on their left.
+    /// Returns its pieces, each with the regime of the edge there as its left side.
     pub fn pieces(&self) -> Vec<Segment> {
         let mut pieces = Vec::new();
         let (mut at, mut regime) = (self.from, &self.first);

@@ -1,10 +1,10 @@
-//! Points well inside of areas, where their letters are written.
+//! Points well inside areas, where the letters of the areas are written.
 
 use crate::planar::Vector;
 use std::collections::VecDeque;
 
-/// For each connected part of a grid's nodes of one kind: the kind, and the nodes that are most steps away from others.
-/// The nodes are given row by row, `columns` in each.
+/// Returns, for each connected part of the nodes of one kind in a grid, the kind and the nodes farthest (in steps) from
+/// other kinds. Nodes are given row by row, with `columns` nodes in each.
 pub fn deepest_nodes(kinds: &[Option<usize>], columns: usize) -> Vec<(usize, Vec<usize>)> {
     let neighbors = |k: usize| {
         let column = k % columns;
@@ -15,7 +15,7 @@ pub fn deepest_nodes(kinds: &[Option<usize>], columns: usize) -> Vec<(usize, Vec
         [left, right, below, above]
     };
     let alike = |k: usize| neighbors(k).into_iter().flatten().filter(move |&other| kinds[other] == kinds[k]);
-    // Steps to the nearest node of another kind, or to the frame.
+    // The number of steps to the nearest node of another kind, or to the frame.
     let at_edge = |&k: &usize| alike(k).count() < 4;
     let mut queue: VecDeque<usize> = (0..kinds.len()).filter(at_edge).collect();
     let mut depth = vec![0_usize; kinds.len()];
@@ -45,7 +45,7 @@ pub fn deepest_nodes(kinds: &[Option<usize>], columns: usize) -> Vec<(usize, Vec
     parts
 }
 
-/// How far a point is from loops, as part of the ranges.
+/// Returns the distance of a point from loops, as a fraction of the ranges.
 pub fn distance(point: [f64; 2], loops: &[Vec<[f64; 2]>], ranges: [f64; 2]) -> f64 {
     let relative = |at: [f64; 2]| Vector::new((at[0] - point[0]) / ranges[0], (at[1] - point[1]) / ranges[1]);
     let edges = loops.iter().flat_map(|points| points.iter().zip(points.iter().cycle().skip(1)));

@@ -10,24 +10,24 @@ use super::regime::Regime;
 use crate::budget::is_spent;
 use std::sync::Arc;
 
-/// Borders are found to this part of the parameter's range.
+/// The accuracy of borders, as a fraction of the parameter's range.
 pub const RESOLUTION: f64 = 1e-12;
 
-/// How often a stretch is searched, each time between the borders that were found the time before.
+/// The number of times that a stretch is searched, each time between the borders found before.
 const SEARCHES: usize = 3;
 
-/// How far from a zero the regimes are asked for, as part of the resolution: less than half of it.
+/// The distance from a zero at which regimes are asked for, as a fraction of the resolution: less than half of it.
 const BESIDE: f64 = 0.499;
 
-/// What is asked along a line of parameters.
+/// The questions that a search asks along a line in the space of parameters.
 pub trait Landscape {
-    /// The regime of a place.
+    /// Returns the regime of a place.
     fn regime(&mut self, at: f64) -> Arc<Regime>;
-    /// The quantities that are followed from place to place; `None` if the place is refused.
+    /// Returns the quantities that are followed from place to place; `None` if the place is refused.
     fn watched(&mut self, at: f64) -> Option<Arc<Watched>>;
 }
 
-/// Places of a line in the space of all parameters, answered by a solver.
+/// A line in the space of all parameters, whose places a solver answers.
 pub(super) struct Along<'s, 'm, P> {
     pub solver: &'s mut Solver<'m>,
     /// The values of all parameters at a place.
@@ -44,16 +44,16 @@ impl<P: Fn(f64) -> Vec<f64>> Landscape for Along<'_, '_, P> {
     }
 }
 
-/// A place and what happens there.
+/// A place and its regime.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Probe {
     /// The place.
     pub at: f64,
-    /// Its regime.
+    /// The regime of the place.
     pub regime: Arc<Regime>,
 }
 
-/// Two neighboring places of different regimes.
+/// Two neighboring places with different regimes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bracket {
     /// The last place before the border.
@@ -63,13 +63,13 @@ pub struct Bracket {
 }
 
 impl Bracket {
-    /// Where the border is.
+    /// Returns the place of the border.
     pub fn at(&self) -> f64 {
         0.5 * (self.below.at + self.above.at)
     }
 }
 
-/// A stretch of one regime; of positive width.
+/// A stretch of positive width with one regime.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stretch {
     /// Its least place.
@@ -80,20 +80,20 @@ pub struct Stretch {
     pub regime: Arc<Regime>,
 }
 
-/// The brackets of all borders between two places, ascending, to the `resolution`.
+/// Returns the brackets of all borders between two places, ascending, to the accuracy `resolution`.
 ///
-/// If the regimes of two places differ, the border between them is narrowed down, and so is that of every other regime
-/// on the way. If they are the same, the stretch between them is searched for hidden ones (see `border_search`). So in the
-/// end every neighboring pair of places that were asked agrees, or brackets a border. Nothing is found once a budget is
-/// spent.
+/// If the regimes of two places differ, the border between them is narrowed down, and so are the borders of all other
+/// regimes met on the way. If they are the same, the stretch between them is searched for hidden regimes (see
+/// `border_search`). In the end every neighboring pair of asked places agrees or brackets a border. Nothing is found
+/// once a budget is spent.
 pub fn brackets(line: &mut impl Landscape, a: &Probe, b: &Probe, resolution: f64) -> Vec<Bracket> {
     let mut found = Vec::new();
     bisect(line, a, b, resolution, &mut found);
     search_between(line, a, b, found, resolution, SEARCHES)
 }
 
-/// The brackets `found` between two places, and those that the stretches between them hide. A stretch that hid some is
-/// searched again between these, since other contacts may be closed there.
+/// Returns the brackets `found` between two places, and those that are hidden in the stretches between them. A stretch
+/// with hidden borders is searched again between these, because other contacts may be closed there.
 fn search_between(
     line: &mut impl Landscape,
     a: &Probe,
@@ -115,7 +115,7 @@ fn search_between(
     all
 }
 
-/// Bisects where the regimes of two places differ, first right beside the zero of what decides between them.
+/// Bisects where the regimes of two places differ. The first places asked are next to the deciding quantity's zero.
 pub(super) fn bisect(line: &mut impl Landscape, a: &Probe, b: &Probe, resolution: f64, found: &mut Vec<Bracket>) {
     let (mut below, mut above) = (a.clone(), b.clone());
     if below.regime == above.regime || is_spent() {
@@ -131,7 +131,7 @@ pub(super) fn bisect(line: &mut impl Landscape, a: &Probe, b: &Probe, resolution
             break;
         }
         let middle = Probe { at, regime: line.regime(at) };
-        // f64 leaves the zero of a small slope far from the border.
+        // The zero of a small slope may be far from the border because of rounding in f64.
         if middle.regime == if at < zero { &above } else { &below }.regime {
             reach *= 16.0;
         }
@@ -148,7 +148,7 @@ pub(super) fn bisect(line: &mut impl Landscape, a: &Probe, b: &Probe, resolution
     found.push(Bracket { below, above });
 }
 
-/// Borders between two places of the same regime.
+/// Returns the borders between two places of the same regime.
 fn hidden(line: &mut impl Landscape, a: &Probe, b: &Probe, resolution: f64) -> Vec<Bracket> {
     let mut found = Vec::new();
     if b.at - a.at <= resolution || is_spent() {
@@ -164,9 +164,9 @@ fn hidden(line: &mut impl Landscape, a: &Probe, b: &Probe, resolution: f64) -> V
     found
 }
 
-/// The stretches from `first` to `last` between the brackets, and the border between each two of them. What is not
-/// wider than the `resolution` is part of a border; stretches of one regime with only such a point between them are
-/// one.
+/// Returns the stretches from `first` to `last` between the brackets, and the borders between neighboring stretches. A
+/// stretch that is not wider than `resolution` is part of a border; two stretches of one regime around it are one
+/// stretch.
 pub fn stretches(first: Probe, last: Probe, brackets: &[Bracket], resolution: f64) -> (Vec<Stretch>, Vec<Bracket>) {
     let (from, to) = (first.at, last.at);
     let begins = std::iter::once(first).chain(brackets.iter().map(|bracket| bracket.above.clone()));
@@ -194,7 +194,7 @@ mod tests {
     use crate::impact::Inequalities;
     use crate::law::Mode;
 
-    /// A landscape of one contact: its regime, and whether it is closed, its inequalities, and its clearance.
+    /// A landscape of one contact: its regime, then whether it is closed, its inequalities and its clearance.
     struct Made<R, W>(R, W);
 
     impl<R: Fn(f64) -> Option<Mode>, W: Fn(f64) -> (bool, Vec<f64>, Vec<f64>)> Landscape for Made<R, W> {
@@ -204,7 +204,7 @@ mod tests {
             Arc::new(Regime::Answered { contacts, outcomes: vec![modes], undecided: Vec::new() })
         }
 
-        /// One combination, det A = 1.
+        /// Watches one combination with det A = 1.
         fn watched(&mut self, at: f64) -> Option<Arc<Watched>> {
             let (closed, numerators, clearance) = (self.1)(at);
             let (determinants, ends) = (vec![1.0], vec![numerators.len()]);
@@ -242,7 +242,7 @@ mod tests {
     fn borders_lie_where_a_number_passes_zero() {
         check(|x| vec![x - 0.123_456_789], &[0.123_456_789]);
         check(|x| vec![(x - 0.31) * (0.32 - x)], &[0.31, 0.32]);
-        // Behind the border that hides it: between 0.4 and 0.5 the number is negative, positive, negative, positive.
+        // Borders behind one that hides them: between 0.4 and 0.5 the number is negative, positive, negative, positive.
         check(|x| vec![(x - 0.41) * (x - 0.410_01) * (x - 0.48)], &[0.41, 0.410_01, 0.48]);
         // A single place is no region.
         check(|x| vec![(x - 0.3).abs()], &[]);
@@ -272,7 +272,7 @@ mod tests {
 
     #[test]
     fn thin_region_of_unseen_contacts_is_found() {
-        // The foot is down between two samples; while it is, it sticks, except on a thin stretch.
+        // The foot is down between two samples. It then sticks, except on a thin stretch.
         const THIN: [f64; 2] = [0.4512, 0.451_201];
         let down = |at: f64| (0.41..0.49).contains(&at);
         let mode = |at: f64| if THIN[0] < at && at < THIN[1] { Mode::SlidePlus } else { Mode::Stick };

@@ -1,13 +1,14 @@
-//! The regions of a study of two parameters, as areas between curves.
+//! The regions of a study with two parameters, as areas between curves.
 //!
 //! ```text
 //!     grid of points --[line] along every edge--> crossings --cell by cell--> segments --joined--> curves, areas
 //! ```
 //!
-//! A curve that crosses an edge of a cell leaves it through another: crossings of the same two regions, at which the
-//! same inequalities turn, are two ends of one piece. A cell whose crossings do not pair so is quartered, and where
-//! three regions meet, at the last, its crossings meet in its middle. Every crossing is found as a zero of what decides
-//! it or by bisection, and points between two of them until a curve is straight to 5e-5 of the ranges.
+//! A curve that enters a cell through one edge leaves it through another: two crossings of the same two regions, at
+//! which the same inequalities are zero, are the ends of one piece. A cell whose crossings cannot be paired is
+//! quartered; where three regions meet, the crossings of the last cell meet in its middle. Every crossing is a zero of
+//! the deciding quantity or is found by bisection. More points are inserted until curves are straight to 5e-5 of the
+//! ranges.
 
 use super::cell::{GridCell, Trace};
 use super::edge::{Edge, GridLine, Segment};
@@ -25,46 +26,46 @@ use crate::{Error, Reason};
 use serde::{Serialize, Serializer};
 use std::sync::Arc;
 
-/// Curves are traced through at least so many cells along each parameter.
+/// The least number of cells along each parameter through which curves are traced.
 pub const CELLS: usize = 64;
 
-/// The most memory that a map takes for its grid \[MB\].
+/// The greatest memory of a map's grid \[MB\].
 const MEMORY: usize = 400;
 
-/// How far the outermost lines of the grid lie inside the ranges, as part of them: on their ends many studies are
-/// degenerate.
+/// The distance of the outermost grid lines from the ends of the ranges, as a fraction of them: many studies are
+/// degenerate at these ends.
 const INSIDE: f64 = 1e-7;
 
-/// How far all other lines lie from the places that divide the range evenly, as part of a cell: curves meet at round
+/// The offset of all other grid lines from an even division, as a fraction of a cell: curves often meet at round
 /// numbers.
 const BESIDE: f64 = 0.013_7;
 
-/// All areas of a study of two parameters.
+/// All areas of a study with two parameters.
 #[derive(Debug, Clone, Default)]
 pub struct Map {
     /// The different regimes, in the order in which the grid meets them.
     pub areas: Vec<Area>,
-    /// The borders between them.
+    /// The borders between the areas.
     pub curves: Vec<BorderCurve>,
-    /// Whether contacts depend on each other somewhere: combinations without a unique solution are not followed.
+    /// Whether contacts depend on each other somewhere. Combinations without a unique solution are not followed.
     pub dependent: bool,
-    /// What is odd about the states in the middle and at the ends of the ranges, in sentences.
+    /// Oddities of the states in the middle and at the ends of the ranges, in sentences.
     pub oddities: Vec<String>,
 }
 
-/// Where one regime holds.
+/// The area of one regime.
 #[derive(Debug, Clone)]
 pub struct Area {
-    /// What all its points have in common.
+    /// The regime of all points of the area.
     pub regime: Arc<Regime>,
-    /// Closed loops of points (first parameter, second parameter) with the area on their left; the first point is not
+    /// Closed loops of points (first parameter, second parameter) with the area on their left. The first point is not
     /// repeated.
     pub loops: Vec<Vec<[f64; 2]>>,
-    /// For each connected part a point well inside it, and its distance from the edge as part of the ranges.
+    /// For each connected part, a point well inside and its distance from the edge as a fraction of the ranges.
     pub middles: Vec<([f64; 2], f64)>,
-    /// The verdict at such a point, or at a node that strikes if nothing does there; `None` if states are refused.
+    /// The verdict at the first of these points, or at a node that strikes if nothing does there; `None` if refused.
     pub verdict: Option<Verdict>,
-    /// Why states are refused, as at such a point or next to a border, if they are.
+    /// The reason why states of the area are refused, from that point or from next to a border.
     pub refused: Option<Error>,
 }
 
@@ -87,13 +88,13 @@ fn as_letters<S: Serializer>(sides: &[usize; 2], serializer: S) -> Result<S::Ok,
     sides.map(letter).serialize(serializer)
 }
 
-/// How many lines the grid has along a parameter.
+/// Returns the number of grid lines along a parameter.
 fn lines(parameter: &Parameter) -> usize {
     let steps = parameter.steps - 1;
     steps * CELLS.div_ceil(steps) + 1
 }
 
-/// The lines of the grid along a parameter.
+/// Returns the grid lines along a parameter.
 fn places(parameter: &Parameter) -> Vec<f64> {
     let cells = lines(parameter) - 1;
     let part = |k: usize| match k {
@@ -104,16 +105,16 @@ fn places(parameter: &Parameter) -> Vec<f64> {
     (0..=cells).map(|k| parameter.from + parameter.range() * part(k)).collect()
 }
 
-/// The grid through which borders are traced: the regimes at its nodes and the borders across its edges.
+/// The grid through which borders are traced, with the regimes at its nodes and the borders across its edges.
 struct Grid<'p> {
     parameters: [&'p Parameter; 2],
     xs: Vec<f64>,
     ys: Vec<f64>,
     resolution: [f64; 2],
-    /// Row by row.
+    /// Regimes, row by row.
     nodes: Vec<Arc<Regime>>,
     rows: Vec<Edge>,
-    /// Column by column.
+    /// Edges, column by column.
     columns: Vec<Edge>,
 }
 
@@ -132,7 +133,7 @@ impl<'p> Grid<'p> {
             let ends = ends.map(|(at, regime)| Probe { at, regime: Arc::clone(regime) });
             Edge::search(solver, GridLine { axis, fixed }, ends, resolution[axis])
         };
-        // Line by line: the edges of one share their ends.
+        // The work is shared line by line, because neighboring edges of a line share their ends.
         let row = |solver: &mut Solver, row| (0..nx - 1).map(|k| edge(solver, 0, k, row)).collect::<Vec<_>>();
         let column = |solver: &mut Solver, column| (0..ny - 1).map(|k| edge(solver, 1, column, k)).collect::<Vec<_>>();
         let (rows, columns) = (workers.map(ny, begin, row).concat(), workers.map(nx, begin, column).concat());
@@ -154,7 +155,7 @@ impl<'p> Grid<'p> {
         }
     }
 
-    /// The frame, counter-clockwise, in pieces of one regime each.
+    /// Returns the frame, counter-clockwise, in pieces of one regime each.
     fn frame(&self) -> Vec<Segment> {
         let (nx, ny) = (self.xs.len(), self.ys.len());
         let mut frame = Vec::new();
@@ -171,7 +172,7 @@ impl<'p> Grid<'p> {
         frame
     }
 
-    /// A point on the outermost lines is moved to the end of the range.
+    /// Moves a point on the outermost lines to the end of the range.
     fn outward(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let snapped = |at: f64, lines: &[f64], parameter: &Parameter| match lines {
             [least, ..] if at <= *least => parameter.from,
@@ -181,8 +182,8 @@ impl<'p> Grid<'p> {
         [snapped(x, &self.xs, self.parameters[0]), snapped(y, &self.ys, self.parameters[1])]
     }
 
-    /// For each connected part of each area, as the nodes show it, the node that is farthest from its borders, and how
-    /// far that is.
+    /// Finds, for each connected part of each area, the node farthest from the area's borders and this distance.
+    /// Connection is that of the nodes.
     fn find_middles(&self, areas: &mut [Area]) {
         let (xs, ys) = (&self.xs, &self.ys);
         let nx = xs.len();
@@ -198,7 +199,8 @@ impl<'p> Grid<'p> {
 }
 
 impl Map {
-    /// The areas of `model`, whose study has two parameters; reports [`Map::work`] pieces of work to `workers`.
+    /// Computes the areas of `model`, whose study has two parameters; reports [`Map::work`] pieces of work to
+    /// `workers`.
     pub fn of(model: &RobotStudy, workers: Workers) -> Self {
         let [first, second] = model.study.parameters() else { return Self::default() };
         let grid = Grid::new(model, [first, second], workers);
@@ -218,7 +220,7 @@ impl Map {
                 regimes.push(Arc::clone(regime));
             }
         }
-        // A regime that has neither a segment nor a piece of the frame holds at a single point.
+        // A regime without segments and pieces of the frame holds at a single point only.
         let area = |regime: Arc<Regime>| {
             let mut loops = loops(&segments, &frame, &regime);
             loops.iter_mut().flatten().for_each(|point| *point = grid.outward(*point));
@@ -255,11 +257,11 @@ impl Map {
         Self { curves, areas, dependent, oddities: model.oddities() }
     }
 
-    /// Refuses a study whose grid does not fit into the memory that a map may take.
+    /// Refuses a study whose grid needs more memory than a map may take.
     pub(super) fn check_memory(study: &Study) -> crate::Result<()> {
         let [first, second] = study.parameters() else { return Ok(()) };
         let nodes = lines(first) * lines(second);
-        // Each list exists twice while the threads' parts are joined.
+        // Each list exists twice while the results of the threads are joined.
         let bytes = 2 * (size_of::<(usize, Arc<Regime>)>() + 2 * size_of::<(usize, Edge)>());
         let needed = nodes.saturating_mul(bytes) >> 20;
         if needed <= MEMORY {
@@ -273,7 +275,7 @@ impl Map {
         Err(study.refuse_steps(most, Reason::TooLarge { needed, limit: MEMORY }).hint(hint))
     }
 
-    /// How many pieces of work a map of `model` has.
+    /// Returns the number of pieces of work for a map of `model`.
     pub fn work(model: &RobotStudy) -> usize {
         let [first, second] = model.study.parameters() else { return 0 };
         let [nx, ny] = [first, second].map(lines);

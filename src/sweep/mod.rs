@@ -1,5 +1,5 @@
-//! Outcomes against one or two parameters: the regions of equal outcomes, and the transitions at the borders between
-//! them.
+//! Outcomes as functions of one or two parameters: regions of equal outcomes, and the transitions at the borders
+//! between them.
 //!
 //! ```text
 //!     point of the parameters --[model]--> Robot, State --[pipeline]--> Impact --[regime]--> which outcomes are valid
@@ -40,14 +40,14 @@ use std::sync::Arc;
 /// The regions and borders of a study.
 #[derive(Debug, Clone)]
 pub enum Findings {
-    /// Of one parameter.
+    /// The regions along one parameter.
     Along(Survey),
-    /// Of two parameters.
+    /// The areas in the plane of two parameters.
     Map(Map),
 }
 
 impl Findings {
-    /// Those of `model`; reports [`Findings::work`] pieces of work to `workers`.
+    /// Computes the findings of `model`. Reports [`Findings::work`] pieces of work to `workers`.
     pub fn of(model: &RobotStudy, workers: Workers) -> Self {
         match model.study.parameters().len() {
             2 => Self::Map(Map::of(model, workers)),
@@ -55,15 +55,15 @@ impl Findings {
         }
     }
 
-    /// Refuses a study whose findings take too much memory.
+    /// Refuses a study whose findings need too much memory.
     ///
     /// # Errors
-    /// [`Reason::TooLarge`](crate::Reason::TooLarge), at the number of samples.
+    /// Returns [`Reason::TooLarge`](crate::Reason::TooLarge), with the number of samples as its place.
     pub fn check_memory(study: &Study) -> crate::Result<()> {
         Map::check_memory(study)
     }
 
-    /// How many pieces of work the findings of `model` take.
+    /// Returns the number of pieces of work for the findings of `model`.
     pub fn work(model: &RobotStudy) -> usize {
         match model.study.parameters().len() {
             2 => Map::work(model),
@@ -71,7 +71,7 @@ impl Findings {
         }
     }
 
-    /// Every region's regime, the number of its letter, and why it is refused, if it is.
+    /// Returns the regime of every region, the number of its letter, and the error if it is refused.
     pub fn regimes(&self) -> Vec<(&Arc<Regime>, usize, Option<&Error>)> {
         match self {
             Self::Along(survey) => {
@@ -85,7 +85,7 @@ impl Findings {
     }
 }
 
-/// A, B, ..., Z, AA, AB, ...
+/// Returns the letters of a number: A, B, ..., Z, AA, AB, ...
 pub fn letter(kind: usize) -> String {
     let last = char::from(b'A' + (kind % 26) as u8);
     match kind / 26 {

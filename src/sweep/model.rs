@@ -1,4 +1,4 @@
-//! From a point of the parameters to the impact or the forces there.
+//! From a point in the space of parameters to the impact or the forces there.
 
 use super::Study;
 use super::regime::Regime;
@@ -17,30 +17,30 @@ use std::sync::Arc;
 /// A study of one robot.
 #[derive(Debug, Clone)]
 pub struct RobotStudy<'a> {
-    /// What is varied, and the states.
+    /// The study: the parameters and the states.
     pub study: &'a Study<'a>,
-    /// The file of the robot, whose masses and lengths may vary.
+    /// The robot's file. The study may vary its masses and lengths.
     pub description: &'a Description,
-    /// How it is reduced to its plane.
+    /// How the robot is reduced to its plane.
     pub reduction: &'a Reduction,
-    /// The robot as the file has it.
+    /// The robot as described by the file.
     pub robot: &'a Robot,
-    /// How contacts are found and what is computed.
+    /// Settings of the pipeline.
     pub options: Options,
-    /// What states take that do not state it.
+    /// Values for states that do not give their own.
     pub defaults: Defaults,
 }
 
-/// Solves points of one study, in memory that it keeps.
+/// Answers points of one study, in reused memory.
 #[derive(Debug)]
 pub struct Solver<'a> {
     model: &'a RobotStudy<'a>,
-    /// For the robot as it is; `None` if the study varies it.
+    /// The pipeline for the robot of the file; `None` if the study varies the robot.
     pipeline: Option<Pipeline<'a>>,
     scratch: InequalityScratch,
-    /// All regimes so far.
+    /// All regimes that were found so far.
     known: Vec<Arc<Regime>>,
-    /// What is followed at the points that were asked last: neighboring stretches share their ends.
+    /// The quantities at the points that were asked last, because neighboring stretches share their ends.
     recent: VecDeque<(Vec<f64>, Option<Arc<Watched>>)>,
 }
 
@@ -49,15 +49,15 @@ pub struct Solver<'a> {
 pub struct Watched {
     /// Names of the closed contacts.
     pub contacts: Vec<String>,
-    /// The inequalities of all combinations; empty for too many contacts.
+    /// The inequalities of all combinations; empty if there are too many contacts.
     pub inequalities: Inequalities,
-    /// How far each foot is above the contact tolerance \[m\].
+    /// Height of each foot above the contact tolerance \[m\].
     pub clearance: Vec<f64>,
-    /// At which corner of its link's feet each contact is, by whose name alone they do not differ; empty for a map.
+    /// For each contact, the corner of its link's feet, which its name does not tell apart; empty for a map.
     pub corners: Vec<Option<usize>>,
 }
 
-/// Properties of a region, found at a point in it.
+/// Properties of a region, from a point in it.
 #[derive(Debug, Clone)]
 pub(super) struct Inner {
     pub dependent: bool,
@@ -65,14 +65,14 @@ pub(super) struct Inner {
     pub refused: Option<Error>,
 }
 
-/// The inequalities of up to this many contacts are followed: 4^n combinations.
+/// The greatest number of contacts whose inequalities are followed: they have 4^n combinations.
 pub const WATCHED_CONTACTS: usize = 4;
 
-/// The note of a study whose state has an uncertainty.
+/// The note on a study whose state has an uncertainty.
 const BOXES: &str = "the regions are those of the states as given: whether these hold within their uncertainty, the \
                      samples of JSON and tables say";
 
-/// What a sentence is about, but for its numbers.
+/// Returns the subject of a sentence, or the sentence without its numbers.
 fn subject(sentence: &str) -> Vec<&str> {
     if let Some((subject, _)) = sentence.split_once(" = ") {
         return vec![subject];
@@ -81,12 +81,12 @@ fn subject(sentence: &str) -> Vec<&str> {
     sentence.split(' ').filter(|word| !is_number(word)).collect()
 }
 
-/// So many points are remembered: the nodes of an interval, of its halves and of theirs.
+/// The number of points that are remembered: the nodes of an interval, of its halves and of their halves.
 const RECENT: usize = 16;
 
 impl RobotStudy<'_> {
-    /// What a reader should know of the states, in sentences, each once but for its numbers: what is odd in the middle and
-    /// at the ends of the ranges.
+    /// Describes oddities of the states in the middle and at the ends of the ranges. Sentences that differ only in
+    /// their numbers are listed once.
     pub(super) fn oddities(&self) -> Vec<String> {
         let parameters = self.study.parameters();
         let mut solver = Solver::new(self);
@@ -99,13 +99,13 @@ impl RobotStudy<'_> {
             let odd = solver.at(&point, |robot, state, _| {
                 let mut odd = state.oddities(robot);
                 odd.extend(state.uncertainty.is_some().then(|| BOXES.to_owned()));
-                // Of a varied robot.
+                // Cautions about a varied robot.
                 let is_new =
                     |own: &&String| self.robot.reading.cautions.iter().all(|known| subject(known) != subject(own));
                 odd.extend(robot.reading.cautions.iter().filter(is_new).cloned());
                 Ok(odd)
             });
-            // Where a state is refused, its region says why.
+            // If a state is refused, its region gives the reason.
             for sentence in odd.unwrap_or_default() {
                 if !found.iter().any(|known| subject(known) == subject(&sentence)) {
                     found.push(sentence);
@@ -115,8 +115,8 @@ impl RobotStudy<'_> {
         found
     }
 
-    /// That the parameter of a study in which nothing changes alters neither a state nor its contact problem at some places,
-    /// as what an impact does not depend on.
+    /// Notes that the parameter of a study without borders affects neither the state nor its contact problem at some
+    /// places. It is then one on which an impact does not depend.
     pub(super) fn idle_parameter(&self) -> Option<String> {
         let [parameter] = self.study.parameters() else { return None };
         let varies_more = self.study.question() == Aspect::Forces || self.study.varies_the_robot();
@@ -124,7 +124,7 @@ impl RobotStudy<'_> {
             return None;
         }
         let mut solver = Solver::new(self);
-        // Unevenly spaced, so that no long period fits them.
+        // The spacing is uneven, so that no long period fits it.
         let mut seen = [0.0, 0.271, 0.618, 1.0].map(|part| {
             let at = [parameter.from + part * parameter.range()];
             let seen = solver.at(&at, |_, state, pipeline| {
@@ -140,13 +140,13 @@ impl RobotStudy<'_> {
         is_idle.then(|| format!("nothing was found that depends on {}: has it an effect on an impact?", parameter.name))
     }
 
-    /// The options for what the study asks.
+    /// Returns the options for the question of the study.
     fn asked(&self) -> Options {
         Options { aspect: self.study.question(), ..self.options.clone() }
     }
 
-    /// The first sample's refusal, if robot or state cannot be read there, nor in the middle, nor at the last one; else
-    /// whether the state has friction of its own, so that the one of `defaults` is not its.
+    /// Returns whether the state has friction of its own, so that the one of `defaults` does not apply. Returns the
+    /// error of the first sample if robot or state cannot be read there, in the middle and at the last sample.
     pub fn has_own_friction(&self) -> Result<bool> {
         let parameters = self.study.parameters();
         let mut solver = Solver::new(self);
@@ -161,19 +161,19 @@ impl RobotStudy<'_> {
 }
 
 impl<'a> Solver<'a> {
-    /// A solver that has answered nothing yet.
+    /// Creates a solver without any answers.
     pub fn new(model: &'a RobotStudy<'a>) -> Self {
         let pipeline = (!model.study.varies_the_robot()).then(|| Pipeline::new(model.robot, model.asked()));
         let scratch = InequalityScratch::default();
         Self { model, pipeline, scratch, known: Vec::new(), recent: VecDeque::new() }
     }
 
-    /// What the study asks of each state.
+    /// Returns the question of the study.
     pub fn aspect(&self) -> Aspect {
         self.model.study.question()
     }
 
-    /// Asks about the state at a point; robot or state may be refused there, and every state is once a budget is spent.
+    /// Asks about the state at a point. The robot or the state may be refused; every state is once a budget is spent.
     pub fn at<T>(
         &mut self,
         point: &[f64],
@@ -193,20 +193,20 @@ impl<'a> Solver<'a> {
         ask(&robot, state, &mut Pipeline::new(&robot, self.model.asked()))
     }
 
-    /// The answer at a point, without regard to the state's uncertainty.
+    /// Returns the answer at a point, and ignores the state's uncertainty.
     pub fn answer(&mut self, point: &[f64]) -> Result<Box<Impact>> {
         self.at(point, |_, state, pipeline| pipeline.answer(&State { uncertainty: None, ..state }))
     }
 
-    /// Names of the contacts and the analysis at a point, with the rejected combinations of these modes.
+    /// Returns the names of the contacts and the analysis at a point, with the rejected combinations of these `modes`.
     pub fn explained(&mut self, point: &[f64], modes: &[Vec<Mode>]) -> Result<(Vec<String>, Analysis)> {
         let impact = self.at(point, |_, state, pipeline| pipeline.answer_explaining(&state, modes))?;
         let names = impact.contacts.iter().map(|contact| contact.name.to_string()).collect();
         Ok((names, impact.into_analysis()?))
     }
 
-    /// Properties of a region, found at a point in it; that nothing strikes is said of it only if so it is at the `others`,
-    /// too: contacts that slide on without a stroke have the modes of those that strike.
+    /// Returns properties of a region, found at a point in it. Its verdict is "no impact" only if nothing strikes at
+    /// the `others`, too: contacts that slide on without an impulse have the same modes as those that strike.
     pub(super) fn inner(&mut self, point: &[f64], mut others: impl Iterator<Item = Vec<f64>>) -> Inner {
         let inner = self.inner_at(point);
         if inner.verdict != Some(Verdict::NoImpact) {
@@ -230,7 +230,7 @@ impl<'a> Solver<'a> {
         Inner { dependent: found.as_ref().is_ok_and(dependent), verdict, refused: found.err() }
     }
 
-    /// The regime of a point.
+    /// Returns the regime of a point.
     pub fn regime(&mut self, point: &[f64]) -> Arc<Regime> {
         let found = self.at(point, |_, state, pipeline| {
             let answer = pipeline.outcomes(&state);
@@ -246,7 +246,7 @@ impl<'a> Solver<'a> {
         Arc::clone(&self.known[self.known.len() - 1])
     }
 
-    /// The quantities that are followed; `None` if the point is refused.
+    /// Returns the quantities that are followed; `None` if the point is refused.
     pub fn watched(&mut self, point: &[f64]) -> Option<Arc<Watched>> {
         if let Some((_, known)) = self.recent.iter().find(|(known, _)| known == point) {
             return known.clone();
@@ -267,7 +267,7 @@ impl<'a> Solver<'a> {
             },
             contacts: contacts.into_iter().map(|contact| contact.name.to_string()).collect(),
             clearance: clearance.into_iter().map(|height| height - tolerance).collect(),
-            // In a map a foot stands on both corners in a band thinner than curves are drawn.
+            // In a map, the band in which a foot stands on both corners is thinner than the curves that are drawn.
             corners: if self.model.study.parameters().len() == 1 { corners } else { Vec::new() },
         })
     }

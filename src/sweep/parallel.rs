@@ -1,22 +1,22 @@
-//! The same work for many indices, on several threads, in order.
+//! Parallel work on many indices, with the results in order.
 
 use crate::budget::SharedBudget;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread::{self, Builder};
 
-/// How work is shared, and how its progress is reported.
+/// The division of work among threads, and the report of its progress.
 #[derive(Clone, Copy)]
 pub struct Workers<'w> {
-    /// How many threads compute; with one no thread is started.
+    /// The number of threads that compute. With one, no thread is started.
     pub threads: usize,
     /// Called after each piece of work.
     pub done: &'w (dyn Fn() + Sync),
 }
 
 impl Workers<'_> {
-    /// The results of `work` for each index below `count`, in order. Each thread has a state of its own, made by
-    /// `begin`, and all spend the budget of this one. If fewer threads can be started, these do the work.
+    /// Returns the results of `work` for each index below `count`, in order. Each thread has its own state from
+    /// `begin`, and all spend the budget of the calling thread. If fewer threads can be started, those do the work.
     pub fn map<S, T: Send>(
         &self,
         count: usize,

@@ -1,19 +1,19 @@
-//! Joins segments end to end: to polylines, and to loops around areas.
+//! Joins segments end to end, to polylines and to loops around areas.
 
 use super::edge::Segment;
 use super::regime::Regime;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// A point by its digits: ends that meet are the same numbers.
+/// The bits of a point: ends that meet have exactly the same numbers.
 type PointKey = [u64; 2];
 
 fn key(point: [f64; 2]) -> PointKey {
     point.map(f64::to_bits)
 }
 
-/// The curves that segments of the same regimes and transitions join to: one of the segments, and the points in its
-/// direction.
+/// Joins segments of the same regimes and transitions to curves. Each curve comes with one of its segments, and its
+/// points are in the direction of that segment.
 pub fn polylines(segments: &[Segment]) -> Vec<(&Segment, Vec<[f64; 2]>)> {
     let mut starts: HashMap<PointKey, Vec<(usize, bool)>> = HashMap::new();
     for (index, segment) in segments.iter().enumerate() {
@@ -27,7 +27,7 @@ pub fn polylines(segments: &[Segment]) -> Vec<(&Segment, Vec<[f64; 2]>)> {
             continue;
         }
         let own = &segments[first];
-        // On from its end, then back from its beginning; each segment may stand in either direction.
+        // Extends the curve from the segment's end, then from its beginning. Other segments may have either direction.
         let mut grow = |mut point: [f64; 2], forward: bool| {
             let mut points = Vec::new();
             loop {
@@ -49,7 +49,7 @@ pub fn polylines(segments: &[Segment]) -> Vec<(&Segment, Vec<[f64; 2]>)> {
     polylines
 }
 
-/// The closed loops that have `regime` on their left, of borders and of the frame.
+/// Returns the closed loops, of borders and of the frame, that have `regime` on their left.
 pub fn loops(segments: &[Segment], frame: &[Segment], regime: &Arc<Regime>) -> Vec<Vec<[f64; 2]>> {
     let mut next: HashMap<PointKey, Vec<[f64; 2]>> = HashMap::new();
     let mut order = Vec::new();

@@ -5,7 +5,7 @@ use crate::pipeline::Impact;
 use crate::{Error, Reason, Result};
 use std::mem::{Discriminant, discriminant};
 
-/// What happens at a point; all points of a region have the same.
+/// The regime of a point. All points of a region have the same regime.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 #[allow(missing_docs, reason = "the text of each variant names its fields")]
 pub enum Regime {
@@ -15,19 +15,19 @@ pub enum Regime {
         contacts: Vec<String>,
         /// The modes of every outcome, in the order in which combinations are tried.
         outcomes: Vec<Vec<Mode>>,
-        /// Combinations that no precision shows or excludes.
+        /// Combinations that no precision proves or excludes.
         undecided: Vec<Vec<Mode>>,
     },
-    /// The state is refused, for a reason of this kind.
+    /// The state is refused, with a reason of this kind.
     Refused {
         reason: Discriminant<Reason>,
-        /// The place inside the state.
+        /// The place in the state.
         place: Option<String>,
     },
 }
 
 impl Regime {
-    /// That of an answer.
+    /// Returns the regime of an answer.
     pub fn of(answer: &Result<Box<Impact>>) -> Self {
         let analyzed = answer.as_ref().map_err(Error::clone).and_then(|impact| Ok((impact, impact.analyzed()?)));
         let (impact, analysis) = match analyzed {
@@ -44,13 +44,13 @@ impl Regime {
         Self::Answered { contacts, outcomes: analysis.modes(), undecided }
     }
 
-    /// The modes of every outcome; `None` if the state is refused.
+    /// Returns the modes of every outcome; `None` if the state is refused.
     pub fn outcomes(&self) -> Option<&[Vec<Mode>]> {
         let Self::Answered { outcomes, .. } = self else { return None };
         Some(outcomes)
     }
 
-    /// Names of the closed contacts; empty if the state is refused.
+    /// Returns the names of the closed contacts; empty if the state is refused.
     pub fn contacts(&self) -> &[String] {
         let Self::Answered { contacts, .. } = self else { return &[] };
         contacts

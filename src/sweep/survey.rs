@@ -1,4 +1,4 @@
-//! The regions of a study of one parameter, with the transitions between them.
+//! The regions of a study with one parameter, and the transitions between them.
 
 use super::line::{Along, Bracket, Probe, RESOLUTION, Stretch, brackets, stretches};
 use super::model::{RobotStudy, Solver};
@@ -13,13 +13,13 @@ use std::sync::Arc;
 /// All regions along one parameter.
 #[derive(Debug, Clone, Default)]
 pub struct Survey {
-    /// The regions from the least to the greatest value, each with positive width; neighbors differ.
+    /// The regions from the least to the greatest value. Each has positive width; neighbors differ.
     pub regions: Vec<Region>,
-    /// The border between each two of them.
+    /// The borders between neighboring regions.
     pub borders: Vec<RegionBorder>,
-    /// Whether contacts depend on each other somewhere: combinations without a unique solution are not followed.
+    /// Whether contacts depend on each other somewhere. Combinations without a unique solution are not followed.
     pub dependent: bool,
-    /// What is odd about the states in the middle and at the ends of the range, in sentences.
+    /// Oddities of the states in the middle and at the ends of the range, in sentences.
     pub oddities: Vec<String>,
 }
 
@@ -28,15 +28,15 @@ pub struct Survey {
 pub struct Region {
     /// The least value of the parameter.
     pub from: f64,
-    /// The greatest value.
+    /// The greatest value of the parameter.
     pub to: f64,
-    /// What all its points have in common.
+    /// The regime of all points of the region.
     pub regime: Arc<Regime>,
-    /// The number of its regime, from 0 in the order of first regions.
+    /// The number of its regime: from 0, in the order in which regimes first occur.
     pub kind: usize,
-    /// The verdict at its middle, or at a sample that strikes if nothing does there; `None` if it is refused.
+    /// The verdict at its middle; at a sample where something strikes if nothing does there. `None` if it is refused.
     pub verdict: Option<Verdict>,
-    /// Why it is refused, as at its middle, if it is.
+    /// The reason why its middle is refused, if it is.
     pub refused: Option<Error>,
 }
 
@@ -52,7 +52,8 @@ pub struct RegionBorder {
 }
 
 impl Survey {
-    /// The regions of `model`, whose study has one parameter; reports [`Survey::work`] pieces of work to `workers`.
+    /// Computes the regions of `model`, whose study has one parameter; reports [`Survey::work`] pieces of work to
+    /// `workers`.
     pub fn of(model: &RobotStudy, workers: Workers) -> Self {
         let Some(parameter) = model.study.parameters().first() else { return Self::default() };
         let resolution = RESOLUTION * parameter.range();
@@ -77,7 +78,7 @@ impl Survey {
                 kinds.push(Arc::clone(&regime));
                 kinds.len() - 1
             });
-            // The middle may lie in a thinner region that was not found; the beginning was asked.
+            // The middle may lie in a thinner region that was not found; the beginning was asked before.
             let begin = index.checked_sub(1).map_or(parameter.from, |border| brackets[border].above.at);
             let middle = 0.5 * (from + to);
             let at = if solver.regime(&[middle]) == regime { middle } else { begin };
@@ -98,7 +99,7 @@ impl Survey {
         Self { regions, borders, dependent, oddities }
     }
 
-    /// How many pieces of work a survey of `model` has.
+    /// Returns the number of pieces of work for a survey of `model`.
     pub fn work(model: &RobotStudy) -> usize {
         model.study.parameters().first().map_or(0, |parameter| 2 * parameter.steps - 1)
     }

@@ -1,4 +1,4 @@
-//! What changes at a border: which inequality of which contact is zero there.
+//! The change at a border: which inequality of which contact is zero there.
 //!
 //! ```text
 //!     an outcome that ends at a border is rejected beyond it, because of the slack that is zero on it
@@ -61,7 +61,7 @@ pub struct Transition {
 }
 
 impl Transition {
-    /// The transition between the sides of a `bracket`, which `place` puts into the space of all parameters.
+    /// Determines the transition between the sides of a `bracket`; `place` maps its line into the space of parameters.
     pub fn at(solver: &mut Solver, bracket: &Bracket, place: impl Fn(f64) -> Vec<f64>) -> Self {
         let outcomes = |regime: &Regime| regime.outcomes().unwrap_or_default().to_vec();
         let below = solver.explained(&place(bracket.below.at), &outcomes(&bracket.above.regime));
@@ -86,7 +86,7 @@ impl Transition {
         Self { ended, ..Self::default() }
     }
 
-    /// The same, seen from the other side.
+    /// Returns the same transition, seen from the other side.
     pub fn reversed(&self) -> Self {
         let reversed = |cause: &EndedOutcome| {
             let side = if cause.side == Side::Below { Side::Above } else { Side::Below };
@@ -101,7 +101,7 @@ impl Transition {
         }
     }
 
-    /// Whether the same changes, in any order.
+    /// Returns whether the same things change, in any order.
     pub fn is_same_as(&self, other: &Self) -> bool {
         let all = |one: &Self, two: &Self| one.ended.iter().all(|cause| two.ended.contains(cause));
         all(self, other)
@@ -112,12 +112,12 @@ impl Transition {
     }
 }
 
-/// Next to a border a margin is not greater than this, unless the state jumps there.
+/// Next to a border the margin of an outcome is at most this, unless the state jumps there.
 const ZERO: f64 = 1e-4;
-/// Where a force has no bound, the margin of the outcome beyond it is less than this.
+/// If a force has no bound, the margin of the outcome beyond the border is less than this.
 const UNBOUNDED: f64 = -1e4;
 
-/// The outcomes of the `side` that is `here` which the other rejects, and for which inequality of a contact in `names`.
+/// Returns the outcomes `here`, on this `side`, that the other side rejects, with the violated inequality and contact.
 fn ending(aspect: Aspect, names: &[String], [here, there]: [&Analysis; 2], side: Side) -> Vec<EndedOutcome> {
     let cause = |outcome: &Outcome| {
         let modes = &outcome.modes;
@@ -127,7 +127,7 @@ fn ending(aspect: Aspect, names: &[String], [here, there]: [&Analysis; 2], side:
             _ if aspect == Aspect::Forces && rejection.margin.is_some_and(|margin| margin < UNBOUNDED) => {
                 (most_pushed(rejection).unwrap_or(contact), Inequality::UnboundedForce)
             }
-            // An outcome far from its own borders ends where the state jumps, and no inequality is zero.
+            // An outcome with a large margin ends because the state jumps; no inequality is zero.
             _ if outcome.margin.is_some_and(|margin| margin > ZERO) => return None,
             other => (contact, other),
         };
@@ -136,7 +136,7 @@ fn ending(aspect: Aspect, names: &[String], [here, there]: [&Analysis; 2], side:
     here.outcomes.iter().filter_map(cause).collect()
 }
 
-/// The contact with the greatest force.
+/// Returns the contact with the greatest force.
 fn most_pushed(rejection: &Rejection) -> Option<usize> {
     let forces = rejection.motion.as_ref()?.impulse.iter().map(|&[t, n]| libm::hypot(t, n));
     Some(forces.enumerate().max_by(|(_, a), (_, b)| a.total_cmp(b))?.0)

@@ -9,25 +9,25 @@ use crate::Robot;
 use crate::description::{Description, Inertial};
 use crate::state::{Ground, State};
 
-/// A unit and a number that has it.
+/// A unit, and a number in this unit.
 type Measured = (&'static str, f64);
 
-/// Numbers are compared at the ends of so many parts of the range, as far as the study can be read there.
+/// The number of intervals of the range at whose ends numbers are compared, as far as the study can be read there.
 const PARTS: usize = 8;
 
-/// Differences of numbers that grow with a parameter agree to this part of its range.
+/// Numbers grow like the parameter if their differences agree with it to this fraction of its range.
 const SAME: f64 = 1e-9;
 
 impl RobotStudy<'_> {
-    /// The unit of a parameter; `None` if no number is the parameter up to its sign and a constant, or if such numbers
-    /// have several units.
+    /// Returns the unit of a parameter; `None` if no number equals the parameter up to its sign and a constant, or if
+    /// these numbers have several units.
     pub fn unit(&self, parameter: usize) -> Option<&'static str> {
         let range = self.study.parameters().get(parameter)?.range();
         let part = |k: usize| k as f64 / PARTS as f64;
         let found = (0..=PARTS).filter_map(|k| Some((part(k), self.measured(parameter, part(k))?)));
         let (parts, measured): (Vec<f64>, Vec<Vec<Measured>>) = found.unzip();
         let (first, others) = measured.split_first()?;
-        // Two places do not distinguish a line from a curve; robots of other structure have other numbers.
+        // Two places do not distinguish a line from a curve, and robots of another structure have other numbers.
         if others.len() < 2 || others.iter().any(|other| other.len() != first.len()) {
             return None;
         }
@@ -45,8 +45,8 @@ impl RobotStudy<'_> {
         units.all(|other| other == unit).then_some(unit)
     }
 
-    /// All numbers of robot and state where the parameter is at this part of its range, all others in the middle of
-    /// theirs.
+    /// Returns all numbers of robot and state for the parameter at this part of its range; other parameters are in the
+    /// middle.
     fn measured(&self, parameter: usize, part: f64) -> Option<Vec<Measured>> {
         let place = |(index, other): (usize, &super::Parameter)| {
             other.from + if index == parameter { part } else { 0.5 } * other.range()
