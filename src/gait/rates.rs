@@ -1,7 +1,7 @@
 //! Velocities for a recording without them: v = dq/dt by differences of rows.
 //!
 //! Rows of one time are an impact. No difference is taken across an impact, across the end of a clip, or across a
-//! refused row. At such an end the difference is one-sided.
+//! refused row. At these ends the difference is one-sided.
 
 use super::clip::{Clock, ClockStep};
 use super::{Sample, Sampled};

@@ -133,7 +133,7 @@ impl<T: Real> Assembly<T> {
         !self.plan.has_mimics && !self.is_constrained()
     }
 
-    /// Returns whether loops or braked joints, too, transmit impulses.
+    /// Returns whether there are constraints: loops, or braked joints that have a column.
     pub fn is_constrained(&self) -> bool {
         !(self.loops.is_empty() && self.kept.is_empty())
     }
@@ -243,9 +243,9 @@ impl<T: Real> Assembly<T> {
         contact_jacobian(&self.plan, &self.points, velocity, stance, &mut self.workspace);
     }
 
-    /// Replaces v by the motion that is nearest by kinetic energy and in which the contacts `still` rest, and changes c
-    /// of the other contacts to it: c_i - G_ir lambda with G_rr lambda = c_r. Reports each eliminated row of G, the
-    /// remainders of its c and of its pivot, and G.
+    /// Changes c of the moving contacts to that of the motion nearest to v, by kinetic energy, in which the contacts
+    /// `still` rest: c_i - G_ir lambda with G_rr lambda = c_r, from G and c. Reports each eliminated row of G, what is
+    /// left of c and of the pivot there, and G.
     pub fn settle(&mut self, Still { contacts, rows, .. }: &Still, mut report: impl FnMut(usize, Pair<T>, &[T])) {
         let Workspace { delassus, contact_velocity: speeds, .. } = &mut self.workspace;
         if !rows.is_empty() {

@@ -302,8 +302,7 @@ impl Pipeline<'_> {
         Ok(Unforced { steady, position, driven, unclosed, free, drifts, likely, rounding })
     }
 
-    /// Bounds the rounding of the accelerations without contact forces: the given ones by coordinate, and the
-    /// contacts'.
+    /// Bounds the rounding of accelerations without contact forces: those given by coordinate, and the contacts'.
     fn bound_accelerations(
         &mut self,
         prepared: &Prepared,
@@ -358,8 +357,7 @@ impl Pipeline<'_> {
         self.scratch.analyze(&prepared.impact.problem, &source, asked).ok().map(Analysis::of_forces)
     }
 
-    /// Keeps only the contacts that have a slip and so take part, with their known data, and poses their impact
-    /// problem.
+    /// Keeps only the contacts that take part (they have a slip), with their data, and poses their impact problem.
     fn take_part(&mut self, state: &State, prepared: &mut Prepared, slips: &[Option<Ordering>]) -> Result<()> {
         let Prepared { velocity, foot, levels, merged, still, change, impact, .. } = prepared;
         let Impact { contacts, stance, resting, problem, .. } = &mut **impact;

@@ -9,7 +9,7 @@ use crate::impact::Outcome;
 use crate::planar::Vector;
 use crate::state::{Scene, State};
 
-/// Greatest height of a falling foot that nearly touched, and greatest depth without a note, as fractions of its size.
+/// A falling foot up to this fraction of the robot's size above the ground nearly touches; a deeper foot gets a note.
 const NEAR_MISS: f64 = 1e-2;
 
 /// Greatest height of a resting foot that nearly stands, as a fraction of the robot's size.
@@ -65,7 +65,7 @@ impl Pipeline<'_> {
         notes.extend(self.upside_down(contacts, placement));
     }
 
-    /// Notes that an outcome depends on last digits of the robot that alone keep two contacts from being at one place.
+    /// Notes an outcome that depends on the last digits of the robot, by which alone two contacts differ in place.
     pub(super) fn nearly_one(&self, contacts: &[Contact], outcomes: &[Outcome]) -> Option<String> {
         let is_thin = |own: &Outcome| own.margin.is_some_and(|margin| margin > 0.0 && margin < THIN);
         if !outcomes.iter().any(is_thin) {

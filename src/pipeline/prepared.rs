@@ -463,7 +463,7 @@ impl Pipeline<'_> {
         }
     }
 
-    /// Bounds the rounding of G. Without proofs it is the measured value.
+    /// Bounds the rounding of G; without proofs it is estimated from measurements.
     pub(super) fn bound_delassus(&mut self) {
         if self.options.no_proof {
             self.bounds.delassus = DYNAMICS_ROUNDING;

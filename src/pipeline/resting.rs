@@ -267,9 +267,9 @@ fn length([t, n]: Pair<f64>) -> f64 {
 }
 
 /// Returns half a unit in the last decimal place to which each number was rounded: its own last place if it has six to
-/// fifteen significant digits (in its shortest decimal). A number with fewer has lost zeros at its end: its place is
-/// the coarser of the finest place in the list and its own with as many digits as the longest. Others get 0. Numbers of
-/// f32, and lists that may be the text of f32, get the rounding of f32 if that is greater.
+/// fifteen significant digits (in its shortest decimal). A number with fewer has lost zeros at its end: it is taken to
+/// have as many digits as the longest of these, but no place finer than their finest. Others get 0. Numbers of f32, and
+/// lists that may be the text of f32, get the rounding of f32 if that is greater.
 fn half_units(numbers: &[f64]) -> Vec<f64> {
     let last_places: Vec<(usize, i32)> = numbers.iter().map(|&number| last_place(number)).collect();
     let rounded = || last_places.iter().filter(|(digits, _)| ROUNDED.contains(digits));

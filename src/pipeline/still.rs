@@ -144,7 +144,7 @@ pub fn eliminate<T: Real>(matrix: &mut [T], size: usize, row: usize, other: usiz
 mod tests {
     use super::*;
 
-    /// What is found from rows (the same masses in all columns) of two contacts at rest and one that moves.
+    /// The result for rows (with equal masses in all columns) of two contacts at rest and one that moves.
     fn found(rows: [[f64; 4]; 6]) -> Still {
         let entry = |a: &[f64; 4], b: &[f64; 4]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let delassus: Vec<f64> = rows.iter().flat_map(|a| rows.iter().map(|b| entry(a, b))).collect();
@@ -157,22 +157,22 @@ mod tests {
     fn rows_count_where_another_contact_depends_on_them() {
         let [x, y, z, w] = [0, 1, 2, 3].map(|at| std::array::from_fn(|own| f64::from(u8::from(own == at))));
         let zero = [0.0; 4];
-        // The third is free of the two at rest, of which one row follows from another.
+        // The third contact is independent of the two at rest, one of whose rows depends on another.
         let free = found([x, y, y, zero, z, w]);
         assert!(free.rows.is_empty() && free.held.is_empty());
-        // One of its rows follows from both, or both do.
+        // One of its rows depends on theirs, or both do.
         let half = found([x, y, y, zero, [1.0, -2.0, 0.0, 0.0], w]);
         assert!(half.rows.len() == 2 && half.held.is_empty());
         let held = found([x, y, z, zero, [1.0, -2.0, 0.0, 0.0], [0.0, 0.0, 3.0, 0.0]]);
         assert!(held.rows.len() == 3 && held.held == [2]);
-        // A row that is nearly the same does not follow.
+        // A row that is nearly the same is independent.
         let near = found([x, zero, [1.0, 1e-5, 0.0, 0.0], zero, [1.0, 0.0, 1e-5, 0.0], w]);
         assert!(near.rows.is_empty() && near.held.is_empty());
     }
 
     #[test]
     fn regular_rows_follow_from_no_others() {
-        // Two points of one body, of which the second gives way along the ground by itself, by less and less.
+        // Two points of one body. The second also moves along the ground by itself, by less and less.
         let found = [1.0, 0.3, 0.1, 1e-2, 1e-4, 1e-9].map(|gives: f64| {
             let rows = [[1.0, 0.0, 0.7, 0.0], [0.0, 1.0, -0.4, 0.0], [1.0, 0.0, 0.9, gives], [0.0, 1.0, 0.5, 0.0]];
             let entry = |a: [f64; 4], b: [f64; 4]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();

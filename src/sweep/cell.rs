@@ -157,7 +157,7 @@ impl<'s, 'm> Trace<'s, 'm> {
             if let Some(off) = off {
                 return (off.abs() > STRAIGHT).then(|| off_middle(off));
             }
-            // Both sides are there without a common border: a third region lies between them.
+            // Both sides were found without a common border: a third region lies between them.
             if below.regime == *right && above.regime == *left {
                 return None;
             }

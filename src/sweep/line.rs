@@ -72,9 +72,9 @@ impl Bracket {
 /// A stretch of positive width with one regime.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stretch {
-    /// Its least place.
+    /// The least place of the stretch.
     pub from: f64,
-    /// Its greatest place.
+    /// The greatest place of the stretch.
     pub to: f64,
     /// The regime of all its places.
     pub regime: Arc<Regime>,

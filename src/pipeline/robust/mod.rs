@@ -10,8 +10,8 @@
 //! rejected on all of it. The numbers of a box are [`Affine`](crate::scalar::Affine): parts that depend on the same
 //! uncertain quantity cancel, and the rest is of second order in the half-widths. A combination's unknowns are
 //! numerators over det A by Cramer's rule. Numerators are polynomials, so that a pole inside the box (det A = 0) widens
-//! nothing. A box that leaves combinations open is halved, within a fixed effort. The contact set is that of the given
-//! state, and so are the rows of its loops. Dependent contacts stay unknown (det A is zero everywhere), and so do long
+//! nothing. A box that leaves combinations open is halved, within a fixed effort. The contacts and the rows of the
+//! loops are those of the given state. Dependent contacts stay unknown (det A is zero everywhere), and so do long
 //! chains, in which the second order grows from link to link.
 //!
 //! Cost: O(P) for each operation of the dynamics with P uncertain quantities, and 2n 9^n of them for the minors.
