@@ -56,7 +56,7 @@ pub struct Assembly<T = f64> {
     pub elimination: Elimination,
     pub workspace: Workspace<T>,
     pub points: Vec<ContactPoint<T>>,
-    /// Coordinates of braked joints that have a column all the same.
+    /// Coordinates of braked joints that nevertheless have a column.
     pub kept: Vec<usize>,
     pub loops: Vec<Loop<T>>,
     /// The independent rows of the loops, in the order in which every number type eliminates them.

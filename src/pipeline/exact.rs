@@ -43,7 +43,7 @@ pub struct ExactState<'a> {
     pub levels: &'a [Option<Level>],
     /// Contacts that are taken as exactly at rest.
     pub still: &'a Still,
-    /// The braked joints that have columns all the same, and the independent rows of the loops.
+    /// The braked joints that nevertheless have columns, and the independent rows of the loops.
     pub constraints: Constraints<'a>,
     /// Whether these rows follow from the mechanism, and not from the rounding of its pose.
     pub is_rank_certain: bool,
