@@ -1,12 +1,12 @@
-//! Every outcome of a contact problem, and the verdict.
+//! Analyzes a contact problem: all outcomes and the verdict.
 //!
 //! ```text
 //!     problem --enumerate--> numbers of each combination --slack, reading--> valid, rejected
 //!                                                                     or undecided --escalate--> Analysis
 //! ```
 //!
-//! Each combination is first read in f64 with a bound of its error; what lies within it is decided with more digits. So
-//! every sign in an answer was shown, and nothing is guessed.
+//! Each combination is first read in f64 with error bounds. What lies within the bounds is decided with more digits, so
+//! that every sign in an answer was shown and none is guessed.
 
 use super::collected::{
     AnalysisOptions, Collected, EXPLAINED, Findings, FoundFamilies, ListedRejections, OutcomeMemory,
@@ -28,33 +28,34 @@ use crate::law::{Impulse, Mode};
 use crate::planar::Pair;
 use crate::scalar::Rounded;
 
-/// The most contacts of a problem (4^16 combinations are four billions).
+/// The most contacts of a problem that is analyzed: 4^16 combinations are four billion.
 pub const CONTACT_LIMIT: usize = 16;
 
-/// The refusal of so many contacts, more than [`CONTACT_LIMIT`].
+/// The error for a problem with more than [`CONTACT_LIMIT`] contacts.
 pub fn too_many_contacts(contacts: usize) -> Error {
     Error::new(Reason::TooManyContacts { contacts, limit: CONTACT_LIMIT })
         .hint("leave out the contacts that matter least")
 }
 
-/// How many times harder than their motion needs contacts may push before that is noted.
+/// A note is given if contacts push against each other this many times harder than their motion needs.
 const HARD: f64 = 1e3;
 
 impl Analysis {
-    /// What a reader of it should know, in sentences; `problem` is the one that was analyzed, of a robot of this `mass`
-    /// \[kg\], or 0 of none.
+    /// The notes that a reader of the analysis should see, as sentences. `problem` is the one that was analyzed; `mass`
+    /// is the robot's mass \[kg\], or 0 without a robot.
     pub fn notes(&self, problem: &ContactProblem, mass: impl FnOnce() -> f64) -> impl Iterator<Item = String> {
         self.energy_note().into_iter().chain(self.balance_note(problem, mass)).chain(self.unlisted_note())
     }
 
-    /// A note if contacts push against each other far harder than they move: then the last digits of what is given decide.
+    /// A note if contacts push against each other far harder than their motion needs: then the last digits of the input
+    /// decide.
     pub(crate) fn balance_note(&self, problem: &ContactProblem, mass: impl FnOnce() -> f64) -> Option<String> {
         if self.verdict == Verdict::NoImpact {
             return None;
         }
         let most = |list: &[Pair<f64>]| list.as_flattened().iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
         let fastest = most(problem.velocity_before()).max(most(problem.velocity_free()));
-        // What a light foot passes on moves the whole robot.
+        // An impulse that a light foot passes on moves the whole robot, so its own mobility would overstate the motion.
         let hardest = |lightest: f64| {
             let excess = |outcome: &Outcome| {
                 let rows = outcome.impulse.as_flattened().iter().enumerate();
@@ -75,7 +76,7 @@ impl Analysis {
     }
 }
 
-/// Memory that is reused from problem to problem.
+/// Memory of analyses, which is reused from problem to problem.
 #[derive(Debug, Clone, Default)]
 pub struct Scratch {
     tableau: Tableau<Rounded>,
@@ -85,23 +86,26 @@ pub struct Scratch {
     memory: OutcomeMemory,
 }
 
-/// Every outcome of a `problem` given as matrices, whose digits are taken exactly; with the `rejections`
-/// asked for.
+/// Analyzes a `problem` given as matrices, each f64 of which is taken exactly. `rejections` selects the rejected
+/// combinations that are listed.
 ///
 /// # Errors
-/// [`Reason::TooManyContacts`] beyond [`CONTACT_LIMIT`].
+/// Returns [`Reason::TooManyContacts`] if there are more than [`CONTACT_LIMIT`] contacts.
 pub fn analyze(problem: &ContactProblem, rejections: ListedRejections<'_>) -> Result<Analysis> {
     let options = AnalysisOptions { rejections, ..AnalysisOptions::default() };
     Scratch::default().analyze(problem, problem, options)
 }
 
 impl Scratch {
-    /// Takes the memory of outcomes that are no longer needed.
+    /// Takes over the memory of outcomes that are no longer needed.
     pub fn recycle(&mut self, outcomes: Vec<Outcome>) {
         self.memory.recycle(outcomes);
     }
 
-    /// As [`analyze`], with memory that is kept, of a `problem` that was rounded from a `source`.
+    /// Analyzes a `problem` whose f64 numbers were rounded from a `source`, reusing memory.
+    ///
+    /// # Errors
+    /// Returns [`Reason::TooManyContacts`] if there are more than [`CONTACT_LIMIT`] contacts.
     pub fn analyze(
         &mut self,
         problem: &ContactProblem,
@@ -141,19 +145,20 @@ impl Scratch {
         })
     }
 
-    /// beta, gamma and regions, of the velocities of slow contacts in the digits that decide their outcomes.
+    /// Computes beta, gamma and the regions. For slow contacts it uses the velocities with the digits that decide their
+    /// outcomes.
     fn explain(&self, problem: &ContactProblem, source: &dyn Ladder) -> Option<Explanation> {
         let velocity = if self.scale.is_slow() { source.velocity() } else { None };
         let moving = velocity.map(|velocity| problem.moving(&velocity).0);
         explanation(moving.as_ref().unwrap_or(problem), &self.scale)
     }
 
-    /// The friction with which no contact would have to slide, inside of it `None` if one slides whatever the friction
-    /// is; `None` if it is not known.
+    /// The least friction with which some outcome has no sliding contact; the inner `None` means that contacts slide
+    /// whatever the friction is. The outer `None` means that it is not known.
     ///
-    /// It is the greatest [`Outcome::friction_needed`] of the outcome without a sliding contact that needs least;
-    /// `problem` and `source` have infinite friction everywhere. It is not known of more contacts than [`CONTACT_LIMIT`],
-    /// and if no precision, or no time, decides an outcome.
+    /// The friction is the greatest [`Outcome::friction_needed`] of that outcome without sliding contacts which needs
+    /// least. `problem` and `source` have infinite friction everywhere. The result is unknown for more contacts than
+    /// [`CONTACT_LIMIT`], or if no precision, within the budget, decides an outcome.
     pub fn friction_without_slip(
         &mut self,
         problem: &ContactProblem,
@@ -171,7 +176,7 @@ impl Scratch {
         least
     }
 
-    /// All outcomes of the modes that are visited, and whether G was shown to be regular.
+    /// Finds all outcomes of the modes that are visited. Also returns whether G was shown to be regular.
     fn find(
         &mut self,
         problem: &ContactProblem,
@@ -218,7 +223,7 @@ impl Scratch {
             }
         }
         let F64Pass { mut regular, mut undecided, .. } = pass;
-        // Slow contacts often lack only digits of their own velocities, and these are soon computed.
+        // Slow contacts often lack only digits of their own velocities, which are computed quickly.
         let is_blurred = !undecided.is_empty() && self.scale.is_slow() && !is_spent();
         let sharper = if is_blurred { source.velocity() } else { None }.map(|velocity| problem.moving(&velocity));
         let (mut problem, mut errors, mut scale) = (problem, errors, &self.scale);
@@ -237,7 +242,8 @@ impl Scratch {
             F64Pass { regular, undecided, .. } = pass;
         }
         let is_asked = !(options.brief || self.tableau.without_slip);
-        // If all combinations are visited, so is the one in which every contact sticks, which shows it by itself.
+        // If all combinations are visited, the visit includes the one in which every contact sticks, which shows
+        // whether G is regular.
         let is_shown =
             contacts < SEARCHED && problem.laws().iter().all(|law| law.impulse(Mode::Stick) == Impulse::Free);
         if is_asked && !is_shown {
@@ -264,8 +270,8 @@ impl Scratch {
     }
 }
 
-/// The greatest friction that a contact needs, of an outcome that friction without bound may hold: infinite where a
-/// contact resists without being pressed.
+/// The greatest friction that a contact of the outcome needs; infinite if a contact has tangential impulse without
+/// normal impulse. The outcome is one of infinite friction.
 fn steepest(outcome: &Outcome) -> f64 {
     let contacts = outcome.impulse.iter().zip(&outcome.friction_needed);
     let ratios = contacts.map(|(&[tangential, _], needed)| match needed {
@@ -291,7 +297,7 @@ fn verdict(contacts: usize, outcomes: &[Outcome], is_open: bool) -> Verdict {
     }
 }
 
-/// Whether some outcome has no sliding contact; `None` if that depends on an undecided combination, listed or not.
+/// Whether some outcome has no sliding contact; `None` if that depends on an undecided combination.
 fn no_slip_consistent(outcomes: &[Outcome], open: Option<&OpenCombinations>) -> Option<bool> {
     let without_slip = || outcomes.iter().filter(|outcome| !outcome.modes.iter().any(|mode| mode.slides()));
     let listed = outcomes.iter().filter(|outcome| !outcome.decided).count();
@@ -310,7 +316,7 @@ mod tests {
     use crate::scalar::{Ordered, Trigonometry};
     use proptest::prelude::*;
 
-    /// A problem of level soles with two contacts each, of which that is known.
+    /// A problem of level soles with two contacts each; the source knows the tangential rows that they share.
     struct Soles<'a>(&'a ContactProblem);
 
     impl Source for Soles<'_> {
@@ -343,7 +349,7 @@ mod tests {
             let velocity: Vec<_> = (0..sides.len()).flat_map(velocity).collect();
             let contacts = velocity.len();
             let problem = ContactProblem::new(delassus, velocity, vec![mu; contacts], vec![bounce; contacts]).unwrap();
-            // Rows that G rounded apart from what it is made of are exactly those of another G.
+            // A repaired or symmetrized G need not have the exactly equal rows that `Soles` states.
             prop_assume!(problem.is_given());
             let options = AnalysisOptions { rejections: all.into(), ..AnalysisOptions::default() };
             let known = Scratch::default().analyze(&problem, &Soles(&problem), options).unwrap();

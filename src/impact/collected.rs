@@ -1,4 +1,4 @@
-//! What the passes over all combinations have found so far.
+//! Collects what the passes over all combinations find.
 
 use super::combination::Solved;
 use super::digits::Numbers;
@@ -12,22 +12,23 @@ use crate::reductions::Reductions;
 use std::cmp::Ordering;
 use std::mem::take;
 
-/// So many contacts have all their rejected combinations listed, each with its reason.
+/// The most contacts for which all rejected combinations are listed, each with its reason.
 pub const EXPLAINED: usize = 6;
 
 /// Which rejected combinations an analysis lists.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ListedRejections<'a> {
-    /// None.
+    /// No rejected combination.
     Nothing,
-    /// All of up to [`EXPLAINED`] contacts, and the paper's section 4 for each of them.
+    /// All rejected combinations and the paper's section 4 for each contact. With more than [`EXPLAINED`] contacts,
+    /// only the combinations that a search does not exclude.
     Everything,
-    /// Those with these modes.
+    /// Only the rejected combinations with these modes.
     Only(&'a [Vec<Mode>]),
 }
 
 impl ListedRejections<'_> {
-    /// Whether a rejected combination is listed.
+    /// Whether a rejected combination with these modes is listed.
     pub fn contain(self, modes: &[Mode]) -> bool {
         match self {
             Self::Nothing => false,
@@ -43,16 +44,16 @@ impl From<bool> for ListedRejections<'_> {
     }
 }
 
-/// What is computed of a contact problem.
+/// What an analysis computes of a contact problem.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AnalysisOptions<'a> {
     /// Which rejected combinations are listed.
     pub rejections: ListedRejections<'a>,
     /// Whether the errors of the source are bounds, so that what is decided is proven.
     pub prove: bool,
-    /// Without the rank and the condition of G, and the borders of outcomes.
+    /// Whether to leave out the rank and condition of G, and the borders of outcomes.
     pub brief: bool,
-    /// What of the enumeration is left out if a problem does not need it.
+    /// The parts of the enumeration that are left out if a problem does not need them.
     pub reductions: Reductions,
 }
 
@@ -62,30 +63,31 @@ impl Default for AnalysisOptions<'_> {
     }
 }
 
-/// So many undecided combinations are listed; there may be 4^n.
+/// The most undecided combinations that are listed; there may be 4^n.
 const LISTED: u64 = 100;
 
-/// A combination that needs more digits, with its number among all 4^n, from 0: its modes as digits.
+/// A combination that needs more digits. Its number from 0 counts all 4^n combinations: the modes are its digits in
+/// base 4.
 #[derive(Debug, Clone)]
 pub struct Pending {
     pub number: u64,
     pub modes: Vec<Mode>,
 }
 
-/// The memory of so many outcomes is kept; few states have more.
+/// The number of outcomes whose memory is kept; few states have more.
 const RECYCLED: usize = 16;
 
-/// Memory of outcomes, which is reused.
+/// Memory of outcomes that is reused.
 #[derive(Debug, Clone, Default)]
 pub struct OutcomeMemory {
     outcomes: Vec<Outcome>,
-    /// The number of the combination that led to each.
+    /// The number of the combination of each outcome.
     numbers: Vec<u64>,
     lists: Vec<OutcomeLists>,
     at_zero: Vec<(usize, Inequality)>,
 }
 
-/// The lists of an outcome.
+/// The lists of an outcome, as reusable memory.
 #[derive(Debug, Clone, Default)]
 pub struct OutcomeLists {
     pub modes: Vec<Mode>,
@@ -97,7 +99,7 @@ impl OutcomeMemory {
     /// Takes the memory of outcomes that are no longer needed.
     pub fn recycle(&mut self, mut outcomes: Vec<Outcome>) {
         let room = RECYCLED.saturating_sub(self.lists.len());
-        // Where they are: an outcome is large.
+        // Only the lists are moved, because an outcome is large.
         self.lists.extend(outcomes.iter_mut().take(room).map(|own| {
             let motion = Motion { impulse: take(&mut own.impulse), velocity_after: take(&mut own.velocity_after) };
             OutcomeLists { modes: take(&mut own.modes), motion, friction_needed: take(&mut own.friction_needed) }
@@ -107,49 +109,50 @@ impl OutcomeMemory {
     }
 }
 
-/// The families of a problem, each with its dimension and its corners by their place in `corners`.
+/// The families of a problem, each with its dimension and the places of its corners in `corners`.
 #[derive(Default)]
 pub struct FoundFamilies {
     pub families: Vec<(Pending, usize, Vec<usize>)>,
     pub corners: Vec<Corner>,
-    /// Combinations whose corners are too many or not known.
+    /// Combinations that have too many corners, or whose corners are not known.
     pub open: Vec<Pending>,
 }
 
-/// A corner of families.
+/// A corner that one or more families share.
 pub enum Corner {
-    /// The outcome at this place, whose velocity is the only one of its modes.
+    /// The outcome at this place: its velocity is the only one of its modes.
     Isolated(usize),
-    /// One of many velocities of a combination of this number.
+    /// A velocity of the family with this combination number, one of many with its modes.
     OfFamily(u64, SingularOutcome),
 }
 
-/// All that was found, in the order of the combinations.
+/// Everything that was found, in the order of the combinations.
 #[derive(Default)]
 pub struct Findings {
     pub outcomes: Vec<Outcome>,
     pub families: Vec<Family>,
-    /// As far as they are to be listed, and how many more would be.
+    /// The rejected combinations that are listed, and the number of those that were asked for but are not listed.
     pub rejected: Vec<Rejection>,
     pub unlisted: u64,
     pub effort: Effort,
-    /// How many combinations were visited, and how many of them no precision decided.
+    /// How many combinations were visited, and how many of these no precision decided.
     pub visited: u64,
     pub undecided: u64,
 }
 
-/// Outcomes and rejected combinations of a problem.
+/// The outcomes, families and rejected combinations of a problem while they are found.
 pub struct Collected<'a> {
     pub problem: &'a ContactProblem,
     pub scale: &'a Scale,
     pub options: AnalysisOptions<'a>,
     name: &'a dyn Fn(usize) -> String,
-    /// Its lists stay empty to the end.
+    /// Counts; the lists stay empty until [`Self::finish`].
     pub found: Findings,
     memory: &'a mut OutcomeMemory,
     /// Combinations whose velocities form a set.
     pub pending_families: Vec<Pending>,
-    /// Corners are still in the order in which they were found.
+    /// With the number of each family's combination. Until [`Self::finish`], corners are places in the order of
+    /// discovery.
     families: Vec<(u64, Family)>,
     rejected: Vec<(u64, Rejection)>,
 }
@@ -190,12 +193,12 @@ impl<'a> Collected<'a> {
         }
     }
 
-    /// Memory for what is at zero in a reading.
+    /// Takes memory for the `at_zero` of a reading.
     pub fn at_zero(&mut self) -> Vec<(usize, Inequality)> {
         take(&mut self.memory.at_zero)
     }
 
-    /// Memory for an outcome.
+    /// Takes memory for the lists of an outcome.
     pub fn lists(&mut self) -> OutcomeLists {
         self.memory.lists.pop().unwrap_or_default()
     }
@@ -221,8 +224,8 @@ impl<'a> Collected<'a> {
         self.push(number, modes, numbers, Solution { index, margin, range, at_zero: &at_zero });
     }
 
-    /// Counts a combination that no precision decided, and lists one of the first with zeros for the impulses that are
-    /// not known.
+    /// Counts a combination that no precision decided. The first ones are also listed, with zeros for the unknown
+    /// impulses.
     pub fn add_undecided(&mut self, Pending { number, modes }: Pending) {
         self.found.undecided += 1;
         if self.found.undecided > LISTED {
@@ -304,7 +307,7 @@ impl<'a> Collected<'a> {
         Findings { outcomes, families, rejected, ..self.found }
     }
 
-    /// Adds a decided outcome, where it stays: what is large and was just written is slow to move.
+    /// Adds a decided outcome. It is built in place, because a large value that was just written is slow to move.
     fn push(&mut self, number: u64, modes: Vec<Mode>, numbers: Numbers, own: Solution) {
         let Numbers { motion, energy_loss, friction_needed, are_sharp } = numbers;
         let Solution { index, margin, range, at_zero } = own;
@@ -336,21 +339,21 @@ impl<'a> Collected<'a> {
     }
 }
 
-/// What is listed, without its numbers. Nearly always it is nothing, and collecting in place is slow to begin.
+/// Removes the numbers of a list. The list is nearly always empty, and collecting in place is slow to begin.
 fn unnumbered<T>(listed: Vec<(u64, T)>) -> Vec<T> {
     if listed.is_empty() { Vec::new() } else { listed.into_iter().map(|(_, own)| own).collect() }
 }
 
-/// What there is to say of an outcome beside its numbers.
+/// The properties of an outcome that [`Numbers`] does not hold.
 struct Solution<'a> {
     index: Option<i8>,
     margin: Option<f64>,
-    /// Of an impulse that is not unique.
+    /// The range of each entry of an impulse that is not unique.
     range: Option<Vec<[Range; 2]>>,
     at_zero: &'a [(usize, Inequality)],
 }
 
-/// The border of an outcome whose impulse inequalities `at_zero` are zero; `None` if none is.
+/// The border of an outcome, where the impulse inequalities `at_zero` are zero; `None` if there are none.
 fn border(
     modes: &[Mode],
     laws: &[Law],
@@ -364,7 +367,7 @@ fn border(
     let mut border = Border { at_zero: Vec::new(), neighbours: Vec::new() };
     for (contact, (&mode, law)) in modes.iter().zip(laws).enumerate() {
         let own = || at_zero.iter().filter(|(place, _)| *place == contact).map(|&(_, inequality)| inequality);
-        // Without pressure the cone is its own tip, and says nothing more.
+        // Without normal impulse, the friction cone is zero as well and says nothing more.
         let unpressed = own().find(|&inequality| inequality == Inequality::NormalImpulse);
         let Some(inequality) = unpressed.or_else(|| own().next()) else { continue };
         border.at_zero.push(AtZero { contact: name(contact), inequality });
@@ -388,7 +391,7 @@ mod tests {
         use Inequality::{FrictionCone, NormalImpulse};
         let laws = [Friction::Finite(0.5), Friction::ZERO].map(Law::from);
         for (tangential, at_zero, expected, neighbours) in [
-            // A cone's edge leads to the slide that its friction resists.
+            // At the edge of its cone, a contact may begin the slide that its friction resists.
             (0.5, vec![(0, FrictionCone)], vec![("0", FrictionCone)], vec![[Mode::SlideMinus, Mode::Stick]]),
             // A contact without pressure may do anything next.
             (

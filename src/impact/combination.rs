@@ -1,4 +1,4 @@
-//! One combination of modes, solved in numbers that know their own signs.
+//! Solves one combination of modes in numbers that know their own signs.
 
 use super::digits::{Numbers, after};
 use super::enumerate::Tableau;
@@ -15,18 +15,18 @@ use crate::scalar::{Ordered, Sign};
 /// The solution of a combination.
 #[derive(Debug)]
 pub enum Solved {
-    /// It is no outcome.
+    /// The combination is not an outcome.
     Rejected(Rejection),
-    /// Its equations have one solution, an outcome.
+    /// The equations have one solution, which is an outcome.
     Regular {
         reading: CombinationReading,
-        /// Sign of det A.
+        /// The sign of det A.
         index: i8,
         numbers: Numbers,
     },
-    /// Its equations are singular, and its velocity is the only one of these modes, an outcome.
+    /// The equations are singular, but only one velocity has these modes; it is an outcome.
     Singular(SingularOutcome),
-    /// Its equations are singular, and its velocities form a set.
+    /// The equations are singular, and the velocities form a set.
     Family,
 }
 
@@ -41,7 +41,8 @@ impl<T> From<SingularCase<T>> for Solved {
 }
 
 impl Solved {
-    /// Whether the numbers of its outcome, if it has one yet, have the digits that are promised.
+    /// Whether the numbers of the outcome have the promised digits; true if the combination is not an outcome by
+    /// itself.
     pub fn is_sharp(&self) -> bool {
         match self {
             Self::Regular { numbers, .. } => numbers.are_sharp,
@@ -50,7 +51,7 @@ impl Solved {
         }
     }
 
-    /// Whether some number of a rejected combination is not finite, or its reason not the last word.
+    /// Whether the combination is rejected but some number is not finite or its reason is provisional.
     pub fn is_vague(&self) -> bool {
         match self {
             Self::Rejected(Rejection { margin, motion, .. }) => {
@@ -61,10 +62,10 @@ impl Solved {
     }
 }
 
-/// A problem in these numbers and its elimination.
+/// A problem in numbers of type `T`, ready to solve its combinations.
 pub struct CombinationSolver<'e, T> {
     exact: &'e ContactProblem<T>,
-    /// That of these numbers, or of f64 with its errors if they are balls around it.
+    /// The scale of these numbers; if they are balls around the f64 problem, the f64 scale with its errors.
     scale: Scale,
     tableau: Tableau<T>,
 }

@@ -1,25 +1,25 @@
-//! The corners of a bounded set that a polyhedron leads to.
+//! Finds the corners of a bounded set that is the affine image of a polyhedron.
 //!
 //! ```text
 //!     S = { z(y) : f_i(y) >= 0 }      z and f_i affine; S has as many dimensions as z has entries
 //! ```
 //!
-//! A linear program finds the corner of S that is farthest in a direction. Corners are added until none lies beyond a
-//! facet of those that are known (Lassez and Lassez, *Quantifier elimination for conjunctions of linear constraints via
-//! a convex hull algorithm*, 1992). A new corner replaces the facets that it lies beyond by one over each of their
-//! horizon's ridges (Grünbaum, *Convex Polytopes*, 1967, section 5.2).
+//! A linear program finds the corner of S that is farthest in a given direction. Corners are added until none lies
+//! beyond a facet of the hull of the known corners (Lassez and Lassez, *Quantifier elimination for conjunctions of
+//! linear constraints via a convex hull algorithm*, 1992). A new corner removes the facets that it lies beyond and adds
+//! one facet over each ridge of their horizon (Grünbaum, *Convex Polytopes*, 1967, section 5.2).
 //!
-//! Cost: one program per corner and facet of S, however many corners the polyhedron itself has.
+//! Cost: one linear program per corner and facet of S, however many corners the polyhedron has.
 
 use super::linear::{LinearFunction, Unsettled, extended, settled, solve};
 use super::simplex::maximize;
 use crate::scalar::{Ordered, dot};
 use std::cmp::Ordering;
 
-/// More facets than this are not followed.
+/// The search gives up beyond this number of facets.
 const FACETS: usize = 500;
 
-/// The values of z at all corners of S, `None` if there are too many. At y = 0 no function may be negative.
+/// Returns z at all corners of S; `None` if S has too many facets. At y = 0 no function may be negative.
 pub fn corners<T: Ordered>(
     functions: &[LinearFunction<T>],
     image: &[LinearFunction<T>],
@@ -39,7 +39,7 @@ pub fn corners<T: Ordered>(
     Ok(Some(hull.corners))
 }
 
-/// The convex hull of the corners that are known.
+/// The convex hull of the known corners.
 struct Hull<'a, T> {
     functions: &'a [LinearFunction<T>],
     image: &'a [LinearFunction<T>],
@@ -48,11 +48,11 @@ struct Hull<'a, T> {
 }
 
 struct Facet<T> {
-    /// Outward.
+    /// The outward normal.
     normal: Vec<T>,
-    /// All corners on it.
+    /// All known corners on the facet.
     corners: Vec<usize>,
-    /// Whether S may reach beyond it.
+    /// Whether S may reach beyond the facet.
     open: bool,
 }
 
@@ -68,7 +68,7 @@ impl<T: Ordered> Hull<'_, T> {
         let axes = rank.clone().map(axis);
         let mut functions = self.functions.to_vec();
         let mut y = vec![T::zero(); self.image.first().map_or(0, |z| z.coefficients.len())];
-        // Of all farthest points the one with the greatest entries, one after the other, is a corner.
+        // Among the farthest points, the one with the greatest entries, compared one after the other, is a corner.
         for toward in [direction.to_vec()].into_iter().chain(axes) {
             let along = |at: usize| dot(&toward, &self.image.iter().map(|z| z.coefficients[at]).collect::<Vec<T>>());
             let objective: Vec<T> = (0..y.len()).map(along).collect();
@@ -86,7 +86,7 @@ impl<T: Ordered> Hull<'_, T> {
     fn begin(&mut self) -> Result<(), Unsettled> {
         let dimension = self.image.len();
         while self.corners.len() <= dimension {
-            // The corners so far do not differ along this direction; another one does.
+            // The known corners do not differ along this direction; some corner does.
             let normals = self.normals(&(0..self.corners.len()).collect::<Vec<_>>())?;
             let direction = normals.into_iter().next().ok_or(Unsettled)?;
             let mut corner = self.farthest(&direction)?;
@@ -100,7 +100,7 @@ impl<T: Ordered> Hull<'_, T> {
         for left_out in 0..=dimension {
             let through: Vec<usize> = (0..=dimension).filter(|&corner| corner != left_out).collect();
             let facet = self.facet(&through)?.ok_or(Unsettled)?;
-            // The ends of a segment are the farthest already.
+            // The two ends of a segment are already the farthest corners.
             self.facets.push(Facet { open: dimension > 1, ..facet });
         }
         Ok(())
@@ -135,7 +135,8 @@ impl<T: Ordered> Hull<'_, T> {
         Ok(())
     }
 
-    /// The facet through these corners; `None` if they leave its plane open, or if corners lie on both sides of it.
+    /// The facet through these corners; `None` if they do not determine a plane, or if known corners lie on both sides
+    /// of it.
     fn facet(&self, through: &[usize]) -> Result<Option<Facet<T>>, Unsettled> {
         let [normal] = &self.normals(through)?[..] else { return Ok(None) };
         let mut facet = Facet { normal: normal.clone(), corners: Vec::new(), open: true };
@@ -153,7 +154,7 @@ impl<T: Ordered> Hull<'_, T> {
         Ok(Some(facet))
     }
 
-    /// A basis of the directions along which these corners do not differ.
+    /// A basis of the directions orthogonal to the differences of these corners.
     fn normals(&self, through: &[usize]) -> Result<Vec<Vec<T>>, Unsettled> {
         let equation =
             |&corner: &usize| extended(&difference(&self.corners[corner], &self.corners[through[0]]), T::zero());
@@ -164,7 +165,7 @@ impl<T: Ordered> Hull<'_, T> {
         Ok(found.chunks(self.image.len()).map(<[T]>::to_vec).collect())
     }
 
-    /// How far a point lies beyond a facet, in a scale of its own.
+    /// How far a point lies beyond a facet, times the length of the facet's normal.
     fn height(&self, facet: &Facet<T>, point: &[T]) -> T {
         dot(&facet.normal, &difference(point, &self.corners[facet.corners[0]]))
     }
@@ -191,7 +192,7 @@ mod tests {
         corners
     }
 
-    /// 0 <= y_i <= 1, seen from the middle.
+    /// The cube 0 <= y_i <= 1, with its center as the origin.
     fn cube(dimension: usize) -> Vec<LinearFunction<Number>> {
         let face = |own: usize, slope: f64| {
             let coefficients: Vec<f64> = (0..dimension).map(|at| if at == own { slope } else { 0.0 }).collect();
@@ -214,7 +215,7 @@ mod tests {
 
     #[test]
     fn a_shadow_has_no_corner_inside() {
-        // A cube along its diagonal is a hexagon; two of its corners are seen in the middle.
+        // Projected along its diagonal, a cube is a hexagon; two corners of the cube lie in its middle.
         let hexagon = [affine(0.0, &[1.0, -1.0, 0.0]), affine(0.0, &[0.0, 1.0, -1.0])];
         let expected = [[-1.0, 0.0], [-1.0, 1.0], [0.0, -1.0], [0.0, 1.0], [1.0, -1.0], [1.0, 0.0]];
         assert_eq!(found(&cube(3), &hexagon), expected);
@@ -222,14 +223,14 @@ mod tests {
 
     #[test]
     fn free_directions_without_effect_do_no_harm() {
-        // 0 <= y1 <= 1 while y2 is free above and y3 on both sides.
+        // |y1| <= 1/2, y2 >= 0, and y3 is free.
         let functions = [affine(0.5, &[1.0, 0.0, 0.0]), affine(0.5, &[-1.0, 0.0, 0.0]), affine(0.0, &[0.0, 1.0, 0.0])];
         assert_eq!(found(&functions, &[affine(0.0, &[2.0, 0.0, 0.0])]), [[-1.0], [1.0]]);
     }
 
     #[test]
     fn a_square_pyramid_has_five_corners() {
-        // Facets with three and with four corners.
+        // Some facets have three corners and one has four.
         let slopes = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
         let sides = slopes.map(|[x, y]| affine(0.5, &[x, y, -1.0]));
         let functions: Vec<_> = sides.into_iter().chain([affine(0.25, &[0.0, 0.0, 1.0])]).collect();

@@ -1,19 +1,21 @@
-//! The numbers of an outcome, and whether they have the digits that are promised.
+//! The numbers of an outcome, and whether they have the promised digits.
 //!
 //! ```text
-//!     V = max(own |c-|, own |c+|)                  a contact's scale of speed
-//!     P = L_n                                      and of impulse
-//!     c+                 of V
-//!     L_n, L_t           of P, of max(|L_t|, min(mu, 1) P)
-//!     energy_loss        of itself
-//!     friction_needed    as the quotient of both impulses
-//!     impulse_range      an end: of the largest of both ends and the entry itself
+//!     V = max(own |c-|, own |c+|)                  the speed scale of a contact
+//!     P = L_n                                      the impulse scale of a contact
 //!
-//!     of a robot in f64  V >= min(S sqrt(G_ii), the fastest contact's |c|),  P >= min(S / sqrt(G_nn), the greatest |L|)
+//!     c+                 has the scale V
+//!     L_n, L_t           P, max(|L_t|, min(mu, 1) P)
+//!     energy_loss        itself
+//!     friction_needed    that of the quotient of both impulses
+//!     impulse_range      of an end: the largest of both ends and the entry itself
+//!
+//!     a robot in f64     V >= min(S sqrt(G_ii), the fastest contact's |c|), P >= min(S / sqrt(G_nn), the greatest |L|)
 //! ```
 //!
-//! with S of [`Scale`]. Each is right to 1e-10 of that; what the numbers at hand do not show to [`DIGITS`] is computed
-//! with more digits. Contacts that hardly feel a blow would else always need them.
+//! with S of [`Scale`]. Each number is right to 1e-10 of its scale. If the errors at hand exceed [`DIGITS`], it is
+//! computed with more digits. The larger scales of the last line keep contacts that hardly feel a blow from always
+//! needing them.
 
 use super::enumerate::Leaf;
 use super::generators::Generators;
@@ -25,16 +27,16 @@ use crate::planar::Pair;
 use crate::scalar::{Ordered, Real, Rounded};
 use nalgebra::DMatrix;
 
-/// What a number of an outcome may be off by: 1e-10, with room for the quotient of two.
+/// The allowed error of an outcome's number, relative to its scale: 1e-10, with room for the quotient of two.
 pub const DIGITS: f64 = 4e-11;
 
-/// Less work has lost digits to underflow \[J\].
+/// Work below this has lost digits to underflow \[J\].
 const LEAST_WORK: f64 = f64::MIN_POSITIVE / f64::EPSILON;
-/// What the velocities of a problem may be off by, as part of their scale, before an outcome's numbers may lack digits,
-/// with room for what an elimination makes of it.
+/// The relative error of a problem's velocities beyond which an outcome's numbers may lack digits; it leaves room for
+/// the growth of errors in an elimination.
 const SLOW: f64 = DIGITS / 256.0;
 
-/// An inverse in f64 is used if what is left of the identity is no more than this.
+/// An f64 inverse X of A is used if no row sum of |I - A X| exceeds this.
 const VERIFIED: f64 = 0.1;
 
 /// The scales of an outcome's numbers, per contact.
@@ -42,7 +44,7 @@ struct Scales<'a> {
     scale: &'a Scale,
     before: &'a [Pair<f64>],
     motion: &'a Motion,
-    /// The greatest speed and the greatest impulse of all contacts, of a robot in f64.
+    /// The greatest speed and the greatest impulse of all contacts if f64 computed the problem of a robot; else zeros.
     greatest: Pair<f64>,
 }
 
@@ -56,14 +58,14 @@ impl<'a> Scales<'a> {
         Self { scale, before, motion, greatest }
     }
 
-    /// V of a contact \[m/s\].
+    /// The speed scale V of a contact \[m/s\].
     fn speed(&self, contact: usize) -> f64 {
         let mobility = self.scale.mobility[2 * contact].max(self.scale.mobility[2 * contact + 1]);
         let own = largest(&[self.before[contact], self.motion.velocity_after[contact]]);
         own.max(self.greatest[0].min(self.scale.speed * mobility))
     }
 
-    /// What the tangential and the normal impulse of a contact are relative to \[N s\].
+    /// The scales of the tangential and the normal impulse of a contact \[N s\].
     fn impulse(&self, contact: usize, law: &Law) -> Pair<f64> {
         let [t, n] = self.motion.impulse[contact].map(f64::abs);
         let own = n.max(self.greatest[1].min(self.scale.speed / self.scale.mobility[2 * contact + 1]));
@@ -79,16 +81,16 @@ fn largest(pairs: &[Pair<f64>]) -> f64 {
 #[derive(Debug, Clone)]
 pub struct Numbers {
     pub motion: Motion,
-    /// Kinetic energy that the contacts took \[J\].
+    /// The kinetic energy that the contacts dissipate \[J\].
     pub energy_loss: f64,
     /// |L_t| / L_n of each sticking contact that is pressed on the ground.
     pub friction_needed: Vec<Option<f64>>,
-    /// Whether all have the digits that are promised.
+    /// Whether all numbers have the promised digits.
     pub are_sharp: bool,
 }
 
 impl Numbers {
-    /// Those of f64, of which [`f64_serves`] says whether they are sharp; `friction` is memory.
+    /// The numbers that f64 computed; [`f64_serves`] checks their digits. `friction` is reused memory.
     pub fn of_motion(motion: Motion, modes: &[Mode], problem: &ContactProblem, mut friction: Vec<Option<f64>>) -> Self {
         let energy_loss = energy_loss(problem.velocity_before(), &motion.impulse, &motion.velocity_after);
         friction.clear();
@@ -96,7 +98,8 @@ impl Numbers {
         Self { motion, energy_loss, friction_needed: friction, are_sharp: true }
     }
 
-    /// Those of a combination solved in numbers that know their own errors: impulses, and velocities `[c_t, xi_n]`.
+    /// The numbers of a combination: `impulse`, and velocities `xi` as `[c_t, xi_n]`, in numbers that know their
+    /// errors.
     pub fn of<T: Ordered>(
         (problem, scale): (&ContactProblem<T>, &Scale),
         modes: &[Mode],
@@ -125,7 +128,7 @@ impl Numbers {
         }
     }
 
-    /// Takes over the friction that contacts need whose impulses are not unique, to so many `digits`.
+    /// Takes over the friction `needed` by contacts whose impulses are not unique, checked to `digits`.
     pub fn take_friction<T: Ordered>(&mut self, needed: &[Option<T>], laws: &[Law], digits: f64) {
         let known =
             |(needed, law): (&Option<T>, &Law)| needed.is_none_or(|ratio| is_known(ratio, least_friction(law), digits));
@@ -140,29 +143,30 @@ fn nearest<T: Ordered>(list: &[Pair<T>]) -> Vec<Pair<f64>> {
 }
 
 impl Scale {
-    /// Up to what bound of its error a number likely has the digits that are promised.
+    /// The error bound, relative to a number's scale, up to which its likely error keeps the promised digits.
     pub fn digits(&self) -> f64 {
         DIGITS / self.likely_part
     }
 
-    /// Whether the contacts are so slow that the rounding of c likely takes digits of an outcome.
+    /// Whether the contacts are so slow that the rounding of c likely costs digits of an outcome.
     pub fn is_slow(&self) -> bool {
         self.likely_noise > SLOW && self.likely_noise.is_finite()
     }
 }
 
-/// Whether a number is known to so many `digits`, as of [`DIGITS`], of itself or of a `scale` that is larger.
+/// Whether the error of a number is at most `digits` times its magnitude, or times `scale` if that is larger.
 pub fn is_known<T: Ordered>(number: T, scale: f64, digits: f64) -> bool {
     number.error() <= digits * scale.max(number.to_f64().abs())
 }
 
-/// Whether the ends of a range are known to their digits of the largest of both and `own`, which lies between.
+/// Whether the errors of a range's ends are at most `digits` times the largest magnitude of both ends and `own`, which
+/// lies between them.
 pub fn is_known_range<T: Ordered>(ends: [Option<T>; 2], own: T, digits: f64) -> bool {
     let scale = ends.into_iter().flatten().fold(own.to_f64().abs(), |most, end| most.max(end.to_f64().abs()));
     ends.into_iter().flatten().all(|end| is_known(end, scale, digits))
 }
 
-/// The share of the normal impulse that counts as a tangential impulse's scale.
+/// The smallest scale of a tangential impulse, min(mu, 1), as a share of the normal impulse's scale.
 pub fn least_friction(law: &Law) -> f64 {
     match law.friction() {
         Friction::Finite(mu) => mu.min(1.0),
@@ -170,7 +174,7 @@ pub fn least_friction(law: &Law) -> f64 {
     }
 }
 
-/// c+ of a contact with `[c_t, xi_n]`.
+/// c+ of a contact from its `[c_t, xi_n]` \[m/s\].
 pub fn after<T: Real>([c_t, xi_n]: Pair<T>, contact: usize, modes: &[Mode], problem: &ContactProblem<T>) -> Pair<T> {
     let c_t = if modes[contact] == Mode::Stick { T::zero() } else { c_t };
     [c_t, if problem.restitution()[contact] == 0.0 { xi_n } else { xi_n - problem.bounce(contact) }]
@@ -183,7 +187,7 @@ fn energy_loss<T: Real>(before: &[Pair<T>], impulse: &[Pair<T>], after: &[Pair<T
     T::zero() - T::from_f64(0.5) * work
 }
 
-/// |L_t| / L_n of each sticking contact that is pressed on the ground, whose cone was shown to hold.
+/// |L_t| / L_n of each sticking contact with L_n > 0; its friction cone was shown to hold.
 fn friction_needed(modes: &[Mode], laws: &[Law], impulse: &[Pair<f64>]) -> impl Iterator<Item = Option<f64>> {
     let needed = |((&mode, law), l): ((&Mode, &Law), &Pair<f64>)| {
         (mode == Mode::Stick && l[1] > 0.0).then(|| at_most(law, l[0].abs() / l[1]))
@@ -191,7 +195,7 @@ fn friction_needed(modes: &[Mode], laws: &[Law], impulse: &[Pair<f64>]) -> impl 
     modes.iter().zip(laws).zip(impulse).map(needed)
 }
 
-/// A ratio that rounding may have lifted beyond the friction.
+/// Limits a ratio to the friction, which rounding may have made it exceed.
 fn at_most(law: &Law, ratio: f64) -> f64 {
     match law.friction() {
         Friction::Finite(mu) => ratio.min(mu),
@@ -199,8 +203,8 @@ fn at_most(law: &Law, ratio: f64) -> f64 {
     }
 }
 
-/// Whether the f64 numbers of a leaf have their digits, those of the `margin` included: by what is likely of their
-/// errors, or else by how they depend on the problem.
+/// Whether the f64 numbers of a leaf, including the `margin`, have the promised digits, judged by their likely errors,
+/// or else by their sensitivity to the errors of the problem.
 pub fn f64_serves(
     leaf: &Leaf<'_, Rounded>,
     modes: &[Mode],
@@ -219,12 +223,13 @@ struct Candidate<'a> {
     problem: &'a ContactProblem,
     scale: &'a Scale,
     motion: &'a Motion,
-    /// The scale of the margin.
+    /// The scale of the margin: at least 1.
     margin: f64,
 }
 
 impl Candidate<'_> {
-    /// Whether all have their digits if the two numbers of each contact, as the leaf has them, are off by `errors`.
+    /// Whether all numbers have their digits if the two numbers of each contact ([`Leaf::numbers`]) are off by
+    /// `errors`.
     fn serves(&self, errors: impl Fn(usize) -> [f64; 2]) -> bool {
         let Self { modes, problem, scale, motion, margin, .. } = self;
         let scales = match scale.likely_rounding {
@@ -238,7 +243,7 @@ impl Candidate<'_> {
             let (before, after) = (problem.velocity_before()[contact], motion.velocity_after[contact]);
             let [first, second] = errors(contact);
             let bounce = problem.restitution()[contact] * noise * mobility[1];
-            // What c+ and L are off by.
+            // The errors of c+ and of L.
             let (off, push) = match law.impulse(mode) {
                 Impulse::Zero => ([first, second + bounce], [0.0; 2]),
                 Impulse::Along(ray) => ([first, bounce], ray.map(|entry| entry.abs() * second)),
@@ -261,18 +266,20 @@ impl Candidate<'_> {
                 }
             }
         }
-        // Where products underflow, both may vanish.
+        // If products underflow, both sides may vanish.
         let is_pressed = motion.impulse.as_flattened().iter().any(|&entry| entry != 0.0);
         doubt <= DIGITS * f64::abs(work) && (!is_pressed || f64::abs(work) > LEAST_WORK)
     }
 
-    /// As [`Candidate::serves`], entry by entry, with B that of the generators (Higham 2002, section 7.2).
+    /// Does the same as [`Candidate::serves`] with errors computed entry by entry from the sensitivity of lambda
+    /// (Higham 2002, section 7.2); B is the matrix of the generators.
     ///
     /// ```text
     ///     A = (G B) in the rows that L holds      |change of lambda| <= |A^-1| (|residual| + |errors of c_free + G L|)
     /// ```
     ///
-    /// In units of the mobilities X = A^-1 in f64 is shown to be near enough: with R = I - A X and a greatest row sum of
+    /// A is scaled by the mobilities. X, its inverse in f64, is verified: with R = I - A X and r < 1 the greatest row
+    /// sum of |R|, |A^-1| y <= |X| (y + r / (1 - r) max y).
     /// |R| of r < 1, |A^-1| y <= |X| (y + r / (1 - r) max y).
     fn serves_by_sensitivity(&self) -> bool {
         let Self { leaf, modes, problem, scale, .. } = self;
@@ -288,7 +295,7 @@ impl Candidate<'_> {
             let moved: f64 = impulse.iter().enumerate().map(|(column, l)| problem.delassus(row, column) * l).sum();
             (problem.free_row(row) + moved).abs()
         };
-        // One row for each generator, in the same order.
+        // The rows that L holds: one per generator, in the same order.
         let held = modes.iter().zip(problem.laws()).enumerate().flat_map(|(contact, (&mode, law))| {
             let first = match law.impulse(mode) {
                 Impulse::Zero => 2,
@@ -302,7 +309,7 @@ impl Candidate<'_> {
         let rows: Vec<Vec<f64>> = (0..impulse.len()).map(|row| generators.velocity_row(problem, row)).collect();
         let (count, unit) = (held.len(), |at: usize| scale.mobility[held[at]]);
         let matrix = DMatrix::from_fn(count, count, |i, j| rows[held[i]][j] / (unit(i) * unit(j)));
-        // Not by `try_inverse`, whose cofactors of four rows lose all digits where the determinant nearly vanishes.
+        // `try_inverse` of the matrix uses cofactors for four rows, which lose all digits near a zero determinant.
         let Some(inverse) = matrix.clone().lu().try_inverse() else { return false };
         let lost = (count + 2) as f64 * f64::EPSILON * matrix.abs() * inverse.abs();
         let left = (DMatrix::identity(count, count) - &matrix * &inverse).abs() + lost;

@@ -1,16 +1,17 @@
-//! Every combination of modes, as numbers.
+//! Computes the numbers of every combination of modes.
 //!
 //! ```text
 //!     c = c_free + G L           xi_n = c_n + bounce
 //!     separate  L = 0            stick  c_t = xi_n = 0            slide+-  xi_n = 0,  L = lambda ray
 //! ```
 //!
-//! Contacts are decided one after the other. Deciding one eliminates its impulses from a tableau that expresses
-//! everything by the impulses of the contacts not yet decided, so that combinations share their beginnings: a tree of
-//! Schur complements. The contact law says which impulses a mode has. The product of the pivots is det A (paper,
-//! section 2); no number is compared with another here.
+//! The modes of the contacts are decided one after the other. Each decision eliminates the contact's impulses from a
+//! tableau that expresses everything by the impulses of the contacts not yet decided. Combinations that begin alike
+//! share this work: a tree of Schur complements. The contact law says which impulses a mode allows. The product of the
+//! pivots is det A (paper, section 2). No number is compared with another here.
 //!
-//! Cost: 4^n leaves (2^k 4^(n-k) if k contacts are frictionless: their modes share one elimination), each O(n).
+//! Cost: 4^n leaves of O(n) each. If k contacts are frictionless, 2^k 4^(n-k) leaves, since their closed modes share
+//! one elimination.
 
 use super::problem::ContactProblem;
 use crate::law::{Friction, Impulse, Law, Mode};
@@ -18,32 +19,32 @@ use crate::planar::Pair;
 use crate::scalar::{Real, Rounded};
 use std::convert::Infallible;
 
-/// Scratch of the enumeration; it is reused from problem to problem and then allocates nothing.
+/// Memory of the enumeration. It is reused from problem to problem and then allocates nothing.
 #[derive(Debug, Clone, Default)]
 pub struct Tableau<T> {
     contacts: usize,
     laws: Vec<Law>,
-    /// Whether every mode is visited by itself, also if others have the same impulses.
+    /// Whether every mode is visited by itself, even if other modes have the same impulses.
     pub separately: bool,
-    /// Whether modes that slide are left out.
+    /// Whether sliding modes are left out.
     pub without_slip: bool,
-    /// Tableaus by depth, each 2n + 1 columns of 2n entries: the coefficients of all impulses, then the constants.
-    /// Columns of decided contacts are stale. Rows of contact i: c_t and xi_n while it is undecided or separates; c_t
-    /// and lambda where it slides; L_t and L_n where it sticks.
+    /// The tableaus by depth. Each has 2n + 1 columns of 2n entries: the coefficients of all impulses, then the
+    /// constants. The columns of decided contacts are stale. The two rows of contact i are c_t and xi_n while it is
+    /// undecided or separates, c_t and lambda where it slides, and L_t and L_n where it sticks.
     entries: Vec<T>,
     modes: Vec<Mode>,
     pivots: Vec<T>,
 }
 
-/// The last contacts whose combinations are visited in any case.
+/// [`Visitor::ends`] is asked before each visit of all combinations of this many last contacts.
 const AT_ONCE: usize = 6;
 
-/// One combination of modes and the numbers that it leads to.
+/// One combination of modes and its numbers.
 #[derive(Debug)]
 pub struct Leaf<'a, T> {
-    /// One mode per contact; it stands for all with the same impulses if these are visited as one.
+    /// One mode per contact. If modes with the same impulses are visited as one, the mode stands for all of them.
     pub modes: &'a [Mode],
-    /// One pivot per contact; their product is det A, its sign the index. A separating contact's is one.
+    /// One pivot per contact, 1 for a separating contact. Their product is det A, whose sign is the index.
     pub pivots: &'a [T],
     constants: &'a [Pair<T>],
     laws: &'a [Law],
@@ -53,13 +54,13 @@ pub struct Leaf<'a, T> {
 pub trait Visitor<T> {
     fn leaf(&mut self, leaf: &Leaf<'_, T>);
 
-    /// Whether a combination is not to be visited, of which only the numbers of the last contact are known yet: a visitor
-    /// that drops some counts them itself. Not asked where one combination is visited by itself.
+    /// Whether to skip a combination of which only the numbers of the last contact are known yet. A visitor that skips
+    /// combinations counts them itself. [`Tableau::visit_one`] does not ask.
     fn drops(&mut self, _modes: &[Mode], _last: Pair<T>) -> bool {
         false
     }
 
-    /// Whether the combinations that are left are not visited; asked before each few thousand.
+    /// Whether to stop the visit; asked once before each few thousand combinations.
     fn ends(&mut self) -> bool {
         false
     }
@@ -76,7 +77,7 @@ impl<T: Real> Tableau<T> {
         self.load_entries(problem.laws(), |row, column| problem.delassus(row, column), |row| problem.free_row(row));
     }
 
-    /// As [`Tableau::load`], with G by rows and columns and the velocities without impulses by rows.
+    /// Loads a problem given as functions: G by row and column, and the velocities without impulses by row.
     pub fn load_entries(&mut self, laws: &[Law], delassus: impl Fn(usize, usize) -> T, free: impl Fn(usize) -> T) {
         let contacts = laws.len();
         let rows = 2 * contacts;
@@ -112,7 +113,7 @@ impl<T: Real> Tableau<T> {
         visitor.leaf(&self.at(source));
     }
 
-    /// The combination in which all contacts stick, as if each had friction. The laws that it was loaded with are lost.
+    /// The combination in which all contacts stick, as if each had friction. The loaded laws are overwritten.
     pub fn stick_all(&mut self) -> Leaf<'_, T> {
         self.laws.fill(Friction::Infinite.into());
         for contact in 0..self.contacts {
@@ -127,7 +128,7 @@ impl<T: Real> Tableau<T> {
         leaf
     }
 
-    /// The combination with these modes, unless a pivot on the way `ends` it.
+    /// The combination with these modes. Returns an error if `ends` returns one for a pivot on the way.
     pub fn leaf_unless<E>(&mut self, modes: &[Mode], mut ends: impl FnMut(T) -> Option<E>) -> Result<Leaf<'_, T>, E> {
         let mut source = 0;
         for (contact, &mode) in modes.iter().enumerate() {
@@ -178,7 +179,7 @@ impl<T: Real> Tableau<T> {
         }
     }
 
-    /// Eliminates the contact's impulses and returns the depth that holds the tableau then.
+    /// Eliminates the contact's impulses and returns the depth that then holds the tableau.
     fn decide(&mut self, contact: usize, mode: Mode, source: usize) -> usize {
         let impulse = self.laws[contact].impulse(mode);
         let depth = self.decide_own(contact, impulse, source);
@@ -186,10 +187,10 @@ impl<T: Real> Tableau<T> {
         depth
     }
 
-    /// The contact's own rows once its impulses are eliminated; returns the depth that holds them.
+    /// Computes the contact's own rows after its impulses are eliminated; returns the depth that holds them.
     fn decide_own(&mut self, contact: usize, impulse: Impulse, source: usize) -> usize {
         if impulse == Impulse::Zero {
-            // Its columns are simply not read any more.
+            // The contact's columns are simply not read any more.
             self.pivots[contact] = T::one();
             return source;
         }
@@ -216,7 +217,7 @@ impl<T: Real> Tableau<T> {
         contact + 1
     }
 
-    /// The rows of the other contacts, once the contact's own are known.
+    /// Computes the rows of the other contacts; requires the contact's own rows.
     fn decide_others(&mut self, contact: usize, impulse: Impulse, source: usize) {
         if impulse == Impulse::Zero {
             return;
@@ -239,7 +240,7 @@ impl<T: Real> Tableau<T> {
     }
 }
 
-/// The tableaus before and after a contact is decided, and its place in them.
+/// The tableaus before and after a contact is decided, and the contact's rows in them.
 struct Step<'a, T> {
     rows: usize,
     tangential: usize,
@@ -258,13 +259,13 @@ impl<'a, T> Step<'a, T> {
     }
 }
 
-/// What an impulse along a ray does by its tangential and its normal part; that is one of most.
+/// The effect of an impulse along a ray, from the effects of its two parts. The normal part of most rays is 1.
 #[inline]
 fn along<T: Real>([ray_t, ray_n]: [f64; 2], by_t: T, by_n: T) -> T {
     by_t.scaled(ray_t) + if ray_n == 1.0 { by_n } else { by_n.scaled(ray_n) }
 }
 
-/// Entries of a tableau.
+/// The number of entries of a tableau.
 fn size(contacts: usize) -> usize {
     2 * contacts * (2 * contacts + 1)
 }
@@ -280,7 +281,7 @@ impl<T: Real> Leaf<'_, T> {
         self.constants[contact]
     }
 
-    /// Impulse of a contact, [tangential, normal] \[N s\].
+    /// The impulse of a contact, [tangential, normal] \[N s\].
     pub fn impulse(&self, contact: usize) -> Pair<T> {
         let [first, second] = self.numbers(contact);
         match self.impulses(contact) {
@@ -290,7 +291,7 @@ impl<T: Real> Leaf<'_, T> {
         }
     }
 
-    /// Velocity of a contact as `[c_t, xi_n]` \[m/s\]; c_n = xi_n - bounce.
+    /// The velocity of a contact as `[c_t, xi_n]` \[m/s\]; c_n = xi_n - bounce.
     pub fn velocity(&self, contact: usize) -> Pair<T> {
         let [first, second] = self.numbers(contact);
         match self.impulses(contact) {
@@ -302,22 +303,23 @@ impl<T: Real> Leaf<'_, T> {
 }
 
 impl Leaf<'_, Rounded> {
-    /// Whether an error is known of every number, so that no pivot is zero.
+    /// Whether the errors of all numbers are finite, which shows that no pivot is zero.
     pub fn is_known(&self) -> bool {
         self.constants.as_flattened().iter().all(|own| own.error.is_finite())
     }
 }
 
-/// The lists of modes that one leaf stands for: all whose impulses are the same. Memory that is reused.
+/// The combinations that one leaf stands for, all with the same impulses. Its memory is reused.
 #[derive(Debug, Clone, Default)]
 pub struct Labels {
     modes: Vec<Mode>,
-    /// Contacts whose mode varies, and the modes.
+    /// The contacts whose mode varies, and their modes.
     open: Vec<(usize, &'static [Mode])>,
 }
 
 impl Labels {
-    /// Visits every list of a leaf's `modes`; `shares` is whether modes with the same impulses are visited as one.
+    /// Visits every combination that a leaf's `modes` stand for. `shares` says whether modes with the same impulses are
+    /// visited as one leaf.
     pub fn visit(&mut self, modes: &[Mode], laws: &[Law], shares: bool, mut visit: impl FnMut(&[Mode])) {
         if !shares {
             return visit(modes);
@@ -371,7 +373,7 @@ mod tests {
             let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
             let delassus = rows.iter().flat_map(|a| rows.iter().map(|b| dot(a, b))).collect();
             let problem = ContactProblem::new(delassus, before, friction, vec![0.5, 0.0, 0.0]).unwrap();
-            // What the f64 problem is off by, of contacts that move.
+            // The errors of the f64 problem; only contacts that move have an error in c.
             let [of_delassus, of_velocity] = errors.map_or([0.0; 2], |(a, b)| [a.exp2(), b.exp2()]);
             let moving = |contact: usize, axis: usize| problem.velocity_before()[contact][axis] != 0.0;
             let noise = |contact: usize, axis: usize| if moving(contact, axis) { of_velocity } else { 0.0 };
@@ -401,7 +403,7 @@ mod tests {
                         let error = (exact - Interval::from_f64(own.value)).to_f64().abs();
                         let is_beyond = error > own.error();
                         assert!(!is_beyond, "{:?}: {error:e} > {:e}", leaf.modes, own.error());
-                        // What an elimination leaves without an error is exactly zero.
+                        // After an elimination, a number without an error is exactly zero.
                         assert!(own.error != 0.0 || own.value == 0.0 || leaf.modes == [Mode::Separate; 3]);
                     }
                 }

@@ -1,8 +1,8 @@
-//! Why a contact does what it does: the paper's section 4, for infinite friction and restitution 0.
+//! Explains what each contact does (paper, section 4), for infinite friction and restitution 0.
 //!
 //! ```text
 //!     M_c c+ = L + X      M_c: the contact's block of G^-1,   X: its rows of G^-1 c_free
-//!     beta  = atan(M_nt / M_tt)       angle of the impulse that a purely tangential velocity needs
+//!     beta  = atan(M_nt / M_tt)       angle of the impulse that causes a purely tangential velocity change
 //!     gamma = atan2(X_n, X_t)         angle of what the contact takes over from the rest
 //! ```
 //!
@@ -14,14 +14,14 @@ use super::slack::Scale;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
 
-/// What is left of X is rounding, where it is less than this part of what it is added up from.
+/// X counts as zero if it is smaller than this part of the sum of the magnitudes of its terms.
 const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 
-/// beta, gamma and region of each contact; none for a singular Delassus matrix.
+/// beta and gamma \[rad\] and the region of each contact; `None` if the Delassus matrix is singular.
 pub fn explanation(problem: &ContactProblem, scale: &Scale) -> Option<Explanation> {
     let rows = 2 * problem.contacts();
     let mobility = &scale.mobility;
-    // A unit diagonal makes the factorization indifferent to units.
+    // Scaling to a unit diagonal makes the factorization independent of units.
     let scaled = DMatrix::from_fn(rows, rows, |i, j| problem.delassus(i, j) / (mobility[i] * mobility[j]));
     let cholesky = scaled.cholesky()?;
     let free = DVector::from_fn(rows, |i, _| problem.velocity_free()[i / 2][i % 2] / mobility[i]);
@@ -35,7 +35,7 @@ pub fn explanation(problem: &ContactProblem, scale: &Scale) -> Option<Explanatio
         let beta = libm::atan(mass_nt / mass_tt);
         let [x_t, x_n] = [t, n].map(|row| {
             let size: f64 = (0..rows).map(|other| (inverse[(row, other)] * free[other]).abs()).sum();
-            // The sum of both zeros is the positive one.
+            // -0 + 0 is +0.
             if taken[row].abs() <= ROUNDINGS * size { 0.0 } else { taken[row] / mobility[row] + 0.0 }
         });
         let gamma = libm::atan2(x_n, x_t);
@@ -46,7 +46,7 @@ pub fn explanation(problem: &ContactProblem, scale: &Scale) -> Option<Explanatio
     Some(explanation)
 }
 
-/// The region of the paper's figure 10 for beta < 0, and its mirror image for beta > 0.
+/// The region in the paper's figure 10, which is drawn for beta < 0; beta > 0 is its mirror image.
 fn region(beta: f64, gamma: f64) -> ImpulseRegion {
     let (beta, gamma) = if beta <= 0.0 { (beta, gamma) } else { (-beta, mirrored(gamma)) };
     if beta < gamma && gamma < 0.0 {
@@ -60,7 +60,7 @@ fn region(beta: f64, gamma: f64) -> ImpulseRegion {
     }
 }
 
-/// The angle of the vector with its tangential part reversed, in -pi..pi.
+/// The angle of the vector with its tangential part reversed, in -pi..pi \[rad\].
 pub(crate) fn mirrored(gamma: f64) -> f64 {
     if gamma >= 0.0 { PI - gamma } else { -PI - gamma }
 }
@@ -98,7 +98,7 @@ mod tests {
 
     #[test]
     fn rounding_has_no_direction() {
-        // c = G X, of which the first contact takes nothing over; G is no sum of powers of two.
+        // c = G X with X = 0 at the first contact; products with G are rounded.
         let delassus: [[f64; 4]; 4] =
             [[1.7, 0.3, 0.4, -0.1], [0.3, 1.1, 0.2, 0.7], [0.4, 0.2, 1.3, 0.6], [-0.1, 0.7, 0.6, 1.9]];
         for step in 0..50 {

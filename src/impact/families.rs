@@ -1,4 +1,4 @@
-//! The families of a problem and their corners, which several of them may share.
+//! Finds the families of a problem and their corners, which several families may share.
 
 use super::collected::{Collected, Corner, FoundFamilies, Pending};
 use super::linear::{Unsettled, are_zero};
@@ -8,11 +8,11 @@ use super::slack::Scale;
 use crate::law::Mode;
 use crate::scalar::Ordered;
 
-/// All families at once: only in the same numbers can two corners be shown to be one.
+/// Solves all families together, because two corners can be shown to be the same only in the same numbers.
 pub struct FamiliesPass<'a, 'c> {
     pub pending: Vec<Pending>,
     pub collected: &'c Collected<'a>,
-    /// What the last kind of numbers found.
+    /// What the last attempted kind of numbers found.
     pub found: FoundFamilies,
 }
 
@@ -25,11 +25,11 @@ impl PrecisionTask for FamiliesPass<'_, '_> {
 }
 
 impl FamiliesPass<'_, '_> {
-    /// The families, and whether more digits can find no more.
+    /// Returns the families, and whether all signs and digits are settled.
     fn find<T: Ordered>(&self, exact: &ContactProblem<T>) -> (FoundFamilies, bool) {
         let mut found = FoundFamilies::default();
         let mut settled = true;
-        // The modes and the velocity of each corner.
+        // The modes and the velocity of each known corner.
         let mut known: Vec<(Vec<Mode>, Vec<T>)> = Vec::new();
         for pending in &self.pending {
             match self.family(pending, exact, &known) {
@@ -89,10 +89,10 @@ impl FamiliesPass<'_, '_> {
     }
 }
 
-/// The corners of one family: the places of all, and those that are new.
+/// The corners of one family: the places of all of them, and the new ones.
 struct FamilyCorners<T> {
     dimension: usize,
-    /// Whether the new ones have all digits that are promised.
+    /// Whether the outcomes at the new corners have the promised digits.
     is_sharp: bool,
     places: Vec<usize>,
     new: Vec<(Vec<Mode>, Vec<T>, Corner)>,

@@ -1,7 +1,7 @@
-//! The impulses that a list of modes allows, as combinations of few generators.
+//! The impulses that a combination of modes allows, as linear combinations of a few generators.
 //!
 //! ```text
-//!     L = B lambda      a column of B: a contact's ray, or one of both axes of a contact whose impulse is free
+//!     L = B lambda      a column of B: a contact's ray, or an axis (t or n) of a contact whose impulse is free
 //! ```
 
 use super::problem::ContactProblem;
@@ -9,10 +9,10 @@ use crate::law::{Impulse, Law, Mode};
 use crate::planar::Pair;
 use crate::scalar::Real;
 
-/// The rays and planes that the modes allow: L = sum of lambda_j times generator j, each of one contact.
+/// The generators of a combination: L = sum of lambda_j times generator j; each belongs to one contact.
 pub struct Generators {
     rows: usize,
-    /// The contact and the two entries of each generator.
+    /// The contact of each generator and its entries [tangential, normal].
     rays: Vec<(usize, Pair<f64>)>,
 }
 
@@ -33,7 +33,7 @@ impl Generators {
         self.rays.len()
     }
 
-    /// The coefficients by lambda of a row's velocity: that row of G B.
+    /// A row of G B: the coefficients of lambda in the velocity of `row`.
     pub fn velocity_row<T: Real>(&self, problem: &ContactProblem<T>, row: usize) -> Vec<T> {
         let part = |column: usize, factor: f64| match factor {
             0.0 => None,
@@ -48,19 +48,20 @@ impl Generators {
         self.rays.iter().map(entry).collect()
     }
 
-    /// Which entry of lambda is one of the two numbers that a contact's inequalities of impulses are functions of.
+    /// The index in lambda of number 0 or 1, `which`, of a contact with impulses. The inequalities of impulses are
+    /// functions of these two numbers; with a ray both mean its lambda.
     pub fn place(&self, contact: usize, which: usize) -> usize {
         let own = self.rays.iter().take_while(|(other, _)| *other < contact).count();
         let free = self.rays.get(own + 1).is_some_and(|(other, _)| *other == contact);
         own + usize::from(free && which == 1)
     }
 
-    /// The impulse of every row \[N s\].
+    /// The impulse of every row \[N s\], from lambda.
     pub fn impulse<T: Real>(&self, lambda: &[T]) -> Vec<T> {
         let mut impulse = vec![T::zero(); self.rows];
         for (&(contact, ray), &factor) in self.rays.iter().zip(lambda) {
             for (row, part) in [2 * contact, 2 * contact + 1].into_iter().zip(ray) {
-                // A product with one would be rounded.
+                // A product with 1 would add rounding.
                 if part != 0.0 {
                     impulse[row] = impulse[row] + if part == 1.0 { factor } else { factor.scaled(part) };
                 }

@@ -4,7 +4,7 @@
 //!     B = G_NR - G_NS G_SS^+ G_SR     S: rows of sticking contacts, N: normal rows of sliding ones, R: their rays
 //! ```
 //!
-//! Of tangential rows that sticking contacts share one is enough.
+//! If sticking contacts share a tangential row, S contains it once.
 
 use super::linear::{Unsettled, settled};
 use super::problem::ContactProblem;
@@ -13,7 +13,8 @@ use crate::planar::Pair;
 use crate::scalar::{Ordered, subtract};
 use std::cmp::Ordering;
 
-/// The sign of det B, or if it is zero that of the lowest coefficient of det(B + s I) that is not, if any.
+/// The sign of det B. If det B is zero, the sign of the lowest nonzero coefficient of det(B + s I); `None` if all are
+/// zero.
 pub fn index<T: Ordered>(problem: &ContactProblem<T>, modes: &[Mode]) -> Result<Option<i8>, Unsettled> {
     let mut stuck: Vec<usize> = Vec::new();
     let mut sliding: Vec<(usize, Pair<T>)> = Vec::new();
@@ -31,7 +32,7 @@ pub fn index<T: Ordered>(problem: &ContactProblem<T>, modes: &[Mode]) -> Result<
     if sliding.is_empty() {
         return Ok(Some(1));
     }
-    // Rows S then N, columns S then R.
+    // Rows: S, then N. Columns: S, then R.
     let rows = stuck.iter().copied().chain(sliding.iter().map(|(contact, _)| 2 * contact + 1));
     let mut whole: Vec<Vec<T>> = rows
         .map(|row| {
@@ -43,7 +44,7 @@ pub fn index<T: Ordered>(problem: &ContactProblem<T>, modes: &[Mode]) -> Result<
         })
         .collect();
     let mut open: Vec<usize> = (0..stuck.len()).collect();
-    // Where every diagonal entry left is zero, so is the whole rest: G_SS is positive semidefinite.
+    // Once all remaining diagonal entries are zero, the whole rest of G_SS is zero, since it is positive semidefinite.
     while let Some(pivot) = pivot(&open, &whole)? {
         let place = open.swap_remove(pivot);
         let inverse = T::one() / whole[place][place];
@@ -57,8 +58,8 @@ pub fn index<T: Ordered>(problem: &ContactProblem<T>, modes: &[Mode]) -> Result<
     lowest_coefficient(&schur)
 }
 
-/// The place in `open` of the diagonal entry that is farthest from zero among those shown not to be zero; `None` if all
-/// are zero.
+/// The place in `open` of the pivot: among the diagonal entries shown not to be zero, the one farthest from zero.
+/// `None` if all are zero.
 fn pivot<T: Ordered>(open: &[usize], matrix: &[Vec<T>]) -> Result<Option<usize>, Unsettled> {
     let mut best: Option<(usize, f64)> = None;
     for (place, &index) in open.iter().enumerate() {
@@ -70,8 +71,8 @@ fn pivot<T: Ordered>(open: &[usize], matrix: &[Vec<T>]) -> Result<Option<usize>,
     Ok(best.map(|(place, _)| place))
 }
 
-/// Sign of the lowest coefficient of det(B + s I) that is not zero (Faddeev and LeVerrier: M_k = B M_(k-1) + c_k I,
-/// c_k = -trace(B M_(k-1)) / k, of det(s I - B) with -B in place of B).
+/// The sign of the lowest nonzero coefficient of det(B + s I); `None` if all are zero. Uses the method of Faddeev and
+/// LeVerrier for det(s I - B) with -B in place of B: M_k = B M_(k-1) + c_k I, c_k = -trace(B M_(k-1)) / k.
 fn lowest_coefficient<T: Ordered>(matrix: &[Vec<T>]) -> Result<Option<i8>, Unsettled> {
     let size = matrix.len();
     let negative: Vec<Vec<T>> = matrix.iter().map(|row| row.iter().map(|&entry| -entry).collect()).collect();

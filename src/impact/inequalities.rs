@@ -1,12 +1,13 @@
-//! Every inequality of every combination as a number without poles, to be followed along a parameter.
+//! The inequalities of all combinations as numbers without poles, to be followed along a parameter.
 //!
 //! ```text
-//!     slack s = N / det A      N and det A are as smooth as the problem is; s changes its sign at N = 0 and det A = 0
+//!     slack s = N / det A      N and det A are as smooth as the problem; s changes its sign at N = 0 and det A = 0
 //! ```
 //!
-//! A set of outcomes changes only if some N passes zero. Numbers are f64 without error bounds: they say where to look.
+//! A set of outcomes changes only where some N passes zero. The numbers are f64 without error bounds; they only show
+//! where to look.
 //!
-//! Cost: as the enumeration's, 4^n combinations of n contacts.
+//! Cost: that of the enumeration, 4^n combinations of n contacts.
 
 use super::enumerate::{Labels, Leaf, Tableau};
 use super::problem::{ContactProblem, Errors};
@@ -18,11 +19,11 @@ use crate::law::Impulse;
 pub struct Inequalities {
     /// det A of each combination.
     pub determinants: Vec<f64>,
-    /// N of every inequality, those of one combination after the other.
+    /// N of every inequality, grouped by combination.
     pub numerators: Vec<f64>,
-    /// Whether the slack of each is zero up to rounding.
+    /// Whether the slack of each inequality is zero up to rounding.
     pub negligible: Vec<bool>,
-    /// Where the numerators of each combination end.
+    /// The end of each combination's range in `numerators`.
     pub ends: Vec<usize>,
 }
 
@@ -35,13 +36,13 @@ pub struct InequalityScratch {
 }
 
 impl Inequalities {
-    /// Those of `problem`; combinations and their inequalities are always in the same order as long as the frictions
-    /// are zero, finite or infinite as before. Those of a combination that is singular up to rounding are all zero.
+    /// Computes the inequalities of `problem`. Their order is always the same as long as each friction stays zero,
+    /// finite or infinite. All numbers of a combination that is singular up to rounding are zero.
     pub fn of(problem: &ContactProblem, scratch: &mut InequalityScratch) -> Self {
         let InequalityScratch { tableau, labels, scale } = scratch;
         let (contacts, combinations) = (problem.contacts(), 1 << (2 * problem.contacts()));
         let mut all = Self::default();
-        // Under Coulomb's law a contact has eight inequalities in its four modes.
+        // With Coulomb friction a contact has eight inequalities over its four modes.
         all.numerators.reserve(2 * contacts * combinations);
         all.negligible.reserve(2 * contacts * combinations);
         all.determinants.reserve(combinations);
@@ -63,19 +64,19 @@ impl Inequalities {
         all
     }
 
-    /// Which inequalities belong to a combination, by its number.
+    /// The range of the inequalities that belong to a combination, given by its number.
     pub fn of_combination(&self, combination: usize) -> std::ops::Range<usize> {
         combination.checked_sub(1).map_or(0, |before| self.ends[before])..self.ends[combination]
     }
 }
 
-/// A slack of this size, free of units, may be a zero that rounding and a bad condition have left.
+/// A slack below this, free of units, may be a zero changed by rounding and bad conditioning.
 const NEGLIGIBLE: f64 = 1e-10;
 
-/// A pivot that has lost so many digits in its difference is zero up to rounding.
+/// A pivot this small, relative to the terms of its difference, is zero up to rounding.
 const SINGULAR: f64 = 1e-10;
 
-/// Whether a pivot is zero up to rounding: contacts depend on each other, or an inequality is at a pole.
+/// Whether a pivot is zero up to rounding, because contacts depend on each other or an inequality is at a pole.
 fn is_singular(leaf: &Leaf<'_, f64>, problem: &ContactProblem) -> bool {
     (0..problem.contacts()).any(|contact| {
         let entry = |row: usize, column: usize| problem.delassus(2 * contact + row, 2 * contact + column);

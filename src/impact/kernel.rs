@@ -1,11 +1,11 @@
-//! What contacts that depend on each other can never do, whatever the impulses.
+//! Relations between the velocities of dependent contacts that hold whatever the impulses are.
 //!
 //! ```text
-//!     z with G z = 0:    z . xi = z . xi_free   for every outcome
+//!     z with G z = 0:    z . xi = z . xi_free   for all impulses
 //! ```
 //!
-//! A flat foot's toe and heel move along the ground together; lists of modes that part them are excluded by the signs
-//! of z alone, before anything is solved.
+//! For example, toe and heel of a flat foot have the same tangential velocity. Combinations that contradict this are
+//! excluded by the signs of z alone, before anything is solved.
 
 use super::linear::{Unsettled, settled, solve};
 use super::outcome::RejectionReason;
@@ -14,22 +14,22 @@ use crate::law::{Law, Mode};
 use crate::scalar::Ordered;
 use std::cmp::Ordering;
 
-/// The signs of a basis of the kernel of G.
+/// The relations of a basis of the kernel of G.
 #[derive(Debug, Clone, Default)]
 pub struct Kernel {
     pub relations: Vec<Relation>,
 }
 
-/// The sum of z_i xi_i is a constant.
+/// A relation between velocities: the sum of z_i xi_i is constant.
 #[derive(Debug, Clone)]
 pub struct Relation {
-    /// Rows with z_i other than zero, and its sign.
+    /// The rows with nonzero z_i, and the sign of each z_i.
     pub terms: Vec<(usize, Ordering)>,
     pub constant: Ordering,
 }
 
 impl Kernel {
-    /// What is known of contacts that share a tangential row, whatever else they depend on.
+    /// The relations of contacts that share a tangential row; there may be others.
     pub fn of_shared(shared: &[Option<usize>]) -> Self {
         let relation = |(contact, &with): (usize, &Option<usize>)| {
             let terms = vec![(2 * with?, Ordering::Greater), (2 * contact, Ordering::Less)];
@@ -58,10 +58,10 @@ impl Kernel {
         Ok(Self { relations: solutions.directions.iter().map(relation).collect::<Result<_, _>>()? })
     }
 
-    /// Why no outcome can have these modes; `None` if the kernel leaves it open.
+    /// The reason why no outcome can have these modes; `None` if the kernel does not exclude them.
     pub fn excludes(&self, modes: &[Mode], laws: &[Law]) -> Option<RejectionReason> {
         let broken = self.relations.iter().find(|relation| relation.excludes(modes, laws))?;
-        // At rest on both sides the velocity belongs to other modes; else the equations contradict each other.
+        // If the constant is zero, the velocity belongs to other modes. Otherwise the equations contradict each other.
         Some(if broken.constant.is_eq() { RejectionReason::RedundantTwin } else { RejectionReason::NoSolution })
     }
 }

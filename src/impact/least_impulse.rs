@@ -1,4 +1,4 @@
-//! The least impulse among those that free impulses leave.
+//! The impulse of least norm among all admissible impulses.
 //!
 //! ```text
 //!     min_y |L0 + D y|^2   with   f_i(y) = constant + coefficients . y >= 0
@@ -8,9 +8,9 @@ use super::linear::{LinearFunction, Unsettled, settled, solve};
 use crate::scalar::{Ordered, dot};
 use std::cmp::Ordering;
 
-/// The y that makes |L0 + D y| least among those where no function is negative, by a primal active-set method (Nocedal
-/// and Wright 2006, section 16.5) from y = 0, where no function may be negative. The `directions`, columns of D, are
-/// independent.
+/// Returns the y that minimizes |L0 + D y| where no function is negative. The `directions` are the columns of D and
+/// linearly independent. The method is a primal active-set method (Nocedal and Wright 2006, section 16.5) that starts
+/// at y = 0, where no function may be negative.
 pub fn least_impulse<T: Ordered>(
     origin: &[T],
     directions: &[Vec<T>],
@@ -18,7 +18,8 @@ pub fn least_impulse<T: Ordered>(
 ) -> Result<Vec<T>, Unsettled> {
     let mut y = vec![T::zero(); directions.len()];
     let mut binding: Vec<usize> = Vec::new();
-    // Each round binds a function or lets one go; the rule of the lowest index keeps a degenerate corner from cycling.
+    // Each round binds a function or releases one. The rule of the lowest index prevents cycling at a degenerate
+    // corner.
     for _ in 0..ROUNDS * (functions.len() + 1) {
         let (target, multipliers) = least_on_face(origin, directions, functions, &binding)?;
         let step: Vec<T> = target.iter().zip(&y).map(|(&to, &from)| to - from).collect();
@@ -46,7 +47,7 @@ pub fn least_impulse<T: Ordered>(
 
 const ROUNDS: usize = 8;
 
-/// The y of the shortest L0 + D y on which the `binding` functions are zero, and how much each of them holds it back.
+/// Returns the y that minimizes |L0 + D y| where the `binding` functions are zero, and the multiplier of each of them.
 fn least_on_face<T: Ordered>(
     origin: &[T],
     directions: &[Vec<T>],
@@ -54,7 +55,7 @@ fn least_on_face<T: Ordered>(
     binding: &[usize],
 ) -> Result<(Vec<T>, Vec<T>), Unsettled> {
     let free = directions.len();
-    // D'D y - A' m = -D' L0,  A y = -constants: what is orthogonal to the face is pushed by the multipliers alone.
+    // D'D y - A' m = -D' L0,  A y = -constants: A has the binding functions' coefficients, m the multipliers.
     let mut equations: Vec<Vec<T>> = Vec::with_capacity(free + binding.len());
     for (index, direction) in directions.iter().enumerate() {
         let mut equation: Vec<T> = directions.iter().map(|other| dot(direction, other)).collect();
@@ -73,7 +74,8 @@ fn least_on_face<T: Ordered>(
     Ok((found.origin[..free].to_vec(), multipliers))
 }
 
-/// The function that reaches zero first on the way along `step`, before its end, and the part of the way until then.
+/// The function that reaches zero first along `step`, and the fraction of the step at which it does; `None` if none
+/// does before the end.
 fn first_reached<T: Ordered>(
     functions: &[LinearFunction<T>],
     binding: &[usize],

@@ -1,18 +1,19 @@
-//! Linear equations in which every branch depends on a sign that was shown.
+//! Solves linear equations without tolerances: each branch depends on a sign that was shown.
 //!
-//! Sizes are those of a few contacts, so plain dense elimination serves. No tolerance decides anything: a number that may
-//! be zero in its precision ends the work as [`Unsettled`], and the caller starts again with more digits. So does a budget
-//! that is spent: every loop here and in the rooms above asks for a sign in each round.
+//! The systems are small, a few contacts each, so plain dense elimination is enough. If a number may be zero in its
+//! precision, the work ends as [`Unsettled`], and the caller starts again with more digits. The work ends the same way
+//! once the budget is spent, because every loop here and in the modules that use this one asks for a sign in each
+//! round.
 
 use crate::budget::is_spent;
 use crate::scalar::{Ordered, Real, Sign, dot, subtract};
 use std::cmp::Ordering;
 
-/// A sign that needs more digits than the numbers have, or more time than there is.
+/// The error of a sign that needs more digits than the numbers have, or more time than the budget leaves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Unsettled;
 
-/// How a number compares with zero.
+/// Compares a number with zero. Returns an error if its sign is undecided or the budget is spent.
 pub fn settled<T: Ordered>(number: T) -> Result<Ordering, Unsettled> {
     if is_spent() {
         return Err(Unsettled);
@@ -25,7 +26,7 @@ pub fn settled<T: Ordered>(number: T) -> Result<Ordering, Unsettled> {
     }
 }
 
-/// Whether all numbers are zero; none is asked for behind the first that is not.
+/// Whether all numbers are zero; stops at the first that is not.
 pub fn are_zero<T: Ordered>(numbers: impl IntoIterator<Item = T>) -> Result<bool, Unsettled> {
     for number in numbers {
         if settled(number)?.is_ne() {
@@ -47,7 +48,7 @@ impl<T: Real> LinearFunction<T> {
         self.from(self.constant, y)
     }
 
-    /// Its change from y = 0 to `y`.
+    /// The change of the function from y = 0 to `y`.
     pub fn change(&self, y: &[T]) -> T {
         self.from(T::zero(), y)
     }
@@ -56,7 +57,7 @@ impl<T: Real> LinearFunction<T> {
         self.coefficients.iter().zip(y).fold(constant, |sum, (&coefficient, &entry)| sum + coefficient * entry)
     }
 
-    /// The same function with `y` as its origin.
+    /// The same function as a function of the offset from `y`.
     pub fn seen_from(&self, y: &[T]) -> Self {
         Self { constant: self.at(y), coefficients: self.coefficients.clone() }
     }
@@ -66,13 +67,13 @@ impl<T: Real> LinearFunction<T> {
         Self { constant: -self.constant, coefficients }
     }
 
-    /// A function of one more entry of y, with this `coefficient`.
+    /// The function with another `constant` and one more entry of y, which has this `coefficient`.
     pub fn extended(&self, constant: T, coefficient: T) -> Self {
         Self { constant, coefficients: extended(&self.coefficients, coefficient) }
     }
 }
 
-/// The list and one entry more.
+/// The list with one more entry.
 pub fn extended<T: Real>(list: &[T], last: T) -> Vec<T> {
     [list, &[last]].concat()
 }
@@ -83,7 +84,8 @@ impl<T: Ordered> LinearFunction<T> {
     }
 }
 
-/// All solutions of linear equations: origin + sum of y_j times direction j, the directions independent.
+/// All solutions of linear equations: x = origin + sum of y_j times direction j; the directions are linearly
+/// independent.
 #[derive(Debug, Clone)]
 pub struct Solutions<T> {
     pub origin: Vec<T>,
@@ -91,7 +93,7 @@ pub struct Solutions<T> {
 }
 
 impl<T: Real> Solutions<T> {
-    /// `constant + coefficients . x` on the solutions, as a function of y.
+    /// The value of `constant + coefficients . x` on the solutions, as a function of y.
     pub fn affine(&self, constant: T, coefficients: &[T]) -> LinearFunction<T> {
         let along = |x: &Vec<T>| dot(coefficients, x);
         LinearFunction {
@@ -115,7 +117,7 @@ impl<T: Real> Solutions<T> {
 }
 
 impl<T: Ordered> Solutions<T> {
-    /// The solutions on which `functions` of y are also zero; `None` if there are none.
+    /// The solutions on which all `functions` of y are zero as well; `None` if there are none.
     pub fn where_zero<'f>(
         &self,
         functions: impl Iterator<Item = &'f LinearFunction<T>>,
@@ -131,7 +133,8 @@ impl<T: Ordered> Solutions<T> {
     }
 }
 
-/// The solutions of `equations`, each its coefficients of the `unknowns`, then the right-hand side; `None` without any.
+/// Solves `equations`, each of which lists the coefficients of the `unknowns` and then the right-hand side; `None` if
+/// there is no solution.
 pub fn solve<T: Ordered>(unknowns: usize, mut equations: Vec<Vec<T>>) -> Result<Option<Solutions<T>>, Unsettled> {
     let mut pivots = Vec::new();
     for column in 0..unknowns {
@@ -171,7 +174,7 @@ pub fn solve<T: Ordered>(unknowns: usize, mut equations: Vec<Vec<T>>) -> Result<
     Ok(Some(Solutions { origin, directions: free.map(direction).collect() }))
 }
 
-/// The row with the entry of a column that is farthest from zero; `None` if all are zero.
+/// The row whose entry in `column` is farthest from zero; `None` if all entries are zero.
 fn largest<T: Ordered>(rows: &[Vec<T>], column: usize) -> Result<Option<usize>, Unsettled> {
     let size = |row: &usize| rows[*row][column].to_f64().abs();
     let Some(row) = (0..rows.len()).max_by(|i, j| size(i).total_cmp(&size(j))) else { return Ok(None) };

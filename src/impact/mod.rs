@@ -1,6 +1,7 @@
-//! From a contact problem to every outcome; knows no robot.
+//! Finds every outcome of a contact problem. This room does not depend on robots.
 //!
-//! Read `problem`, then `enumerate` (numbers), `slack` (inequalities), and `analysis`, where they meet.
+//! Read the files in this order: `problem`, `enumerate` (the numbers of each combination), `slack` (its inequalities),
+//! and `analysis`, which uses them all.
 
 mod linear;
 mod simplex;

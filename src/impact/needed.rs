@@ -1,13 +1,13 @@
 //! The friction that sticking contacts need if their impulses are not unique.
 //!
 //! ```text
-//!     contacts that depend on each other, all of the same friction:  min over the admissible impulses of max |L_t| / L_n
-//!         whose tangential impulses can be exchanged, of unique sums:  = |sum L_t| / sum L_n         as of a flat foot
-//!     all others:                                                    min |L_t| / L_n, each for itself
+//!     contacts that depend on each other, with the same friction:  min over the admissible impulses of max |L_t| / L_n
+//!         if their sums are unique and they can exchange L_t:      = |sum L_t| / sum L_n, for example for a flat foot
+//!     all other contacts:                                          min |L_t| / L_n, each for itself
 //! ```
 //!
-//! The minimum of one ratio is a linear program in w = s y with s = 1 / L_n (Charnes and Cooper 1962). Whether a friction
-//! is enough for several contacts is one as well.
+//! The minimum of one ratio is a linear program in w = s y with s = 1 / L_n (Charnes and Cooper 1962). Whether a given
+//! friction is enough for several contacts is a linear program as well.
 
 use super::digits::least_friction;
 use super::linear::{LinearFunction, Unsettled, settled, solve};
@@ -17,14 +17,16 @@ use crate::planar::Pair;
 use crate::scalar::{Ordered, Real, Sign};
 use std::cmp::Ordering;
 
-/// How well the least friction of several contacts is known: a tenth of what is promised.
+/// The relative error of the least friction of several contacts: a tenth of the promised one.
 const KNOWN: f64 = 1e-11;
-/// What no greater friction holds, only an infinite one does.
+/// If this friction does not hold the contacts, only infinite friction does.
 const GREATEST: f64 = 1e12;
-/// No slack is sought beyond this.
+/// The cap of slacks in linear programs.
 const ENOUGH: f64 = 1e3;
 
-/// |L_t| / L_n of each sticking contact that some admissible impulse presses on the ground, unless the `shortest` of them
+/// Returns the friction |L_t| / L_n that each sticking contact needs; `None` if no admissible impulse presses it on the
+/// ground. Contacts that depend on each other are left out if all their `shortest` impulses are zero. The impulses are
+/// functions of y, admissible where no `functions` are negative; at y = 0 none is.
 /// does not need it. The impulses are functions of y, admissible where no function is negative, as none is at y = 0.
 pub fn friction_needed<T: Ordered>(
     modes: &[Mode],
@@ -58,7 +60,7 @@ pub fn friction_needed<T: Ordered>(
     Ok(needed)
 }
 
-/// Whether each of the contacts can take over the tangential impulse of the first, and nothing else changes.
+/// Whether each of the contacts can take over tangential impulse from the first while nothing else changes.
 fn exchange<T: Ordered>(
     mut members: impl Iterator<Item = usize>,
     impulses: &[Pair<LinearFunction<T>>],
@@ -66,7 +68,8 @@ fn exchange<T: Ordered>(
     let Some(first) = members.next() else { return Ok(true) };
     let directions = impulses[first][0].coefficients.len();
     for other in members {
-        // What is known to share a tangential row has a direction of its own for that, of exact zeros and ones.
+        // Contacts known to share a tangential row have a direction of their own for the exchange: its entries are
+        // exactly zero except in the tangential rows of both.
         let is_one = |direction: usize| {
             impulses.as_flattened().iter().enumerate().all(|(row, entry)| {
                 let is_zero = entry.coefficients[direction].sign() == Sign::Zero;
@@ -88,15 +91,16 @@ fn exchange<T: Ordered>(
     Ok(true)
 }
 
-/// The least friction with which some admissible impulses hold all of these contacts, of which `law` is one's; `None` if
-/// only an infinite one does. The secant method and bisection enclose it.
+/// The least friction with which some admissible impulses hold all of these contacts; `None` if only infinite friction
+/// does. `law` is the law of each of them. The secant method and bisection enclose the result.
 fn least_common<'a, T: Ordered + 'a>(
     members: impl Iterator<Item = &'a Pair<LinearFunction<T>>> + Clone,
     law: &Law,
     functions: &[LinearFunction<T>],
 ) -> Result<Option<T>, Unsettled> {
     let dimension = functions.first().map_or(0, |function| function.coefficients.len());
-    // The most that a friction leaves of the smallest slack; negative if it is not enough, which is shown.
+    // The largest value that the smallest slack can have with this friction. It is shown to be negative if the friction
+    // is not enough.
     let room = |friction: f64| {
         let edge = |side: f64| {
             move |[t, n]: &'a Pair<LinearFunction<T>>| {
@@ -142,7 +146,7 @@ fn least_common<'a, T: Ordered + 'a>(
         }
         let by_halves = turn % 3 == 0 || at_high == 0.0;
         let zero = if by_halves { 0.5 * (low + high) } else { between(low, high, [at_low, at_high]) };
-        // Beyond the zero, seen from the end that is nearer, so that both ends close in on it.
+        // The estimate is moved slightly past the zero, as seen from the nearer end, so that both ends close in.
         let aside = if zero - low < high - zero { 0.4 * known } else { -0.4 * known };
         let friction = (zero + aside).clamp(low + 0.4 * known, high - 0.4 * known);
         match room(friction)? {
@@ -150,12 +154,12 @@ fn least_common<'a, T: Ordered + 'a>(
             own => (high, at_high) = (friction, own),
         }
     }
-    // One that ever greater impulses need ever less of is none.
+    // A friction that falls toward zero as impulses grow without bound counts as zero.
     let least = if low > 0.0 { between(low, high, [at_low, at_high]) } else { 0.0 };
     Ok(Some(T::from_f64(least)))
 }
 
-/// The group of each contact: contacts whose impulses some direction of y changes together.
+/// The group of each contact: contacts whose impulses change together along some direction of y.
 fn groups<T: Ordered>(impulses: &[Pair<LinearFunction<T>>]) -> Result<Vec<usize>, Unsettled> {
     let mut groups: Vec<usize> = (0..impulses.len()).collect();
     for direction in 0..impulses.first().map_or(0, |pair| pair[0].coefficients.len()) {
@@ -178,7 +182,7 @@ fn least_ratio<T: Ordered>(
 ) -> Result<Option<T>, Unsettled> {
     let mut start = vec![T::zero(); n.coefficients.len()];
     if settled(n.constant)?.is_le() {
-        // As n may grow without bound, it grows by one at most.
+        // n may be unbounded, so its value is limited to one here.
         let limit = LinearFunction { constant: -T::one(), ..n.clone() }.opposite();
         let bounded: Vec<LinearFunction<T>> = functions.iter().cloned().chain([limit]).collect();
         start = maximize(&bounded, &n.coefficients)?.ok_or(Unsettled)?;
@@ -187,7 +191,7 @@ fn least_ratio<T: Ordered>(
     if settled(pressed)?.is_le() {
         return Ok(None);
     }
-    // s = (1 - n . w) / pressed, with n = 1 throughout.
+    // s = (1 - n . w) / pressed; this is n = 1 in the new variables.
     let in_ratios = |function: &LinearFunction<T>| {
         let share = function.at(&start) / pressed;
         let slopes = function.coefficients.iter().zip(&n.coefficients);
@@ -247,17 +251,17 @@ mod tests {
 
     #[test]
     fn flat_foot_needs_the_ratio_of_its_sums() {
-        // Together 3 along the ground and 4 down, of which the toe bears 1.
+        // Together the contacts have 3 along the ground and 4 normal to it, of which the toe bears 1.
         let impulses = [[affine(0.5, &[1.0]), affine(1.0, &[0.0])], [affine(2.5, &[-1.0]), affine(3.0, &[0.0])]];
         assert_eq!(needed([1.0, 1.0], impulses.clone()), [Some(0.75); 2]);
-        // With different frictions each contact needs what the other cannot take over: 3 - 2 * 1, and nothing.
+        // With different frictions, each contact needs what the other cannot take over: nothing, and 3 - 2 * 1 = 1.
         assert_eq!(needed([2.0, 1.0], impulses.clone()), [Some(0.0), Some(1.0 / 3.0)]);
     }
 
     #[test]
     fn contacts_that_jam_need_more_than_their_ratio() {
-        // Sums of 1.5 and 2, but what shifts the tangential impulses shifts the normal ones, too: at a = -y the frictions
-        // (1.5 + a) / (1 + a) and a / (1 - a) are the same.
+        // The sums are 1.5 and 2, but directions that shift tangential impulse shift normal impulse, too. At a = -y the
+        // frictions (1.5 + a) / (1 + a) and a / (1 - a) are the same.
         let impulses = [[affine(0.0, &[1.0]), affine(1.0, &[1.0])], [affine(1.5, &[-1.0]), affine(1.0, &[-1.0])]];
         let a = (14.25_f64.sqrt() - 1.5) / 4.0;
         let expected = a / (1.0 - a);
@@ -267,16 +271,16 @@ mod tests {
                 assert!(off.abs() < 2e-11, "{off}");
             }
         }
-        // With different frictions each for itself: at y = 0 the first needs none.
+        // With different frictions each contact is judged alone: at y = 0 the first needs none.
         assert_eq!(needed([5.0, 4.0], impulses)[0], Some(0.0));
     }
 
     #[test]
     fn least_ratio_is_sought_where_the_load_is_shared() {
-        // L = (1, 1 + y) and (1, 1 - y): neither contact can press with more than its share at the edge of both cones.
+        // L = (1, 1 + y) and (1, 1 - y): the cone of each contact limits how much load the other can bear.
         let impulses = [[affine(1.0, &[0.0]), affine(1.0, &[1.0])], [affine(1.0, &[0.0]), affine(1.0, &[-1.0])]];
         assert_eq!(needed([2.0, 2.5], impulses), [Some(1.0 / 1.6), Some(1.0 / 1.5)]);
-        // Nothing presses the first, whatever y is.
+        // No y presses the first contact on the ground.
         let impulses = [[affine(0.0, &[0.0]), affine(0.0, &[0.0])], [affine(1.0, &[1.0]), affine(1.0, &[0.0])]];
         assert_eq!(needed([1.0, 2.0], impulses), [None, Some(0.0)]);
     }

@@ -1,4 +1,4 @@
-//! The answer of an analysis: outcomes, rejections, the verdict. Data only.
+//! The answer of an analysis: outcomes, rejections and the verdict. This file has only data types.
 
 use crate::law::{Inequality, Mode};
 use crate::planar::{Pair, Vector};
@@ -31,7 +31,7 @@ impl Verdict {
     pub const ALL: [Self; 6] =
         [Self::Unique, Self::Ambiguous, Self::None, Self::Undecided, Self::NoImpact, Self::NoContact];
 
-    /// As it is written in results.
+    /// The name in results, such as `no_impact`.
     pub fn name(self) -> &'static str {
         static NAMES: LazyLock<[String; 6]> = LazyLock::new(|| Verdict::ALL.map(|verdict| verdict.to_string()));
         &NAMES[self as usize]
@@ -39,7 +39,7 @@ impl Verdict {
 }
 
 impl fmt::Display for Verdict {
-    /// As it is written in results.
+    /// Writes the name in results.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.serialize(f)
     }
@@ -127,7 +127,7 @@ pub struct Family {
     pub corners: Vec<usize>,
 }
 
-/// Least and greatest value; `None` if there is no bound.
+/// The least and the greatest value; `None` for an end without bound.
 pub type Range = [Option<f64>; 2];
 
 /// Where an outcome turns into others: impulse inequalities that are zero for every admissible impulse.
@@ -152,7 +152,7 @@ pub struct AtZero {
     pub inequality: Inequality,
 }
 
-/// The schema of an inequality that is zero on an outcome's border: a velocity of zero belongs to another outcome.
+/// The schema of an [`AtZero`] inequality: only those of impulses, since a velocity of zero belongs to another outcome.
 #[cfg(feature = "schema")]
 struct ZeroImpulse;
 
@@ -195,41 +195,42 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// Without negative zeros, which nobody expects to read.
+    /// Replaces negative zeros by positive ones, since a printed "-0" would be unexpected.
     pub(super) fn unsigned(mut self) -> Self {
         let entries = self.impulse.iter_mut().chain(&mut self.velocity_after).flatten();
-        // The sum of both zeros is the positive one.
+        // -0 + 0 is +0.
         entries.for_each(|entry| *entry += 0.0);
         self
     }
 
-    /// Whether every number is one.
+    /// Whether every number is finite.
     pub(super) fn is_finite(&self) -> bool {
         self.impulse.iter().chain(&self.velocity_after).flatten().all(|entry| entry.is_finite())
     }
 }
 
-/// A combination of modes that is not an outcome, and what it would have been; [`Analysis`] has an example.
+/// A combination of modes that is not an outcome, with its reason; [`Analysis`] has an example.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Rejection {
     /// One mode per contact.
     pub modes: Vec<Mode>,
-    /// Why it is none.
+    /// Why the combination is not an outcome.
     pub because: RejectionReason,
-    /// The smallest slack, negative and free of units; `None` if the combination has no solution at all.
+    /// The smallest slack, free of units: negative, or zero on a border. `None` if no solution gives one.
     pub margin: Option<f64>,
-    /// What it would have needed and led to; `None` if its equations have no solution.
+    /// The impulses that the combination would need and the velocities that they would cause; `None` if its equations
+    /// have no solution.
     pub motion: Option<Motion>,
 }
 
 impl Rejection {
-    /// Of a combination whose numbers are not known.
+    /// A rejection without margin and motion.
     pub(super) fn of(modes: &[Mode], because: RejectionReason) -> Self {
         Self { modes: modes.to_vec(), because, margin: None, motion: None }
     }
 
-    /// The same, which more digits may reject for another reason.
+    /// Marks the reason as provisional: more digits may find another one. A NaN margin is the mark.
     pub(super) fn vague(self) -> Self {
         Self { margin: Some(f64::NAN), ..self }
     }
@@ -248,25 +249,25 @@ pub struct OpenCombinations {
     pub beyond_budget: bool,
 }
 
-/// Why a combination is no outcome; `contact` counts from 0.
+/// Why a combination is not an outcome; `contact` counts from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[allow(missing_docs, reason = "the text of each variant names its fields")]
 #[non_exhaustive]
 pub enum RejectionReason {
     /// The inequality that is violated most clearly.
     Violated { contact: usize, inequality: Inequality },
-    /// A frictionless contact that would stick although it moves along the ground.
+    /// A frictionless contact would stick although it moves along the ground: no impulse can hold it.
     NothingHolds { contact: usize },
     /// The equations of the modes contradict each other (det A = 0).
     NoSolution,
-    /// The velocity belongs to another list of modes, because contacts depend on each other (det A = 0).
+    /// The velocity belongs to another combination, because contacts depend on each other (det A = 0).
     RedundantTwin,
-    /// The velocity belongs to another list of modes: it is on the border between both.
+    /// The velocity belongs to another combination: it is on the border between both.
     OnBorder,
 }
 
 impl RejectionReason {
-    /// The reason as a clause about the contacts' names, as in `left_foot is pulled toward the ground`.
+    /// The reason as a clause, in which contacts have these names, such as `left_foot is pulled toward the ground`.
     pub fn describe(&self, names: &[String]) -> String {
         match *self {
             Self::Violated { contact, inequality } => inequality.violated_by(&names[contact]),
@@ -306,28 +307,28 @@ pub enum ImpulseRegion {
     E,
 }
 
-/// How many combinations each precision decided.
+/// How many combinations each kind of numbers decided.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub struct Effort {
-    /// f64 with an error bound.
+    /// Decided in f64 with an error bound, or left undecided.
     pub bound: u64,
-    /// Balls around f64.
+    /// Decided in balls around f64.
     pub ball: u64,
-    /// Balls around pairs of f64.
+    /// Decided in balls around pairs of f64.
     pub double_double: u64,
-    /// More digits than that.
+    /// Decided with more digits than that.
     pub precise: u64,
 }
 
 impl Effort {
-    /// All combinations that the laws of the contacts admit.
+    /// The number of all combinations that were visited.
     pub fn combinations(self) -> u64 {
         self.bound + self.ball + self.double_double + self.precise
     }
 }
 
-/// Everything that is known about a contact problem.
+/// The answer to a contact problem: its outcomes and what is known about it.
 ///
 /// ```
 /// use heelstrike::{ContactProblem, Friction, Mode, Verdict, analyze, impact::ListedRejections};
@@ -345,34 +346,35 @@ impl Effort {
 pub struct Analysis {
     /// The answer in one word.
     pub verdict: Verdict,
-    /// True if every combination's signs are shown by an error bound, and every outcome's digits.
+    /// True if error bounds show the signs of every combination and the digits of every outcome.
     pub proven: bool,
     /// Every outcome; with [`Verdict::Undecided`] also up to 100 of the combinations that are not excluded.
     pub outcomes: Vec<Outcome>,
-    /// How much is open, with [`Verdict::Undecided`].
+    /// How many combinations are open; only with [`Verdict::Undecided`].
     pub open: Option<OpenCombinations>,
-    /// Lists of modes with more than one velocity; all of them are outcomes, of which `outcomes` has the corners.
+    /// The families: combinations with more than one velocity, all of which are outcomes. `outcomes` has their corners.
     pub families: Vec<Family>,
-    /// Every other combination, if asked for; of many contacts those that a search does not exclude.
+    /// The rejected combinations, if asked for. Of many contacts only those are listed that a search does not exclude.
     pub rejected: Vec<Rejection>,
-    /// How many more were asked for.
+    /// The number of rejected combinations that were asked for but are not listed.
     pub unlisted: u64,
-    /// Sum of the outcomes' indices; `None` if one of them has none.
+    /// The sum of the outcomes' indices; `None` if an outcome has no index.
     pub index_sum: Option<i32>,
-    /// Rank of the Delassus matrix; `None` if it is not asked for or not known within the budget.
+    /// The rank of the Delassus matrix; `None` if it was not asked for or is not known within the budget.
     pub rank: Option<usize>,
-    /// Condition number of the Delassus matrix scaled to a unit diagonal; `None` if it is singular, or has no `rank`.
+    /// The condition number of the Delassus matrix scaled to a unit diagonal; `None` if the matrix is singular or
+    /// `rank` is `None`.
     pub condition: Option<f64>,
     /// Whether some outcome has no sliding contact; `None` if that depends on an undecided combination.
     pub no_slip_consistent: Option<bool>,
-    /// Which precision decided the combinations.
+    /// How many combinations each kind of numbers decided.
     pub effort: Effort,
-    /// The paper's section 4 for each contact, if asked for; `None` for a singular Delassus matrix.
+    /// The body as seen from each contact (paper, section 4), if asked for; `None` if the Delassus matrix is singular.
     pub explanation: Option<Explanation>,
 }
 
 impl Analysis {
-    /// Every list of modes with an outcome that is decided, once and sorted.
+    /// The combinations of all decided outcomes and all families, sorted and without duplicates.
     pub fn modes(&self) -> Vec<Vec<Mode>> {
         let decided = self.outcomes.iter().filter(|outcome| outcome.decided).map(|outcome| &outcome.modes);
         let mut modes: Vec<Vec<Mode>> = decided.chain(self.families.iter().map(|own| &own.modes)).cloned().collect();
@@ -381,7 +383,7 @@ impl Analysis {
         modes
     }
 
-    /// The same with the inequalities named as those of forces and accelerations.
+    /// Renames the inequalities to those of forces and accelerations, for sustained contact.
     pub(crate) fn of_forces(mut self) -> Self {
         for zero in self.outcomes.iter_mut().flat_map(|own| &mut own.border).flat_map(|border| &mut border.at_zero) {
             zero.inequality = zero.inequality.of_forces();
@@ -392,14 +394,14 @@ impl Analysis {
             }
         }
         self.explanation = None;
-        // A contact without a force is an outcome like any other.
+        // In sustained contact, an outcome without forces is an outcome like any other.
         if self.verdict == Verdict::NoImpact {
             self.verdict = Verdict::Unique;
         }
         self
     }
 
-    /// A note if not all rejected combinations are listed that were asked for.
+    /// A note if not all of the requested rejected combinations are listed.
     pub(crate) fn unlisted_note(&self) -> Option<String> {
         let listed = self.rejected.len();
         (self.unlisted > 0).then(|| {
@@ -410,7 +412,7 @@ impl Analysis {
         })
     }
 
-    /// A note if an outcome gains energy: Newton's restitution with Coulomb friction can.
+    /// A note if an outcome gains energy, which Newton's restitution with Coulomb friction can cause.
     pub(super) fn energy_note(&self) -> Option<String> {
         let gains = self.outcomes.iter().filter(|outcome| outcome.energy_loss < 0.0).count();
         let total = self.outcomes.len();

@@ -1,4 +1,4 @@
-//! The passes over all combinations: first in f64, then with more digits those that need them.
+//! The passes over all combinations: first in f64, then with more digits over those that need them.
 
 use super::collected::{Collected, OutcomeLists, Pending};
 use super::combination::{CombinationSolver, Solved};
@@ -15,19 +15,20 @@ use crate::law::{Impulse, Law, Mode};
 use crate::planar::Pair;
 use crate::scalar::{Ordered, Rounded, Sign};
 
-/// Combinations that are tried with many digits: more of many contacts take too long, and what is left is undecided.
+/// The most combinations that are tried with many digits. The remaining ones of many contacts would take too long and
+/// stay undecided.
 const PRECISE_COMBINATIONS: usize = 2_000;
 
-/// All combinations in f64.
+/// The pass over all combinations in f64.
 pub struct F64Pass<'a, 'm> {
     pub labels: &'m mut Labels,
-    /// Whether some modes with the same impulses are visited as one.
+    /// Whether modes with the same impulses are visited as one.
     pub shares: bool,
     /// Whether G was shown to be regular.
     pub regular: bool,
-    /// What f64 does not decide, or not with all digits of an outcome.
+    /// The combinations whose signs f64 does not decide, or whose numbers lack digits in f64.
     pub undecided: Vec<Undecided>,
-    /// Where it stays: it is large.
+    /// A reference, because the value is large and slow to move.
     pub collected: &'m mut Collected<'a>,
 }
 
@@ -40,7 +41,8 @@ impl Visitor<Rounded> for F64Pass<'_, '_> {
         let Self { shares, regular, collected, .. } = self;
         let laws = collected.problem.laws();
         let (Some(&mode), Some(law)) = (modes.last(), laws.last()) else { return false };
-        // A leaf may stand for others, and that in which all stick may show that G is regular.
+        // A leaf that stands for several combinations is needed, and so is the one in which all contacts stick, which
+        // may show that G is regular.
         let is_wanted = *shares || !*regular && is_free(modes, laws) || collected.options.rejections.contain(modes);
         let drops = !is_wanted && rejects(last, mode, law);
         collected.found.visited += u64::from(drops);
@@ -51,7 +53,7 @@ impl Visitor<Rounded> for F64Pass<'_, '_> {
         let Self { labels, shares, regular, undecided, collected } = self;
         let Collected { problem, scale, options, .. } = **collected;
         let laws = problem.laws();
-        // If every impulse is free, the pivots are those of the whole matrix.
+        // If every impulse is unknown, the pivots are those of the whole matrix G.
         *regular = *regular || is_free(leaf.modes, laws) && leaf.is_known();
         labels.visit(leaf.modes, laws, *shares, |modes| {
             collected.found.visited += 1;
@@ -92,30 +94,31 @@ impl Visitor<Rounded> for F64Pass<'_, '_> {
     }
 }
 
-/// Whether all impulses are unknowns.
+/// Whether both entries of every contact's impulse are unknowns.
 fn is_free(modes: &[Mode], laws: &[Law]) -> bool {
     modes.iter().zip(laws).all(|(&mode, law)| law.impulse(mode) == Impulse::Free)
 }
 
-/// A combination whose signs, or whose numbers, need more digits.
+/// A combination whose signs or numbers need more digits.
 pub struct Undecided {
     pub pending: Pending,
-    /// Its solution, if only its numbers need them.
+    /// The solution so far, if only its numbers lack digits.
     blunt: Option<Solved>,
 }
 
-/// Combinations that need more digits than f64 has.
+/// The pass over the combinations that need more digits than f64 has.
 pub struct UndecidedPass<'a, 'c> {
     pub undecided: Vec<Undecided>,
-    /// What dependent contacts cannot do, once it is known.
+    /// The relations of dependent contacts, once they are known.
     pub kernel: Option<Kernel>,
-    /// What is known of it before.
+    /// The relations of contacts that share a tangential row, which are known before.
     pub shared: Kernel,
     pub collected: &'c mut Collected<'a>,
 }
 
 impl UndecidedPass<'_, '_> {
-    /// Adds what all digits have left: solutions that lack some, and combinations whose signs are open.
+    /// Adds the combinations that no precision finished: solutions that lack digits, and combinations whose signs are
+    /// open.
     pub fn finish(mut self) {
         for Undecided { pending, blunt } in std::mem::take(&mut self.undecided) {
             if let Some(solved) = blunt {
@@ -138,13 +141,13 @@ impl PrecisionTask for UndecidedPass<'_, '_> {
     fn attempt<T: Ordered>(&mut self, exact: &ContactProblem<T>, precision: Precision) -> bool {
         let open = std::mem::take(&mut self.undecided);
         let before = open.len();
-        // Numbers other than those of f64 have their own magnitudes.
+        // Numbers that are not built around the f64 problem have magnitudes of their own.
         let is_enclosed = precision == Precision::Enclosed;
         let scale = if is_enclosed { self.collected.scale.clone() } else { Scale::of(exact) };
         if !is_enclosed && self.kernel.is_none() {
             self.kernel = T::freeing(|| Kernel::of(exact)).ok();
         }
-        // What the contacts' dependence excludes is solved for only to say why, if it is listed, and last.
+        // Combinations that the kernel excludes are solved last, and only if they are listed, to find the reason.
         let (mut excluded, open): (Vec<_>, Vec<_>) =
             open.into_iter().partition(|own| self.excludes(&own.pending).is_some());
         excluded.retain(|own| self.collected.options.rejections.contain(&own.pending.modes));
@@ -159,7 +162,8 @@ impl PrecisionTask for UndecidedPass<'_, '_> {
             let listed = collected.options.rejections.contain(&pending.modes);
             let blunt = match if stops { Err(Unsettled) } else { solver.solve(&pending.modes) } {
                 Ok(solved) if solved.is_sharp() && !(listed && solved.is_vague()) => {
-                    // It has the velocity of others because contacts depend on each other: none of them is on a border.
+                    // The combination has the velocity of others because contacts depend on each other, not because one
+                    // of them is on a border.
                     let solved = match solved {
                         Solved::Rejected(Rejection { because: RejectionReason::OnBorder, .. }) if place >= decisive => {
                             Solved::Rejected(Rejection::of(&pending.modes, RejectionReason::RedundantTwin))
@@ -176,7 +180,7 @@ impl PrecisionTask for UndecidedPass<'_, '_> {
             left += usize::from(place < decisive);
         }
         *precision.share(&mut collected.found.effort) += (before - undecided.len()) as u64;
-        // For reasons alone the first of many digits are enough.
+        // If only reasons are missing, the first intervals are precise enough.
         left == 0 && (undecided.is_empty() || is_last)
     }
 }

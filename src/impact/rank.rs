@@ -1,4 +1,4 @@
-//! Rank and condition of the Delassus matrix.
+//! The rank and the condition number of the Delassus matrix.
 
 use super::linear::solve;
 use super::problem::{ContactProblem, Precision, PrecisionTask, Remembered, escalate};
@@ -8,7 +8,8 @@ use crate::reductions::Reductions;
 use crate::scalar::Ordered;
 use nalgebra::DMatrix;
 
-/// Rank of G and, if it is regular, the condition number of G scaled to a unit diagonal.
+/// The rank of G and, if G is regular, the condition number of G scaled to a unit diagonal. `None` if the budget ends
+/// first.
 pub fn rank_and_condition(
     problem: &ContactProblem,
     remembered: &Remembered<'_>,
@@ -49,26 +50,27 @@ pub fn rank_and_condition(
             (rank, condition.is_finite().then_some(condition))
         }
         None if is_spent() => return None,
-        // No precision shows whether the rank is full.
+        // No precision shows whether the rank is full, so it is reported as full.
         None => (rows, None),
     })
 }
 
-/// The least eigenvalue of a scaled G that counts as regular.
+/// The least eigenvalue of a regular scaled G.
 pub const REGULAR: f64 = 1e-6;
 
-/// Whether f64 shows that a symmetric matrix scaled to a unit diagonal, with entries that may be off by `errors`, has no
-/// eigenvalue below half of [`REGULAR`]: a Cholesky factor exists only if rounding hides no negative one (Rump 2006).
+/// Whether f64 shows that a symmetric matrix with a unit diagonal, whose entries may be off by `errors`, has no
+/// eigenvalue below half of [`REGULAR`]: a Cholesky factor exists only if rounding hides no negative eigenvalue (Rump
+/// 2006).
 pub fn is_definite(matrix: DMatrix<f64>, errors: f64) -> bool {
     let rows = matrix.nrows();
     rows as f64 * (errors + rows as f64 * f64::EPSILON) < 0.5 * REGULAR
         && (matrix - DMatrix::identity(rows, rows) * REGULAR).cholesky().is_some()
 }
 
-/// Beyond this the least eigenvalue of G has lost half of its digits.
+/// At a larger condition number the least eigenvalue of G has lost half of its digits.
 const F64_CONDITION_LIMIT: f64 = 1e8;
 
-/// The rank of G, and its inverse in the scale if it is regular.
+/// The rank of G and, if G is regular, the inverse of the scaled G.
 #[derive(Debug, Default)]
 struct Inverse {
     /// The rank; `None` if no precision shows it.

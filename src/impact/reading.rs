@@ -1,4 +1,4 @@
-//! The signs of all inequalities of a combination as one.
+//! Combines the signs of all inequalities of a combination into one.
 
 use super::enumerate::Leaf;
 use super::outcome::{Motion, Rejection, RejectionReason};
@@ -7,10 +7,10 @@ use crate::law::{Inequality, Law, Mode};
 use crate::planar::Pair;
 use crate::scalar::{Ordered, Sign};
 
-/// What the slacks of a combination say.
+/// The result of reading all slacks of a combination.
 #[derive(Debug)]
 pub struct CombinationReading {
-    /// Valid, rejected or undecided; never zero.
+    /// Positive if the combination is valid, negative if it is rejected, or undecided; never zero.
     pub sign: Sign,
     pub because: RejectionReason,
     /// The smallest slack, free of units.
@@ -22,14 +22,15 @@ pub struct CombinationReading {
 }
 
 impl CombinationReading {
-    /// Whether it is rejected for a border, but perhaps violates an inequality.
+    /// Whether the combination is rejected because it lies on a border, although it may also violate an inequality.
     pub fn is_vague(&self) -> bool {
         self.is_open && self.because == RejectionReason::OnBorder
     }
 }
 
 impl Rejection {
-    /// Of a combination whose reading is negative; `motion` is not asked for if two equations contradict each other.
+    /// The rejection of a combination whose reading is negative. `motion` is not called if two equations contradict
+    /// each other.
     pub(super) fn read(modes: &[Mode], reading: CombinationReading, motion: impl FnOnce() -> Motion) -> Self {
         let solved = !matches!(reading.because, RejectionReason::NothingHolds { .. });
         let is_vague = reading.is_vague();
@@ -39,7 +40,7 @@ impl Rejection {
     }
 }
 
-/// Whether the two numbers of a contact have a wrong sign for its mode, with which most combinations are done.
+/// Whether the two numbers of a contact have a wrong sign for its mode. This quick test rejects most combinations.
 #[inline]
 pub fn rejects<T: Ordered>(numbers: Pair<T>, mode: Mode, law: &Law) -> bool {
     let mut wrong = law.is_unheld(mode) && matches!(numbers[0].sign(), Sign::Positive | Sign::Negative);
@@ -50,7 +51,8 @@ pub fn rejects<T: Ordered>(numbers: Pair<T>, mode: Mode, law: &Law) -> bool {
     wrong
 }
 
-/// The signs of all slacks, and of the frictionless contacts' equality c_t = 0, as one; `at_zero` is empty memory.
+/// Reads the signs of all slacks, and the equality c_t = 0 of frictionless contacts that stick. `at_zero` is empty
+/// memory.
 pub fn read<T: Ordered>(
     leaf: &Leaf<'_, T>,
     modes: &[Mode],
@@ -66,7 +68,7 @@ pub fn read<T: Ordered>(
                 Sign::Zero => {}
                 Sign::Undecided => (reading.sign, reading.is_open) = (Sign::Undecided, true),
                 Sign::Positive | Sign::Negative => {
-                    // Two equations for one impulse: no slack measures how far they are from agreeing.
+                    // Two equations for one impulse: no slack measures how far they are from being compatible.
                     let because = RejectionReason::NothingHolds { contact };
                     return CombinationReading { sign: Sign::Negative, because, ..reading };
                 }
@@ -101,8 +103,8 @@ pub fn read<T: Ordered>(
     reading
 }
 
-/// Impulses and velocities of a leaf, in the memory of others: the nearest f64 of each number, and c+ of a contact with
-/// `[c_t, xi_n]`.
+/// Impulses and velocities of a leaf as the nearest f64 of each number, in reused memory. `after` computes c+ of a
+/// contact from `[c_t, xi_n]`.
 pub fn motion<T: Ordered>(
     leaf: &Leaf<'_, T>,
     after: impl Fn(usize, Pair<T>) -> Pair<f64>,

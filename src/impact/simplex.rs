@@ -1,15 +1,15 @@
-//! Linear programs in which every branch depends on a sign that was shown: the simplex method with Bland's rule (Chvatal,
-//! *Linear Programming*, 1983, chapters 2, 3 and 8), block by block.
+//! Solves linear programs without tolerances: each branch depends on a sign that was shown. The method is the simplex
+//! method with Bland's rule (Chvatal, *Linear Programming*, 1983, chapters 2, 3 and 8), applied block by block.
 //!
-//! Where functions fall into groups without a common entry of y, as those of one sole and those of another do, each
-//! group is a program of its own. So no sign depends on numbers of different groups that cancel.
+//! If the functions fall into groups without a common entry of y, as for two separate soles, each group is a program of
+//! its own. Then no sign depends on numbers of different groups that cancel.
 
 use super::linear::{LinearFunction, Unsettled, extended, settled};
 use crate::planar::Pair;
 use crate::scalar::{Ordered, Sign};
 use std::cmp::Ordering;
 
-/// Gives all members of a list of groups, which has the group of each, the same one.
+/// Merges the groups of all `members`; `groups` holds the group of each element.
 pub fn join(groups: &mut [usize], members: impl Iterator<Item = usize>) {
     let mut first = None;
     for member in members {
@@ -18,20 +18,20 @@ pub fn join(groups: &mut [usize], members: impl Iterator<Item = usize>) {
     }
 }
 
-/// Functions of y that may not be negative: linear programs of any objective.
+/// The feasible set of linear programs, where no function of y is negative; each call gives another objective.
 pub struct Program<T> {
     dimension: usize,
     blocks: Vec<Block<T>>,
 }
 
-/// Entries of y that some function ties to each other, and these functions: programs of their own.
+/// Entries of y that the functions tie to each other, with these functions: an independent program.
 struct Block<T> {
     entries: Vec<usize>,
     functions: Vec<LinearFunction<T>>,
 }
 
 impl<T: Ordered> Program<T> {
-    /// Each of the `functions` that is not constant is in one block.
+    /// Splits `functions` into blocks. Each function that is not constant is in exactly one block.
     pub fn of(functions: &[LinearFunction<T>], dimension: usize) -> Self {
         let tied = |function: &LinearFunction<T>, entry: &usize| function.coefficients[*entry].sign() != Sign::Zero;
         let mut groups: Vec<usize> = (0..dimension).collect();
@@ -50,8 +50,8 @@ impl<T: Ordered> Program<T> {
         Self { blocks: (0..dimension).filter(|group| groups.contains(group)).map(block).collect(), dimension }
     }
 
-    /// The y at which `objective . y` is greatest among those where no function is negative; `None` if it grows without
-    /// bound. At y = 0 no function may be negative.
+    /// Returns the y that maximizes `objective . y` where no function is negative; `None` if the objective is
+    /// unbounded. At y = 0 no function may be negative.
     pub fn maximize(&self, objective: &[T]) -> Result<Option<Vec<T>>, Unsettled> {
         let mut y = vec![T::zero(); self.dimension];
         for block in &self.blocks {
@@ -65,21 +65,21 @@ impl<T: Ordered> Program<T> {
     }
 }
 
-/// As [`Program::maximize`], of `functions` that are asked once.
+/// Does the same as [`Program::maximize`] for a program that is solved only once.
 pub fn maximize<T: Ordered>(functions: &[LinearFunction<T>], objective: &[T]) -> Result<Option<Vec<T>>, Unsettled> {
     Program::of(functions, objective.len()).maximize(objective)
 }
 
 impl<T: Ordered> Block<T> {
-    /// Takes over its entries of y.
+    /// Writes the block's own entries into `y`.
     fn put(&self, own: &[T], y: &mut [T]) {
         self.entries.iter().zip(own).for_each(|(&entry, &value)| y[entry] = value);
     }
 
-    /// As [`widest`], of this block alone.
+    /// Does the same as [`widest`] for this block alone.
     fn widest(&self, cap: T) -> Result<(Vec<T>, T), Unsettled> {
         let least = least(&self.functions, cap)?;
-        // Unknowns y and s = rise above `least`; at y = 0, s = 0 every function is where it must be.
+        // The unknowns are y and s, the rise above `least`. At y = 0, s = 0 no function is negative.
         let (one, still) = (T::one(), vec![T::zero(); self.entries.len()]);
         let shifted = self.functions.iter().map(|function| function.extended(function.constant - least, -one));
         let top = LinearFunction { constant: cap - least, coefficients: extended(&still, -one) };
@@ -91,11 +91,11 @@ impl<T: Ordered> Block<T> {
     }
 }
 
-/// As [`Program::maximize`], of one block.
+/// Does the same as [`Program::maximize`] for one block.
 fn maximize_block<T: Ordered>(functions: &[LinearFunction<T>], objective: &[T]) -> Result<Option<Vec<T>>, Unsettled> {
     let free = objective.len();
     if let &[gain] = objective {
-        // One entry goes on until the first function stops it.
+        // A single entry moves until the first function becomes zero.
         let rising = match settled(gain)? {
             Ordering::Equal => return Ok(Some(vec![T::zero()])),
             sign => sign.is_gt(),
@@ -108,7 +108,7 @@ fn maximize_block<T: Ordered>(functions: &[LinearFunction<T>], objective: &[T]) 
     let mut dictionary = Dictionary {
         rows: functions.iter().map(|function| extended(&function.coefficients, function.constant)).collect(),
         gain: objective.to_vec(),
-        // Labels below `free` are entries of y, which may take any sign; the others are the functions' own values.
+        // Labels below `free` are entries of y, which may have any sign; the others are the values of the functions.
         basic: (free..free + functions.len()).collect(),
         nonbasic: (0..free).collect(),
         free,
@@ -126,7 +126,7 @@ fn maximize_block<T: Ordered>(functions: &[LinearFunction<T>], objective: &[T]) 
     Ok(Some(y))
 }
 
-/// The least value of the functions at y = 0, at most `cap`.
+/// The smallest of `cap` and the functions' values at y = 0.
 fn least<'f, T: Ordered + 'f>(
     functions: impl IntoIterator<Item = &'f LinearFunction<T>>,
     cap: T,
@@ -140,20 +140,21 @@ fn least<'f, T: Ordered + 'f>(
     Ok(least)
 }
 
-/// Basic variables as affine functions of the nonbasic ones, which are zero.
+/// A simplex dictionary: the basic variables as affine functions of the nonbasic ones, which are zero.
 struct Dictionary<T> {
-    /// Per basic variable its coefficients of the nonbasic ones, then its value.
+    /// One row per basic variable: its coefficients of the nonbasic variables, then its value.
     rows: Vec<Vec<T>>,
-    /// What the objective gains by each nonbasic variable.
+    /// The objective's coefficient of each nonbasic variable.
     gain: Vec<T>,
     basic: Vec<usize>,
     nonbasic: Vec<usize>,
-    /// Labels below this belong to variables of any sign.
+    /// Variables with labels below this may have any sign.
     free: usize,
 }
 
 impl<T: Ordered> Dictionary<T> {
-    /// The variable of the lowest label that improves the objective, and whether it must rise. Entries of y come first.
+    /// The entering column: the variable with the lowest label that improves the objective, and whether it must rise.
+    /// Entries of y have the lowest labels.
     fn entering(&self) -> Result<Option<(usize, bool)>, Unsettled> {
         let mut order: Vec<usize> = (0..self.nonbasic.len()).collect();
         order.sort_by_key(|&column| self.nonbasic[column]);
@@ -167,7 +168,7 @@ impl<T: Ordered> Dictionary<T> {
         Ok(None)
     }
 
-    /// The row of the basic variable that reaches zero first.
+    /// The row of the basic variable that reaches zero first; `None` if none does.
     fn leaving(&self, column: usize, rising: bool) -> Result<Option<usize>, Unsettled> {
         let bound = self.rows.iter().zip(&self.basic).filter(|(_, label)| **label >= self.free);
         let rows = bound.map(|(entries, &label)| (label, entries[column], entries[self.nonbasic.len()]));
@@ -196,8 +197,8 @@ impl<T: Ordered> Dictionary<T> {
     }
 }
 
-/// Which of some functions, each its label, its slope and its value, reaches zero first where it falls, of several the one
-/// with the lowest label; with its value and speed.
+/// Returns the label, value and speed of the function that reaches zero first; among equals, that with the lowest
+/// label. Each function is given as its label, slope and value. `None` if none falls.
 fn first_at_zero<T: Ordered>(
     functions: impl Iterator<Item = (usize, T, T)>,
     rising: bool,
@@ -208,7 +209,7 @@ fn first_at_zero<T: Ordered>(
         if settled(speed)?.is_le() {
             continue;
         }
-        // It reaches zero after value / speed, whose comparison needs no division.
+        // A function reaches zero after value / speed; comparing two quotients needs no division.
         let first = match least {
             None => true,
             Some((other, [least, of_least])) => match settled(value * of_least - least * speed)? {
@@ -224,8 +225,8 @@ fn first_at_zero<T: Ordered>(
     Ok(least)
 }
 
-/// Those of `functions` that are zero wherever none is negative, by their place, and a y at which no other one is zero.
-/// At y = 0 no function may be negative.
+/// Returns the places of those `functions` that are zero wherever no function is negative, and a y at which no other
+/// function is zero. At y = 0 no function may be negative.
 pub fn vanishing<T: Ordered>(functions: &[LinearFunction<T>]) -> Result<(Vec<usize>, Vec<T>), Unsettled> {
     let mut y = vec![T::zero(); functions.first().map_or(0, |function| function.coefficients.len())];
     let mut all = Vec::new();
@@ -233,7 +234,7 @@ pub fn vanishing<T: Ordered>(functions: &[LinearFunction<T>]) -> Result<(Vec<usi
         if settled(function.at(&y))?.is_gt() {
             continue;
         }
-        // One is enough of a function that grows without bound.
+        // The function may be unbounded, so its value is limited to one.
         let top = LinearFunction { constant: -T::one(), ..function.clone() }.opposite();
         let rows: Vec<LinearFunction<T>> = functions.iter().map(|each| each.seen_from(&y)).chain([top]).collect();
         let best = maximize(&rows, &function.coefficients)?.ok_or(Unsettled)?;
@@ -241,7 +242,7 @@ pub fn vanishing<T: Ordered>(functions: &[LinearFunction<T>]) -> Result<(Vec<usi
             all.push(place);
             continue;
         }
-        // Half way there, what is positive stays so.
+        // At half of the step, functions that are positive stay positive.
         for (entry, step) in y.iter_mut().zip(best) {
             *entry = *entry + step * T::from_f64(0.5);
         }
@@ -249,7 +250,8 @@ pub fn vanishing<T: Ordered>(functions: &[LinearFunction<T>]) -> Result<(Vec<usi
     Ok((all, y))
 }
 
-/// The y whose smallest function is greatest, and that value, at most `cap`: an unbounded set needs one.
+/// Returns the y that maximizes the smallest function, and that smallest value, which is at most `cap`. Without the cap
+/// the value could be unbounded.
 pub fn widest<T: Ordered>(functions: &[LinearFunction<T>], dimension: usize, cap: T) -> Result<(Vec<T>, T), Unsettled> {
     let is_constant = |function: &&LinearFunction<T>| function.coefficients.iter().all(|own| own.sign() == Sign::Zero);
     let mut smallest = least(functions.iter().filter(is_constant), cap)?;
@@ -272,7 +274,8 @@ mod tests {
 
     #[test]
     fn a_degenerate_program_does_not_cycle() {
-        // Beale's example, which cycles under the largest-coefficient rule; x >= 0 are rows here. Greatest 1/20.
+        // Beale's example, which cycles under the largest-coefficient rule; the rows x >= 0 are functions here. The
+        // maximum is 1/20.
         let unit = |own: usize| std::array::from_fn(|entry| f64::from(u8::from(entry == own)));
         let mut rows: Vec<LinearFunction<Number>> = (0..4).map(|own| affine(0.0, &unit(own) as &[f64; 4])).collect();
         rows.push(affine(0.0, &[-0.25, 60.0, 0.04, -9.0]));
@@ -287,7 +290,7 @@ mod tests {
 
     #[test]
     fn functions_without_a_common_entry_are_separate() {
-        // |y1| <= 1/3 or so, y2 >= 1/4 at least by 1/8: in plain balls neither sees the other.
+        // |y1| <= 1/3 and -1/8 <= y2 <= 3/2: in plain balls, neither block may affect the other.
         let third = 1.0 / 3.0;
         let affine = |constant: f64, coefficients: [f64; 3]| LinearFunction {
             constant: Ball::from_f64(constant),
@@ -310,7 +313,7 @@ mod tests {
         assert_eq!(widest(&negative, 3, cap).unwrap().1.to_f64(), -0.5);
         let objective = [1.0, -1.0, 0.0].map(Ball::from_f64);
         assert_eq!(maximize(&functions, &objective).unwrap().map(numbers), Some(vec![third, -0.125, 0.0]));
-        // Nothing holds the last entry.
+        // No function bounds the last entry.
         assert!(maximize(&functions, &[0.0, 0.0, 1.0].map(Ball::from_f64)).unwrap().is_none());
         assert_eq!(maximize(&[], &[Ball::zero(); 2]).unwrap().map(numbers), Some(vec![0.0; 2]));
     }

@@ -1,20 +1,22 @@
-//! Combinations whose equations are singular: contacts that depend on each other, vanishing pivots.
+//! Solves combinations whose equations are singular, because contacts depend on each other or a pivot vanishes.
 //!
 //! ```text
 //!     L = B lambda      c = c_free + G B lambda      rows that the modes hold at zero: linear equations for lambda
 //! ```
 //!
-//! The equations leave lambda = origin + free y. Where they determine the velocity but not the impulses, the impulses
-//! form a convex set; the combination is an outcome exactly when that set is not empty, which a linear program answers,
-//! and the impulse listed is its member of least norm. A velocity that the modes exclude only by depending on others (a
-//! flat foot whose heel sticks cannot slide at the toe) belongs to the list of modes that says so: its redundant twin.
-//! If even the velocity depends on y it is a family: a convex set of velocities, given by its dimension and its
-//! corners. A family's closure holds velocities of other modes, so that a corner may be another combination's outcome.
-//! It is bounded: L.c+ <= sum of L_n e |c_n-|, so that L.G L = L.(c+ - c_free) grows no faster than L does. No
-//! tolerance decides: see [`super::linear`].
+//! The solutions are lambda = origin + free y. There are three cases.
 //!
-//! Contacts that are known to share a tangential row have one equation for it, and directions that shift their
-//! tangential impulses from one to the other move nothing.
+//! * The equations determine the velocity but not the impulses. The admissible impulses form a convex set, and the
+//!   combination is an outcome exactly if that set is not empty, which a linear program decides. The listed impulse is
+//!   its member of least norm.
+//! * The velocity belongs to other modes because contacts depend on each other: a flat foot whose heel sticks cannot
+//!   slide at the toe. The combination is then the redundant twin of the one with those modes, and rejected.
+//! * Even the velocity depends on y. The combination is a family: a convex set of velocities, given by its dimension
+//!   and its corners. Its closure holds velocities of other modes, so that a corner may be another combination's
+//!   outcome. It is bounded: L.c+ <= sum of L_n e |c_n-|, so that L.G L = L.(c+ - c_free) grows no faster than L does.
+//!
+//! No tolerance decides anything: see [`super::linear`]. Contacts that are known to share a tangential row have one
+//! equation for it, and directions that shift tangential impulse from one to the other change no velocity.
 
 use super::corners::corners;
 use super::digits::{Numbers, is_known, is_known_range};
@@ -31,56 +33,57 @@ use crate::law::{Impulse, Inequality, Law, Mode};
 use crate::scalar::{Ordered, dot};
 use std::cmp::Ordering;
 
-/// Slacks are not followed beyond this: the impulses are then unbounded.
+/// The cap of the least slack, free of units: a program that reaches it has unbounded impulses.
 const UNBOUNDED: f64 = 1e3;
 
-/// Inequalities whose values differ by this part are equally violated, when one of them is named.
+/// Violated inequalities whose values differ by less than this relative amount count as equal when one of them is
+/// named.
 const EQUALLY_BAD: f64 = 1e-9;
 
-/// The solutions of a combination whose equations are singular.
+/// The result for a combination whose equations are singular.
 pub enum SingularCase<T> {
     Rejected(Rejection),
-    /// Its velocity is the only one of these modes.
+    /// An outcome: only one velocity has these modes.
     Valid(SingularOutcome),
-    /// Its velocities form a set: the solutions that the inequalities leave, with one in its interior as their origin.
+    /// A family: the solutions that the inequalities admit; their origin is an interior point.
     Family(Space<T>),
 }
 
 /// The velocities of a family, `[c_t, xi_n]` by rows \[m/s\].
 pub struct FamilyVelocities<T> {
     pub dimension: usize,
-    /// Those of each corner of the closure.
+    /// The velocities of each corner of the closure.
     pub corners: Vec<Vec<T>>,
 }
 
-/// One velocity and the impulses that lead to it.
+/// An outcome of singular equations: one velocity and the impulses that lead to it.
 #[derive(Debug, Clone)]
 pub struct SingularOutcome {
     /// The strict modes of the velocity.
     pub modes: Vec<Mode>,
-    /// Those of the velocity and the least impulse.
+    /// The numbers of the velocity and the impulse of least norm.
     pub numbers: Numbers,
     /// The smallest slack; `None` if there is none.
     pub margin: Option<f64>,
-    /// Least and greatest of every impulse's entry; `None` if the impulse is the only one.
+    /// The least and greatest value of every entry of the impulse; `None` if the impulse is unique.
     pub range: Option<Vec<[Range; 2]>>,
     /// The impulse inequalities that are zero for every admissible impulse, by contact.
     pub at_zero: Vec<(usize, Inequality)>,
-    /// Sign of det B; `None` on a border.
+    /// The sign of det B; `None` on a border.
     pub index: Option<i8>,
 }
 
-/// An inequality on the solutions, in the scale of margins.
+/// An inequality as a function on the solutions, scaled free of units.
 struct Constraint<T> {
     contact: usize,
     inequality: Inequality,
     function: LinearFunction<T>,
 }
 
-/// The solutions of a combination's equations, and what depends on them.
+/// The solutions of a combination's equations, with the velocities and inequalities as functions of y.
 pub struct Space<T> {
     solutions: Solutions<T>,
-    /// `[c_t, xi_n]` by rows.
+    /// The velocities `[c_t, xi_n]` by rows \[m/s\].
     velocity: Vec<LinearFunction<T>>,
     inequalities: Vec<Constraint<T>>,
 }
@@ -95,7 +98,7 @@ impl<T: Ordered> Space<T> {
     }
 }
 
-/// A combination of a problem.
+/// The equations of one combination of a problem.
 pub struct Equations<'a, T> {
     problem: &'a ContactProblem<T>,
     scale: &'a Scale,
@@ -104,7 +107,8 @@ pub struct Equations<'a, T> {
     shared: Vec<SharedImpulse>,
 }
 
-/// A contact that sticks as another one does whose tangential row it shares: places of lambda, and its row.
+/// A sticking contact that shares its tangential row with another sticking contact: the places of both tangential
+/// impulses in lambda (`first` is the other contact's), and the row.
 #[derive(Clone, Copy)]
 struct SharedImpulse {
     first: usize,
@@ -133,7 +137,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
         Self { problem, scale, modes, shared: shared.collect(), generators }
     }
 
-    /// Whether two contacts are known to have the same effect, so that their impulses are not determined.
+    /// Whether two sticking contacts are known to share a tangential row, so that their impulses are not determined.
     pub fn are_shared(&self) -> bool {
         !self.shared.is_empty()
     }
@@ -144,7 +148,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
             return Ok(SingularCase::Rejected(Rejection::of(modes, RejectionReason::NoSolution)));
         };
         let space = self.space(solutions, self.shared.len());
-        // A velocity that is zero throughout belongs to other modes.
+        // A velocity that is zero for all solutions belongs to other modes.
         let mut is_of_others = false;
         for Constraint { function, .. } in space.inequalities.iter().filter(|own| own.inequality.is_strict()) {
             is_of_others |= function.is_constant()? && settled(function.constant)?.is_eq();
@@ -156,7 +160,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
         let (inside, least, standing) = match found {
             Ok((inside, .., Ordering::Less)) => return Ok(SingularCase::Rejected(self.rejected(&space, &inside))),
             Ok(_) if is_of_others => return Ok(SingularCase::Rejected(twin)),
-            // Perhaps it violates an inequality as well.
+            // The combination may also violate an inequality.
             Err(_) if is_of_others => return Ok(SingularCase::Rejected(twin.vague())),
             found => found?,
         };
@@ -177,14 +181,14 @@ impl<'a, T: Ordered> Equations<'a, T> {
         let left = shifted.where_zero(equalities.iter().map(|&place| &from_inside[place]))?.ok_or(Unsettled)?;
         let space = self.space(Solutions { origin, ..left }, 0);
         if space.is_one_velocity()? {
-            // What the equations leave free, the inequalities do not.
+            // The inequalities determine the velocity, which the equations leave free.
             let still = vec![T::zero(); space.solutions.directions.len()];
             return Ok(SingularCase::Valid(self.outcome(&space, &still, T::zero())?));
         }
         Ok(SingularCase::Family(space))
     }
 
-    /// What the rows that the modes hold at zero leave of lambda; the directions of shared impulses come first.
+    /// Solves the equations of the rows that the modes hold at zero; the directions of shared impulses come first.
     fn solutions(&self) -> Result<Option<Solutions<T>>, Unsettled> {
         let Self { problem, modes, generators, shared, .. } = self;
         let is_left_out = |place: usize| shared.iter().any(|own| own.other == place);
@@ -207,7 +211,8 @@ impl<'a, T: Ordered> Equations<'a, T> {
         let mut origin = whole(origin);
         let mut all = Vec::new();
         for &SharedImpulse { first, other, .. } in shared {
-            // Each takes half, as a foot that stands on both: a part of zero would be at both edges of its cone.
+            // Each contact takes half: a tangential impulse of zero would make its two cone slacks equal, and plain
+            // balls cannot order equal numbers.
             let half = origin[first].scaled(0.5);
             (origin[first], origin[other]) = (origin[first] - half, half);
             let mut direction = vec![T::zero(); generators.count()];
@@ -218,12 +223,13 @@ impl<'a, T: Ordered> Equations<'a, T> {
         Ok(Some(Solutions { origin, directions: all }))
     }
 
-    /// The velocities of a combination that is a family; `None` if there are too many corners.
+    /// The velocities of a family, given by its corners; `None` if there are too many corners. Returns an error if the
+    /// combination is not shown to be a family.
     pub fn family(&self) -> Result<Option<FamilyVelocities<T>>, Unsettled> {
         let SingularCase::Family(Space { solutions, velocity: rows, inequalities }) = self.solve()? else {
             return Err(Unsettled);
         };
-        // Some rows are coordinates of the family, the others depend on them.
+        // Independent velocity rows are coordinates of the family; the others are linear in them.
         let mut coordinates: Vec<LinearFunction<T>> = Vec::new();
         let mut factors: Vec<Vec<T>> = Vec::new();
         for row in &rows {
@@ -253,7 +259,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
         Ok(Some(FamilyVelocities { dimension: coordinates.len(), corners }))
     }
 
-    /// The outcome with this velocity, which is one of the combination's, `[c_t, xi_n]` by rows.
+    /// The outcome of the combination with this velocity, `[c_t, xi_n]` by rows.
     pub fn outcome_at(&self, velocity: &[T]) -> Result<SingularOutcome, Unsettled> {
         let Self { problem, generators, .. } = self;
         let equation =
@@ -269,10 +275,10 @@ impl<'a, T: Ordered> Equations<'a, T> {
         Ok(SingularOutcome { index: None, margin: None, ..outcome })
     }
 
-    /// What depends on `solutions`, of which the first directions, so many as are `still`, move nothing.
+    /// The velocities and inequalities on `solutions`, whose first `still` directions change no velocity.
     fn space(&self, solutions: Solutions<T>, still: usize) -> Space<T> {
         let Self { problem, modes, generators, .. } = self;
-        // A row that is shared with one that is held at zero is zero as well.
+        // If a contact shares its tangential row with a row that is held at zero, its row is zero as well.
         let own =
             |row: usize| problem.shared_tangent(row / 2).filter(|_| row.is_multiple_of(2)).map_or(row, |with| 2 * with);
         let zero: Vec<usize> = zero_rows(modes, problem.laws()).map(own).collect();
@@ -295,7 +301,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
         let mut inequalities = Vec::new();
         for (contact, (&mode, law)) in modes.iter().zip(problem.laws()).enumerate() {
             law.conditions(mode, |inequality, function| {
-                // By the constant and each direction, the two numbers of the contact.
+                // The contact's two numbers: their constants, or their coefficients of a direction.
                 let place = |which: usize| generators.place(contact, which);
                 let number = |which: usize, part: Option<usize>| match (inequality.is_strict(), part) {
                     (true, None) => velocity[2 * contact + which].constant,
@@ -316,7 +322,8 @@ impl<'a, T: Ordered> Equations<'a, T> {
     fn rejected(&self, space: &Space<T>, y: &[T]) -> Rejection {
         let values = space.inequalities.iter().map(|inequality| (inequality, inequality.function.at(y).to_f64()));
         let least = values.clone().map(|(_, value)| value).fold(f64::INFINITY, f64::min);
-        // The linear program makes several equally bad, up to rounding; of the first contact's the cone is named.
+        // At the optimum several inequalities are equally violated, up to rounding. The first contact's is named, the
+        // cone before others.
         let order = |own: &Constraint<T>| (own.contact, own.inequality != Inequality::FrictionCone);
         let equals = values.filter(|(_, value)| *value <= least + EQUALLY_BAD * least.abs());
         let worst = equals.min_by_key(|(own, _)| order(own));
@@ -331,16 +338,17 @@ impl<'a, T: Ordered> Equations<'a, T> {
         Rejection { margin: worst.map(|_| least), motion: Some(numbers.motion), ..Rejection::of(modes, because) }
     }
 
-    /// Whether the only velocity of `space` is that without impulses.
+    /// Whether the only velocity of `space` is the one without impulses.
     fn is_free(&self, space: &Space<T>) -> Result<bool, Unsettled> {
         are_zero(space.velocity.iter().enumerate().map(|(row, own)| own.constant - self.problem.free_row(row)))
     }
 
-    /// The only velocity of `space`, with its impulses; at `inside` the smallest inequality is `least`, not negative.
+    /// The outcome with the only velocity of `space` and its impulses. At `inside` the smallest inequality has the
+    /// value `least`, which is not negative.
     fn outcome(&self, space: &Space<T>, inside: &[T], least: T) -> Result<SingularOutcome, Unsettled> {
         let Self { problem, scale, modes, generators, .. } = self;
         let Space { solutions, velocity, inequalities } = space;
-        // Velocities are settled; only impulses still depend on y.
+        // The velocities are determined; only impulses still depend on y.
         let pressing: Vec<&Constraint<T>> = inequalities.iter().filter(|own| !own.inequality.is_strict()).collect();
         let shifted: Vec<LinearFunction<T>> = pressing.iter().map(|own| own.function.seen_from(inside)).collect();
         let mut at_zero: Vec<(usize, Inequality)> = Vec::new();
@@ -356,7 +364,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
         let from = generators.impulse(&at);
         let directions: Vec<Vec<T>> =
             solutions.directions.iter().map(|direction| generators.impulse(direction)).collect();
-        // The impulse of each row, from that at `inside`.
+        // The impulse of each row as a function of y, seen from `inside`.
         let entry = |(row, &constant): (usize, &T)| LinearFunction {
             constant,
             coefficients: directions.iter().map(|direction| direction[row]).collect(),
@@ -390,7 +398,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
             let y = least_impulse(&from, &directions, &shifted)?;
             generators.impulse(&Solutions { origin: at, directions: solutions.directions.clone() }.at(&y))
         };
-        // A margin at the cap is that of impulses without bound.
+        // A margin at the cap means that the impulses are unbounded.
         let bounded = settled(least - T::from_f64(UNBOUNDED))?.is_lt();
         let margin = (!inequalities.is_empty() && bounded).then_some(least);
         let velocity: Vec<T> = velocity.iter().map(|row| row.constant).collect();

@@ -1,4 +1,4 @@
-//! From numbers to signs: the slacks of a combination's inequalities, free of units.
+//! Slacks: the values of a combination's inequalities, scaled free of units.
 
 use super::enumerate::Leaf;
 use super::problem::{ContactProblem, Errors};
@@ -6,17 +6,17 @@ use crate::law::{Function, Inequality, Law, Mode};
 use crate::planar::Pair;
 use crate::scalar::{Ball, Ordered, Real, Rounded};
 
-/// One inequality of a combination and its value.
+/// One inequality of a combination, with its value.
 #[derive(Debug, Clone, Copy)]
 pub struct Slack<T> {
     pub contact: usize,
     pub inequality: Inequality,
     pub function: Function,
-    /// Its value, with its unit.
+    /// The value before scaling: \[m/s\] of a velocity, \[N s\] of an impulse or a cone.
     pub number: T,
 }
 
-/// Calls `visitor` with every slack of the combination `modes`, which the leaf's modes stand for.
+/// Calls `visitor` with every slack of the combination `modes`, one of those that the leaf stands for.
 pub fn slacks<T: Real>(leaf: &Leaf<'_, T>, modes: &[Mode], laws: &[Law], mut visitor: impl FnMut(Slack<T>)) {
     for (contact, (&mode, law)) in modes.iter().zip(laws).enumerate() {
         let numbers = leaf.numbers(contact);
@@ -27,30 +27,30 @@ pub fn slacks<T: Real>(leaf: &Leaf<'_, T>, modes: &[Mode], laws: &[Law], mut vis
     }
 }
 
-/// The problem's own magnitudes, which make slacks free of units.
+/// The magnitudes of a problem, which make its slacks free of units.
 ///
-/// With S = max |c_free| / sqrt(G_ii) \[sqrt J\]; see [`Function::scale`].
+/// S = max |c_free| / sqrt(G_ii) \[sqrt J\]; see [`Function::scale`].
 #[derive(Debug, Clone, Default)]
 pub struct Scale {
-    /// S \[sqrt J\]; 1 if nothing moves.
+    /// S \[sqrt J\]; 1 if no contact moves.
     pub speed: f64,
-    /// sqrt(G_ii) of every row \[1/sqrt(kg)\]; of a row that nothing moves the largest of the others.
+    /// sqrt(G_ii) of every row \[1/sqrt(kg)\]; a row with G_ii = 0 has the largest value of the other rows.
     pub mobility: Vec<f64>,
-    /// What the scaled velocities of the f64 problem may be off by.
+    /// Bound of the errors of the f64 problem's scaled velocities.
     pub noise: f64,
-    /// What they are likely to be off by.
+    /// Likely errors of the scaled velocities.
     pub likely_noise: f64,
-    /// What the scaled entries of G are likely to be off by.
+    /// Likely errors of the scaled entries of G.
     pub likely_rounding: f64,
-    /// What part of the error of a number that was computed from them is likely.
+    /// The ratio of the likely error to the error bound of a number that was computed from them.
     pub likely_part: f64,
 }
 
-/// What a few operations lose, in the scale.
+/// The relative rounding of a few operations.
 const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 
 impl Scale {
-    /// Takes the magnitudes of a problem, reusing the memory; `errors` are those of its numbers.
+    /// Measures a problem, reusing the memory; `errors` are the error bounds of its numbers.
     pub fn measure(&mut self, problem: &ContactProblem, errors: Errors<'_>) {
         let rows = 2 * problem.contacts();
         self.mobility.clear();
@@ -66,11 +66,12 @@ impl Scale {
         self.speed = entries.map(|(c, mobility)| c.abs() / mobility).fold(0.0, f64::max);
         let bounces = (0..problem.contacts()).map(|i| problem.bounce(i).abs() / self.mobility[2 * i + 1]);
         if self.speed == 0.0 {
-            // An applied impulse may cancel c- exactly and leave the bounce alone.
+            // An applied impulse may cancel c- exactly, so that only the bounce is left.
             self.speed = bounces.fold(0.0, f64::max);
         }
         if self.speed == 0.0 {
-            // Speeds that vanish in the division are no rest: so small a scale leaves them to other numbers than f64.
+            // Speeds that underflow in the division do not mean rest. The tiny scale leaves such problems to other
+            // numbers than f64.
             let at_rest = problem.velocity_free().iter().flatten().all(|&c| c == 0.0);
             self.speed = if at_rest { 1.0 } else { f64::MIN_POSITIVE };
         }
@@ -79,7 +80,7 @@ impl Scale {
         let [of_delassus, of_velocity] = errors.likely;
         (self.likely_noise, self.likely_rounding) = (of_velocity * self.noise, of_delassus * errors.delassus);
         if (0..problem.contacts()).any(|contact| problem.bounce(contact) != 0.0) {
-            // The bounce and its sum with c_n, each at most S sqrt(G_nn), are rounded.
+            // The bounce and its sum with c_n are rounded; each is at most S sqrt(G_nn).
             self.noise += 4.0 * f64::EPSILON;
             self.likely_noise += 4.0 * f64::EPSILON;
         }
@@ -94,7 +95,7 @@ impl Scale {
         scale
     }
 
-    /// The entries of G, by row and column, with what they may be off by.
+    /// Returns the entries of G with their error bounds, by row and column \[1/kg\].
     pub fn delassus(&self, problem: &ContactProblem, errors: Errors<'_>) -> impl Fn(usize, usize) -> Rounded {
         let relative = if self.is_far_from_underflow() { errors.delassus } else { f64::INFINITY };
         move |row, column| {
@@ -103,14 +104,14 @@ impl Scale {
         }
     }
 
-    /// The velocities without impulses, by row, with what they may be off by.
+    /// Returns the velocities without impulses with their error bounds, by row \[m/s\].
     pub fn free(&self, problem: &ContactProblem, errors: Errors<'_>) -> impl Fn(usize) -> Rounded {
         move |row| {
             let (contact, value) = (row / 2, problem.free_row(row));
             let own = errors.velocity.map_or(0.0, |errors| errors[contact][row % 2]);
             let error = match problem.restitution()[contact] {
                 bouncing if row % 2 == 1 && bouncing != 0.0 => {
-                    // Of the bounce, its rounding and that of the sum; it may underflow.
+                    // The bounce and the sum are rounded, and the bounce may underflow.
                     let rounding = f64::EPSILON * (problem.bounce(contact).abs() + value.abs()) + f64::MIN_POSITIVE;
                     own * (1.0 + bouncing) + if problem.velocity_before()[contact][1] < 0.0 { rounding } else { 0.0 }
                 }
@@ -120,7 +121,8 @@ impl Scale {
         }
     }
 
-    /// The problem as balls around its f64 numbers, with each row that contacts are known to share taken once.
+    /// The problem as balls around its f64 numbers. Tangential rows that contacts are known to share are copies of one
+    /// row.
     pub fn enclosed(
         &self,
         problem: &ContactProblem,
@@ -148,20 +150,20 @@ impl Scale {
         ContactProblem::of_parts(delassus.collect(), before, free, laws, restitution).sharing(shared)
     }
 
-    /// Whether products of the problem's magnitudes stay so far from underflow that all rounding is relative.
+    /// Whether products of the problem's magnitudes stay far enough from underflow that all rounding is relative.
     pub fn is_far_from_underflow(&self) -> bool {
         let least = self.mobility.iter().copied().fold(f64::INFINITY, f64::min);
         let most = self.mobility.iter().copied().fold(0.0, f64::max);
         self.mobility.is_empty() || (self.speed * least > 1e-200 && self.speed * most < 1e200 && most < 1e60 * least)
     }
 
-    /// A slack's value free of units; `number` is the nearest f64.
+    /// The value of a slack scaled free of units; `number` is the nearest f64 of its value.
     #[inline]
     pub fn scaled<T>(&self, slack: &Slack<T>, number: f64) -> f64 {
         number / self.speed * self.factor(slack.contact, slack.inequality, slack.function)
     }
 
-    /// What the value of a contact's inequality, divided by S, is multiplied by to be free of units.
+    /// The factor that makes the value of a contact's inequality free of units once it is divided by S.
     #[inline]
     pub fn factor(&self, contact: usize, inequality: Inequality, function: Function) -> f64 {
         function.scale(inequality, [self.mobility[2 * contact], self.mobility[2 * contact + 1]])

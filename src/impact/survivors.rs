@@ -1,8 +1,8 @@
-//! The combinations that are left once those are gone to which no impulses lead: a search tree of many contacts.
+//! A search tree over the modes of many contacts, which finds the combinations that are not excluded.
 //!
-//! Contacts are decided one after the other, and a beginning that the [`Relaxation`] shows to be impossible ends all
-//! combinations that begin so. Where an error bound does not show it, numbers that know their signs do, or the search
-//! goes on beneath it.
+//! The modes of the contacts are decided one after the other. If the [`Relaxation`] shows that the modes chosen so far
+//! are impossible, all combinations that begin with them are excluded. If its error bound does not show it, numbers
+//! that know their signs may, and otherwise the search continues below.
 
 use super::collected::ListedRejections;
 use super::kernel::Kernel;
@@ -14,7 +14,8 @@ use crate::budget::{ROUNDS, is_spent_after};
 use crate::law::{Law, Mode};
 use crate::scalar::Ordered;
 
-/// So many contacts are searched; the combinations of fewer are visited one by one.
+/// From this number of contacts on, combinations are searched as a tree; with fewer contacts they are visited one by
+/// one.
 pub const SEARCHED: usize = 4;
 
 /// Finds the combinations that may be outcomes.
@@ -22,24 +23,24 @@ pub struct Search<'a> {
     relaxation: &'a mut Relaxation,
     laws: &'a [Law],
     without_slip: bool,
-    /// Combinations that are looked at in any case.
+    /// Combinations that are kept in any case.
     listed: &'a [Vec<Mode>],
     modes: Vec<Mode>,
-    /// Those that may be outcomes.
+    /// The combinations that may be outcomes.
     pub survivors: Vec<Vec<Mode>>,
-    /// Beginnings that f64 holds for impossible and has not shown to be.
+    /// Claims of f64 that have not been shown yet.
     open: Vec<Claim>,
-    /// What dependent contacts cannot do, once it was asked for.
+    /// The relations of dependent contacts, once they were computed.
     pub kernel: Option<Kernel>,
-    /// How many combinations more digits than those of f64 have shown to be impossible.
+    /// How many combinations were shown to be impossible with more digits than f64 has.
     pub effort: Effort,
-    /// How many combinations were not looked at.
+    /// How many combinations were neither visited nor excluded.
     pub unvisited: u64,
 }
 
 impl<'a> Search<'a> {
-    /// All combinations of a problem, `without_slip` those in which nothing slides; those of the `rejections` that are
-    /// listed by name survive.
+    /// Searches all combinations of a problem, or those without sliding contacts if `without_slip`. Combinations that
+    /// the `rejections` list by name survive.
     pub fn of(
         (problem, remembered, shared): (&'a ContactProblem, &Remembered<'_>, &[Option<usize>]),
         scale: &Scale,
@@ -66,8 +67,7 @@ impl<'a> Search<'a> {
         search
     }
 
-    /// Searches beneath the modes that are decided; `shown` says what is known of a beginning that f64 holds for
-    /// impossible.
+    /// Searches below the modes that are decided; `shown` says what is known of modes that f64 finds impossible.
     fn descend(&mut self, shown: &mut impl FnMut(&mut Relaxation, &[Mode], Lack) -> Finding) {
         let contact = self.modes.len();
         if contact == self.laws.len() {
@@ -104,14 +104,14 @@ impl<'a> Search<'a> {
     }
 }
 
-/// What is known of a beginning.
+/// What is known of the modes of the first contacts.
 enum Finding {
     Possible,
     Impossible,
     Open,
 }
 
-/// How many combinations of modes contacts have.
+/// The number of combinations of the modes that `laws` allow.
 pub fn combinations(laws: &[Law]) -> u64 {
     laws.iter().map(|law| law.modes().iter().map(|group| group.len() as u64).sum::<u64>()).product()
 }
@@ -119,11 +119,11 @@ pub fn combinations(laws: &[Law]) -> u64 {
 impl PrecisionTask for Search<'_> {
     fn attempt<T: Ordered>(&mut self, problem: &ContactProblem<T>, precision: Precision) -> bool {
         if !self.relaxation.is_regular && self.kernel.is_none() {
-            // What cannot be shown is not learned.
+            // A kernel that these numbers do not settle is not used.
             self.kernel = T::freeing(|| Kernel::of(problem)).ok();
             self.kernel.iter().for_each(|kernel| self.relaxation.learn_from(kernel));
         }
-        // The last numbers decide; what even they leave open is left to each combination's own.
+        // Claims that even intervals leave open are dropped; each combination below is then decided by itself.
         let is_last = precision == Precision::Interval;
         let mut impossible = 0;
         let mut find = |relaxation: &mut Relaxation, claim: &Claim| match relaxation.confirms(claim, problem) {

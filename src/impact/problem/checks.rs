@@ -1,13 +1,13 @@
-//! What a contact problem must be, however it was built.
+//! Checks of the input of a contact problem, however it was built.
 
 use super::ContactProblem;
 use crate::error::{Error, Reason, Result, finite};
 use crate::law::Friction;
 
-/// Matrices are formed for at most so many contacts, whether or not their outcomes are sought.
+/// The most contacts for which matrices are formed, whether or not their outcomes are computed.
 pub const MATRIX_LIMIT: usize = 500;
 
-/// Refuses more contacts than [`MATRIX_LIMIT`].
+/// Returns an error if there are more contacts than [`MATRIX_LIMIT`].
 pub(crate) fn check_matrix_size(contacts: usize) -> Result<()> {
     if contacts <= MATRIX_LIMIT {
         return Ok(());
@@ -16,10 +16,10 @@ pub(crate) fn check_matrix_size(contacts: usize) -> Result<()> {
     Err(Error::new(reason).hint("leave out the contacts that matter least"))
 }
 
-/// Diagonal entries of G outside these would let products of two of them underflow or overflow \[1/kg\].
+/// Bounds of the diagonal entries of G: beyond them, products of two entries would underflow or overflow \[1/kg\].
 const SMALLEST_MOBILITY: f64 = 1e-120;
 const LARGEST_MOBILITY: f64 = 1e120;
-/// Beyond this |c| / sqrt(G) its square, an energy, comes near overflow \[sqrt J\].
+/// The largest |c| / sqrt(G_ii): the square of a larger one, an energy, comes near overflow \[sqrt J\].
 const LARGEST_SPEED: f64 = 1e145;
 
 fn out_of_range(what: String, allowed: &'static str, value: f64) -> Error {
@@ -27,7 +27,7 @@ fn out_of_range(what: String, allowed: &'static str, value: f64) -> Error {
 }
 
 impl ContactProblem {
-    /// Products of two entries of G must stay far from overflow and underflow.
+    /// Checks that products of two entries of G stay far from overflow and underflow.
     pub(super) fn check_range(&self) -> Result<()> {
         let rows = 2 * self.contacts();
         for row in 0..rows {
@@ -71,9 +71,9 @@ impl ContactProblem {
         Ok(())
     }
 
-    /// Symmetry entry by entry, then definiteness by elimination with diagonal pivoting, each entry to n eps of the
-    /// geometric mean of its two diagonal entries, so that units and mass ratios do not matter. True if G is positive
-    /// definite beyond doubt.
+    /// Checks the symmetry of G entry by entry, then its definiteness by elimination with diagonal pivoting. The
+    /// tolerance of an entry is a multiple of n eps times the geometric mean of its two diagonal entries, so that units
+    /// and mass ratios do not matter. Returns true if G is positive definite beyond doubt.
     pub(super) fn check_definite(&self) -> Result<bool> {
         let rows = 2 * self.contacts();
         let rounding = 4.0 * rows as f64 * f64::EPSILON;
@@ -91,7 +91,7 @@ impl ContactProblem {
                 }
             }
         }
-        // A row without mobility is zero; its entries keep their size.
+        // A row without mobility must be zero, so its entries are not scaled.
         let scale = |i: usize| if sizes[i] > 0.0 { sizes[i] } else { 1.0 };
         let mut rest = nalgebra::DMatrix::from_fn(rows, rows, |i, j| self.delassus(i, j) / scale(i) / scale(j));
         let mut beyond_doubt = 0;
@@ -114,7 +114,7 @@ impl ContactProblem {
             if diagonal <= rounding {
                 break;
             }
-            // The elimination itself rounds by about as much.
+            // The elimination adds about as much rounding again.
             beyond_doubt += usize::from(symmetric && diagonal > 16.0 * rounding);
             let column = rest.column(pivot).clone_owned();
             for i in 0..rows {
@@ -126,11 +126,12 @@ impl ContactProblem {
         Ok(beyond_doubt == rows)
     }
 
-    /// The entry of an indefinite G that alone makes it so: a negative one on the diagonal, else the one that exceeds
-    /// the geometric mean of its two diagonal entries by most.
+    /// The entry that alone makes an indefinite G so: a negative diagonal entry, or else the entry that exceeds the
+    /// geometric mean of its two diagonal entries by the most. `None` if no single entry does.
     fn offending(&self, sizes: &[f64], rounding: f64) -> Option<(usize, usize)> {
         let rows = 2 * self.contacts();
-        // Infinite for an entry next to a zero or a negative number on the diagonal, and no number for a zero there.
+        // Infinite for an entry whose diagonal entries include one that is not positive; NaN if that entry is zero
+        // itself.
         let excess = |(i, j): (usize, usize)| {
             let entry = if i == j { -self.delassus(i, i) } else { self.delassus(i, j).abs() };
             entry / sizes[i] / sizes[j] - 1.0

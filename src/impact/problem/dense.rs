@@ -1,4 +1,4 @@
-//! A problem from M, J and v as dense matrices.
+//! Contact problems from M, J and v as dense matrices.
 
 use super::checks::check_matrix_size;
 use super::{ContactProblem, Origin};
@@ -7,20 +7,20 @@ use crate::law::Law;
 use crate::planar::Pair;
 use crate::scalar::{Real, dot, subtract};
 
-/// M, J and v as they were given, every digit meant; of M only what is on and below its diagonal.
+/// M, J and v exactly as given. Of M only the entries on and below the diagonal are read.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Dynamics {
-    /// dofs x dofs.
+    /// dofs x dofs, by rows.
     mass_matrix: Vec<Vec<f64>>,
     /// Two rows per contact, dofs columns.
     contact_jacobian: Vec<Vec<f64>>,
-    /// dofs.
+    /// The velocity of each coordinate, dofs entries.
     velocity: Vec<f64>,
 }
 
 impl Dynamics {
-    /// G = J M^-1 J^T by rows and c = J v in numbers of any kind, without pivoting: M is positive definite. Also what
-    /// the elimination leaves of M's diagonal.
+    /// Computes G = J M^-1 J^T by rows and c = J v in numbers of any kind. The elimination needs no pivoting because M
+    /// is positive definite. Also returns the pivots that it leaves on M's diagonal.
     pub fn numbers<T: Real>(&self) -> (Vec<T>, Vec<Pair<T>>, Vec<T>) {
         let dofs = self.velocity.len();
         let lower = |i: usize, j: usize| T::from_f64(self.mass_matrix[i.max(j)][i.min(j)]);
@@ -38,7 +38,7 @@ impl Dynamics {
                 }
             }
         }
-        // The mean of both orders, so that G is symmetric in f64, and equal rows have equal entries.
+        // Both orders of the product are averaged, so that G is symmetric in f64 and equal rows have equal entries.
         let divided = |row: &Vec<T>| (0..dofs).map(|k| row[k] / mass[k][k]).collect();
         let quotients: Vec<Vec<T>> = forward.iter().map(divided).collect();
         let entry = |i: usize, j: usize| dot(&quotients[i], &forward[j]) + dot(&quotients[j], &forward[i]);
@@ -52,11 +52,13 @@ impl Dynamics {
 }
 
 impl ContactProblem {
-    /// A problem from the dynamics, so that exact redundancy survives, which a rounded G would lose: M (dofs x dofs), J
-    /// (two rows per contact: tangential, normal; dofs columns), v (dofs).
+    /// Builds a problem from the dynamics: M (dofs x dofs), J (two rows per contact, tangential then normal; dofs
+    /// columns) and v (dofs), in consistent units. Contacts that are exactly redundant stay so, which a rounded G would
+    /// not preserve.
     ///
     /// # Errors
-    /// As [`ContactProblem::new`]; also a mass matrix that is asymmetric or not positive definite.
+    /// Returns an error where [`ContactProblem::new`] does, and if the mass matrix is asymmetric or not positive
+    /// definite.
     pub fn from_dynamics(
         mass_matrix: &[Vec<f64>],
         contact_jacobian: &[Vec<f64>],
@@ -124,7 +126,7 @@ mod tests {
     use super::*;
     use crate::law::Friction;
 
-    /// As far as f64 goes, too.
+    /// Equal contacts have equal entries in f64, too.
     #[test]
     fn equal_contacts_have_equal_entries() {
         let mass = [vec![2.3, 0.7, -0.4], vec![0.7, 1.9, 0.3], vec![-0.4, 0.3, 0.8]];
@@ -139,7 +141,7 @@ mod tests {
         }
     }
 
-    /// Neither products of two rows nor what is left of M leaves the range of f64 before G does.
+    /// Neither products of two rows nor the pivots of M leave the range of f64 before G does.
     #[test]
     fn a_problem_in_far_units_is_refused_with_its_size() {
         for unit in [1e-200, 1e200] {

@@ -1,10 +1,11 @@
-//! The contact problem: what is left of robot and state once only the contacts matter.
+//! The contact problem: everything about a robot and its state that matters for the impact law.
 //!
 //! ```text
 //!     c+ = c_free + G L,    c_free = c- + (effect of applied impulses)
 //! ```
 //!
-//! with the laws of each contact (paper, section 2). It can be built from matrices alone and knows no robot.
+//! with one contact law per contact (paper, section 2). A problem can also be built from matrices alone, without a
+//! robot.
 
 mod checks;
 mod source;
@@ -26,36 +27,36 @@ use crate::scalar::{Ball, DoubleDouble, Ordered, Real, Sign};
 
 /// A contact problem of n contacts; vectors have two entries per contact, [tangential, normal].
 ///
-/// It runs on any [`Real`]; [`ContactProblem::map`] makes one in another number. [`Analysis`](crate::Analysis) has an
-/// example.
+/// Its numbers can be of any type that implements [`Real`]; [`ContactProblem::map`] converts them.
+/// [`Analysis`](crate::Analysis) has an example.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ContactProblem<T = f64> {
     /// G, 2n x 2n by rows \[1/kg\].
     delassus: Vec<T>,
-    /// c- of the given state \[m/s\].
+    /// c-, the contact velocities of the given state \[m/s\].
     velocity_before: Vec<Pair<T>>,
-    /// c- and the effect of applied impulses \[m/s\].
+    /// c_free: c- plus the effect of applied impulses \[m/s\].
     velocity_free: Vec<Pair<T>>,
     /// min(c_n-, 0) \[m/s\].
     approach: Vec<T>,
     laws: Vec<Law>,
     restitution: Vec<f64>,
-    /// What [`Source::shared_tangent`] says of each contact; empty if nothing is known.
+    /// [`Source::shared_tangent`] of each contact; empty if nothing is known.
     shared: Vec<Option<usize>>,
     origin: Origin,
 }
 
-/// What the numbers of a problem that is its own source come from.
+/// Where the numbers of a problem come from if no other [`Source`] stands behind it.
 #[derive(Debug, Clone, Default, PartialEq)]
 enum Origin {
     #[default]
     Given,
     /// G and c- were computed from M, J and v.
     Dynamics(Box<Dynamics>),
-    /// A given G was asymmetric by its rounding, and was replaced by its mean with its transpose, which is positive definite
-    /// beyond doubt.
+    /// The given G was asymmetric by rounding and was replaced by its mean with its transpose, which is positive
+    /// definite beyond doubt.
     Symmetrized,
-    /// A given G was indefinite by its rounding, and was replaced by Z Z^T.
+    /// The given G was indefinite by rounding and was replaced by Z Z^T.
     Repaired(FactorRows),
 }
 
@@ -65,12 +66,13 @@ impl<T: Real> ContactProblem<T> {
         self.velocity_before.len()
     }
 
-    /// Entry of the Delassus matrix; rows and columns 2i (tangential) and 2i + 1 (normal) belong to contact i.
+    /// An entry of the Delassus matrix \[1/kg\]; rows and columns 2i (tangential) and 2i + 1 (normal) belong to contact
+    /// i.
     pub fn delassus(&self, row: usize, column: usize) -> T {
         self.delassus[row * 2 * self.contacts() + column]
     }
 
-    /// Contact velocities of the given state, before any applied impulse \[m/s\].
+    /// Contact velocities of the given state, before any applied impulse, [tangential, normal] per contact \[m/s\].
     pub fn velocity_before(&self) -> &[Pair<T>] {
         &self.velocity_before
     }
@@ -80,7 +82,7 @@ impl<T: Real> ContactProblem<T> {
         Self { laws: vec![law; self.contacts()], ..self.clone() }
     }
 
-    /// Contact velocities if the ground gave no impulse \[m/s\].
+    /// Contact velocities if the ground gave no impulse, [tangential, normal] per contact \[m/s\].
     pub fn velocity_free(&self) -> &[Pair<T>] {
         &self.velocity_free
     }
@@ -90,33 +92,34 @@ impl<T: Real> ContactProblem<T> {
         &self.laws
     }
 
-    /// Friction of each contact.
+    /// The friction of each contact.
     pub fn friction(&self) -> impl Iterator<Item = Friction> {
         self.laws.iter().map(Law::friction)
     }
 
-    /// Newton restitution of each contact.
+    /// The coefficient of Newton's restitution of each contact, 0 to 1.
     pub fn restitution(&self) -> &[f64] {
         &self.restitution
     }
 
-    /// What Newton's law adds to c_n+: e min(c_n-, 0), so that xi_n = c_n+ + bounce (Moreau's form) \[m/s\].
+    /// The bounce of a contact, e min(c_n-, 0), which is not positive \[m/s\]. Newton's restitution in Moreau's form is
+    /// xi_n = c_n+ + bounce.
     pub fn bounce(&self, contact: usize) -> T {
         T::from_f64(self.restitution[contact]) * self.approach[contact]
     }
 
-    /// A row's velocity without impulses, with the bounce on a normal row: c_t, or xi_n = c_n + bounce.
+    /// The velocity of a row without impulses \[m/s\]: c_t of a tangential row, xi_n = c_n + bounce of a normal row.
     pub fn free_row(&self, row: usize) -> T {
         let free = self.velocity_free[row / 2][row % 2];
         if row % 2 == 1 && self.restitution[row / 2] != 0.0 { free + self.bounce(row / 2) } else { free }
     }
 
-    /// The contact whose tangential row this one has as well, if that is known.
+    /// The contact that has exactly the same tangential row as this one; `None` if no such contact is known.
     pub(super) fn shared_tangent(&self, contact: usize) -> Option<usize> {
         self.shared.get(contact).copied().flatten()
     }
 
-    /// The same problem in another number.
+    /// Returns the same problem with every number converted by `number`.
     pub fn map<U: Real>(&self, number: impl Fn(T) -> U) -> ContactProblem<U> {
         let vectors = |list: &[Pair<T>]| list.iter().map(|c| c.map(&number)).collect();
         ContactProblem {
@@ -133,7 +136,7 @@ impl<T: Real> ContactProblem<T> {
 }
 
 impl<T: Ordered> ContactProblem<T> {
-    /// A problem from numbers whose signs depend on their precision, already known to be one in f64.
+    /// Builds a problem from numbers whose signs depend on their precision. The caller has already checked it in f64.
     pub(crate) fn of_parts(
         delassus: Vec<T>,
         velocity_before: Vec<Pair<T>>,
@@ -144,7 +147,7 @@ impl<T: Ordered> ContactProblem<T> {
         let approach = |c: &Pair<T>| match c[1].sign() {
             Sign::Negative => c[1],
             Sign::Zero | Sign::Positive => T::zero(),
-            // Not a number, so that everything that depends on it stays open.
+            // Division by zero makes the number unknown, so that everything that depends on it stays undecided.
             Sign::Undecided => T::one() / T::zero(),
         };
         let approach = velocity_before.iter().map(approach).collect();
@@ -152,20 +155,22 @@ impl<T: Ordered> ContactProblem<T> {
         Self { delassus, velocity_before, velocity_free, approach, laws, restitution, shared, origin }
     }
 
-    /// The same problem, in which it is known which contacts share their tangential rows.
+    /// Returns the same problem with [`Self::shared_tangent`] set for each contact.
     pub(super) fn sharing(self, shared: Vec<Option<usize>>) -> Self {
         Self { shared, ..self }
     }
 }
 
 impl ContactProblem {
-    /// A problem from its matrices: `delassus` 2n x 2n by rows, rows and columns [tangential, normal] per contact
-    /// \[1/kg\]; `velocity_before` \[m/s\], `friction` and `restitution` (0 to 1) one entry per contact.
+    /// Builds a problem from its matrices: `delassus` has 2n x 2n entries by rows, with rows and columns [tangential,
+    /// normal] per contact \[1/kg\]; `velocity_before` \[m/s\], `friction` and `restitution` (0 to 1) have one entry
+    /// per contact.
     ///
     /// # Errors
-    /// Lengths that do not fit, more contacts than [`MATRIX_LIMIT`], numbers that are not finite, negative friction,
-    /// restitution outside 0..1, and a Delassus matrix that is asymmetric or indefinite: each entry counts against the
-    /// geometric mean of its own two diagonal entries, beyond rounding.
+    /// Returns an error if lengths do not match, if there are more contacts than [`MATRIX_LIMIT`], if a number is not
+    /// finite, if a friction is negative or a restitution outside 0..1, and if the Delassus matrix is asymmetric or
+    /// indefinite by more than rounding. Each entry is judged relative to the geometric mean of its two diagonal
+    /// entries.
     pub fn new(
         delassus: Vec<f64>,
         velocity_before: Vec<Pair<f64>>,
@@ -200,19 +205,19 @@ impl ContactProblem {
         Ok(Self { delassus: rows.delassus(), origin: Origin::Repaired(rows), ..problem })
     }
 
-    /// Whether G and c- themselves were given, and every digit of them is meant.
+    /// Whether G and c- themselves were given and are used unchanged, so that every digit of them is exact.
     pub fn is_given(&self) -> bool {
         matches!(self.origin, Origin::Given)
     }
 
-    /// Takes the mean of G and its transpose; false if G is symmetric.
+    /// Replaces G by its mean with its transpose; returns false if G is already symmetric.
     fn symmetrize(&mut self) -> bool {
         let rows = 2 * self.contacts();
         let mut found = false;
         for (i, j) in (0..rows).flat_map(|i| (0..i).map(move |j| (i, j))) {
             let (own, other) = (self.delassus(i, j), self.delassus(j, i));
             if own != other {
-                // Half of each, since their sum may overflow.
+                // Each is halved first, because their sum may overflow.
                 let mean = 0.5 * own + 0.5 * other;
                 (self.delassus[i * rows + j], self.delassus[j * rows + i]) = (mean, mean);
                 found = true;
@@ -221,17 +226,17 @@ impl ContactProblem {
         found
     }
 
-    /// Whether the G that was given is asymmetric, by rounding alone, and was replaced by one that is not.
+    /// Whether the given G was asymmetric, by rounding alone, and was replaced by a symmetric matrix.
     pub fn is_symmetrized(&self) -> bool {
         matches!(self.origin, Origin::Symmetrized)
     }
 
-    /// Whether the G that was given is indefinite, by rounding alone, and was replaced by one that is not.
+    /// Whether the given G was indefinite, by rounding alone, and was replaced by a semidefinite matrix.
     pub fn is_repaired(&self) -> bool {
         matches!(self.origin, Origin::Repaired(_))
     }
 
-    /// A problem from parts that the dynamics computed: G, c-, and c- with the change by applied impulses.
+    /// Builds a problem from parts that the dynamics computed: G \[1/kg\], c- and c_free \[m/s\].
     pub(crate) fn checked(
         delassus: Vec<f64>,
         velocity_before: Vec<Pair<f64>>,
@@ -255,7 +260,8 @@ impl ContactProblem {
         Ok(problem)
     }
 
-    /// Becomes another problem, as [`ContactProblem::checked`], with the friction and restitution of each contact.
+    /// Overwrites this problem with another one, reusing its memory. The checks are those of
+    /// [`ContactProblem::checked`]; `contacts` gives the friction and restitution of each contact.
     pub(crate) fn renew(
         &mut self,
         delassus: &[f64],
@@ -277,8 +283,8 @@ impl ContactProblem {
         self.complete()
     }
 
-    /// The same problem, without applied impulses, for the nearest f64 of another `velocity` before, and what these are
-    /// off by \[m/s\].
+    /// Returns the same problem, without applied impulses, for another `velocity` before the impact, rounded to f64.
+    /// Also returns the error of each rounded velocity \[m/s\].
     pub(super) fn moving(&self, velocity: &[Pair<Ball<DoubleDouble>>]) -> (Self, Vec<Pair<f64>>) {
         let nearest: Vec<Pair<f64>> = velocity.iter().map(|c| c.map(Ordered::to_f64)).collect();
         let off = velocity.iter().map(|c| c.map(Ball::error_of_nearest)).collect();
@@ -311,7 +317,7 @@ mod tests {
             let problem = ContactProblem::new(delassus.to_vec(), vec![[0.0, -1.0]; contacts], friction, restitution);
             problem.err().map(|error| error.place().unwrap_or_default().to_owned())
         };
-        // Units of each row do not matter, and powers of two do not round.
+        // The units of the rows must not matter. Powers of two scale without rounding.
         let place = |delassus: &[f64]| {
             let rows = delassus.len().isqrt();
             let unit = |row: usize| [1.0, f64::exp2(-40.0), f64::exp2(33.0), 0.5][row];
@@ -330,7 +336,8 @@ mod tests {
         assert_eq!(place(&[0.0, 1.0, 1.0, 0.0]).as_deref(), Some("delassus[1][0]"));
         let mut g = [[4.0, 0.0, 0.0, 0.0], [0.0, 3.0, 0.0, 2.5], [0.0, 0.0, 1.0, 0.0], [0.0, 2.5, 0.0, 2.0]];
         assert_eq!(place(g.as_flattened()).as_deref(), Some("delassus[3][1]"));
-        // No pair is at fault, but three together are: what the elimination leaves of the last one is negative.
+        // Every pair of rows is consistent, but the three together are indefinite: elimination leaves a negative last
+        // pivot.
         g = [[1.0, -0.9, -0.9, 0.0], [-0.9, 1.0, -0.9, 0.0], [-0.9, -0.9, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
         assert_eq!(place(g.as_flattened()).as_deref(), Some("delassus[0][0]"));
     }
@@ -348,7 +355,8 @@ mod tests {
         let [exact, rounded] = [exact, rounded].map(|own| crate::impact::analyze(&own, false.into()).unwrap());
         assert!(exact.proven && rounded.proven);
         assert_eq!(exact.outcomes[0].modes, rounded.outcomes[0].modes);
-        // Rows that are equal but for the digit that makes it asymmetric: the mean is definite by that digit alone.
+        // Rows that are equal except for the digit that makes the matrix asymmetric: that digit alone makes the mean
+        // definite.
         let rows = [[2.0, -1.0, 2.0, 1.0], [-1.0, 2.0, -1.0, 0.0], [2.0, -1.0, 2.0, 1.0], [1.0, 0.0, 1.0, 2.0]];
         let mut delassus = rows.concat();
         delassus[8] -= 2.0 * f64::EPSILON;

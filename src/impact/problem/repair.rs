@@ -1,16 +1,16 @@
-//! A Delassus matrix that rounding made indefinite is replaced by the nearest that is semidefinite, as all are.
+//! Replaces a Delassus matrix that rounding made indefinite by a semidefinite matrix close to it.
 
 use super::ContactProblem;
 use super::source::{Precision, PrecisionTask, Remembered, escalate};
 use crate::impact::linear::{Unsettled, are_zero, settled};
 use crate::scalar::{Ordered, Real, dot, subtract};
 
-/// Rows Z of G = Z Z^T, taken exactly.
+/// The rows of a factor Z, taken exactly, with G = Z Z^T.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct FactorRows(Vec<Vec<f64>>);
 
 impl FactorRows {
-    /// Those of `problem`: elimination with diagonal pivoting, to the rounding of its entries.
+    /// Factors the matrix of `problem` by elimination with diagonal pivoting, down to the rounding of its entries.
     pub fn of(problem: &ContactProblem) -> Self {
         let count = 2 * problem.contacts();
         let mut rest: Vec<Vec<f64>> = (0..count)
@@ -18,7 +18,7 @@ impl FactorRows {
             .collect();
         let whole: Vec<f64> = (0..count).map(|i| rest[i][i]).collect();
         let mut rows = vec![Vec::new(); count];
-        // What is left of a row counts against what it was, so that units do not matter.
+        // A remaining diagonal entry is compared with its original value, so that units do not matter.
         let part = |rest: &[Vec<f64>], i: usize| if whole[i] > 0.0 { rest[i][i] / whole[i] } else { 0.0 };
         for _ in 0..count {
             let Some(pivot) = (0..count).max_by(|&i, &j| part(&rest, i).total_cmp(&part(&rest, j))) else { break };
@@ -30,7 +30,8 @@ impl FactorRows {
             for (i, line) in rest.iter_mut().enumerate() {
                 rows[i].push(column[i]);
                 subtract(line, &column, column[i]);
-                // What is left of the pivot is zero by construction, and its rounding must not count as rank again.
+                // The rest of the pivot's column is zero by construction; its rounding must not be taken for another
+                // rank.
                 line[pivot] = 0.0;
             }
             rest[pivot].fill(0.0);
@@ -45,7 +46,7 @@ impl FactorRows {
     }
 }
 
-/// Whether a symmetric matrix, taken exactly, has no negative eigenvalue.
+/// Whether the symmetric matrix of `problem`, taken exactly, has no negative eigenvalue.
 pub(super) fn is_semidefinite(problem: &ContactProblem) -> bool {
     let mut definiteness = Definiteness(false);
     escalate(&Remembered::of(problem), Precision::Ball, &mut definiteness);
@@ -62,7 +63,7 @@ impl PrecisionTask for Definiteness {
     }
 }
 
-/// By symmetric elimination: the row of a zero on the diagonal must be zero.
+/// Decides semidefiniteness by symmetric elimination: where a pivot is zero, its row must be zero.
 fn semidefinite<T: Ordered>(problem: &ContactProblem<T>) -> Result<bool, Unsettled> {
     let count = 2 * problem.contacts();
     let mut rest: Vec<Vec<T>> = (0..count).map(|i| (0..count).map(|j| problem.delassus(i, j)).collect()).collect();

@@ -1,14 +1,15 @@
-//! Where a contact problem's numbers come from, so that they can be computed again with more and more digits.
+//! The source of a contact problem's numbers, from which they can be computed again with more and more digits.
 //!
 //! ```text
-//!     f64 with an error bound --> plain balls --> balls --> balls around pairs of f64 --> intervals of 256, 1024, 4096 bits
-//!       ├── again with c from pairs of f64, if contacts are slow
-//!       └── balls around it
+//!     f64 with an error bound --> plain balls --> balls --> balls around pairs of f64 --> intervals (256 to 4096 bits)
+//!       ├── f64 again with c computed in pairs of f64, if contacts are slow
+//!       └── balls around the f64 numbers
 //! ```
 //!
-//! From the balls on, each number also has a residue that shows whether it is exactly zero (see
-//! [`Residue`](crate::scalar::Residue)); plain ones cost less than half, where no zeros are expected. So borders and
-//! dependent contacts are recognized, and a number that is not zero shows its sign once it has enough digits.
+//! "Balls" and all later numbers also carry a residue that shows whether a number is exactly zero (see
+//! [`Residue`](crate::scalar::Residue)). Plain balls have none; they cost less than half and serve where no zeros are
+//! expected. Thus borders and dependent contacts are recognized, and a number that is not zero shows its sign once it
+//! has enough digits.
 
 use super::{ContactProblem, Origin};
 use crate::budget::{ROUNDS, is_spent, is_spent_after};
@@ -17,51 +18,52 @@ use crate::planar::Pair;
 use crate::scalar::{Ball, Certified, DoubleDouble, Interval, Ordered, Trigonometry};
 use std::cell::OnceCell;
 
-/// What stands behind the rounded numbers of a [`ContactProblem`]: exact data, and the way from them to G and c.
+/// The exact data behind the rounded numbers of a [`ContactProblem`], and the computation of G and c from them.
 pub trait Source {
-    /// The contact problem itself, in numbers of any kind.
+    /// Computes the contact problem in numbers of any kind.
     fn problem<T: Ordered + Trigonometry>(&self) -> ContactProblem<T>
     where
         Self: Sized;
 
-    /// What the f64 problem may be off by.
+    /// Error bounds of the f64 problem.
     fn errors(&self) -> Errors<'_>;
 
-    /// c- alone, far more closely than `errors` says; `None` if it needs M^-1 or is not c_free.
+    /// c- in pairs of f64 \[m/s\], with errors far smaller than [`Self::errors`] states; `None` if c- needs M^-1 or
+    /// differs from c_free.
     fn velocity(&self) -> Option<Vec<Pair<Ball<DoubleDouble>>>> {
         None
     }
 
-    /// Whether the numbers are what was asked about, so that what is shown of them is proven.
+    /// Whether the numbers are exactly those that the user asked about, so that signs shown of them are proven.
     fn is_exact(&self) -> bool {
         true
     }
 
-    /// What an outcome calls a contact.
+    /// The name of a contact in an outcome.
     fn contact_name(&self, contact: usize) -> String {
         format!("contact/{contact}")
     }
 
-    /// Another contact whose tangential row of G and c_t are exactly those of this one, as both stand level on one body;
-    /// that one has none itself.
+    /// Another contact whose tangential row of G and whose c_t are exactly those of this contact, because both are
+    /// level on one body. That other contact itself returns `None`.
     fn shared_tangent(&self, _contact: usize) -> Option<usize> {
         None
     }
 }
 
-/// Any [`Source`] with its problem in the numbers that are tried one after the other: what asks it is compiled once for
-/// all sources.
+/// A [`Source`] as a trait object: one method per kind of numbers replaces the generic method. Code that takes a `dyn
+/// Ladder` is compiled once for all sources. The methods are in the order in which the numbers are tried.
 pub trait Ladder: Source {
-    /// In plain balls.
+    /// The problem in plain balls, without residues.
     fn plain(&self) -> ContactProblem<Ball>;
 
-    /// In balls.
+    /// The problem in balls with residues.
     fn ball(&self) -> ContactProblem<Certified<Ball>>;
 
-    /// In balls around pairs of f64.
+    /// The problem in balls around pairs of f64, with residues.
     fn double_double(&self) -> ContactProblem<Certified<Ball<DoubleDouble>>>;
 
-    /// In intervals of as many digits as their scope has.
+    /// The problem in intervals with as many bits as the enclosing [`Interval::scope`].
     fn interval(&self) -> ContactProblem<Certified<Interval>>;
 }
 
@@ -83,7 +85,8 @@ impl<S: Source> Ladder for S {
     }
 }
 
-/// A source whose problem is computed once in each kind of numbers, but for intervals, which live in their scope alone.
+/// A source that computes its problem once in each kind of numbers. Intervals are computed each time, since they live
+/// only in their scope.
 pub struct Remembered<'a> {
     pub source: &'a dyn Ladder,
     plain: OnceCell<ContactProblem<Ball>>,
@@ -97,9 +100,9 @@ impl<'a> Remembered<'a> {
     }
 }
 
-/// A kind of numbers of the ladder.
+/// A kind of numbers on the ladder of increasing precision.
 pub trait Rung: Ordered + Trigonometry {
-    /// The problem of a source in them.
+    /// The problem of a source in numbers of this kind.
     fn problem(of: &Remembered<'_>) -> ContactProblem<Self>;
 }
 
@@ -127,25 +130,26 @@ impl Rung for Certified<Interval> {
     }
 }
 
-/// Error bounds of a problem in f64.
+/// Error bounds of an f64 problem.
 #[derive(Debug, Clone, Copy)]
 pub struct Errors<'a> {
-    /// Of an entry G_ij, relative to sqrt(G_ii G_jj) of the f64 matrix; infinite if nothing is known, not even of c.
+    /// Bound of the error of an entry G_ij, relative to sqrt(G_ii G_jj) of the f64 matrix; infinite if nothing is
+    /// known, not even of c.
     pub delassus: f64,
-    /// Of c- and c_free, per contact \[m/s\]; `None` if they are exact.
+    /// Bounds of the errors of c- and c_free, per contact \[m/s\]; `None` if they are exact.
     pub velocity: Option<&'a [Pair<f64>]>,
-    /// What part of `delassus` and of `velocity` the errors are likely to reach.
+    /// Likely errors as fractions of the bounds `delassus` and `velocity`.
     pub likely: [f64; 2],
 }
 
 impl Errors<'_> {
-    /// Of a problem that is given exactly.
+    /// The errors of a problem that is given exactly.
     pub const NONE: Self = Self { delassus: 0.0, velocity: None, likely: [1.0; 2] };
-    /// Of a problem whose errors nobody knows.
+    /// The errors of a problem about whose rounding nothing is known.
     pub const UNKNOWN: Self = Self { delassus: f64::INFINITY, velocity: None, likely: [1.0; 2] };
 }
 
-/// A problem that is given as matrices is its own source: every f64 is meant as the number that it is.
+/// A problem that is given as matrices is its own source: each f64 stands for exactly its own value.
 impl Source for ContactProblem {
     fn problem<T: Ordered + Trigonometry>(&self) -> ContactProblem<T> {
         match &self.origin {
@@ -168,21 +172,21 @@ impl Source for ContactProblem {
     }
 }
 
-/// Digits of the last numbers \[bit\].
+/// Bits of the intervals, which are tried last.
 const BITS: [usize; 3] = [256, 1024, 4096];
 
-/// A question about a problem that more digits may answer.
+/// A question about a problem that numbers with more digits may answer.
 pub trait PrecisionTask {
-    /// Tries to answer it in these numbers; true if nothing is left open.
+    /// Tries to answer the question from this problem; returns true if nothing is left open.
     fn attempt<T: Ordered>(&mut self, problem: &ContactProblem<T>, precision: Precision) -> bool;
 }
 
-/// A kind of numbers.
+/// The kinds of numbers in which a task is attempted, in increasing precision.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Precision {
-    /// Balls around the numbers of f64 with their bounds, where contacts that share a row are known.
+    /// Balls around the f64 numbers with their error bounds; tangential rows that contacts share are known to be equal.
     Enclosed,
-    /// Balls that do not recognize an exact zero.
+    /// Balls without residues, which do not recognize an exact zero.
     Plain,
     Ball,
     DoubleDouble,
@@ -190,15 +194,15 @@ pub enum Precision {
 }
 
 impl Precision {
-    /// What to begin with: numbers that recognize zeros where contacts may depend on each other, or where some rest or
-    /// have no friction.
+    /// The kind of numbers to begin with. Numbers that recognize exact zeros come first if contacts may depend on each
+    /// other, or if some contact is at rest or has no friction.
     pub fn first(is_regular: bool, problem: &ContactProblem) -> Self {
         let rests = |velocity: &Pair<f64>| velocity.contains(&0.0);
         let is_generic = is_regular && !problem.velocity_free().iter().any(rests);
         if is_generic && problem.friction().all(|friction| !friction.is_zero()) { Self::Plain } else { Self::Ball }
     }
 
-    /// How many combinations were decided in these numbers.
+    /// The counter in `effort` of combinations that were decided in these numbers.
     pub fn share(self, effort: &mut Effort) -> &mut u64 {
         match self {
             Self::Enclosed => &mut effort.bound,
@@ -209,13 +213,13 @@ impl Precision {
     }
 }
 
-/// A question that numbers with more digits may answer, whatever they are computed from.
+/// A question that numbers with more digits may answer, whether or not it is about a contact problem.
 pub trait Attempt {
-    /// Tries to answer it in these numbers; true if nothing is left open.
+    /// Tries to answer the question in numbers of type `T`; returns true if nothing is left open.
     fn attempt<T: Rung>(&mut self, precision: Precision) -> bool;
 }
 
-/// A question about the problem of a source.
+/// A task together with the source of its problem.
 struct Posed<'a, Q> {
     source: &'a Remembered<'a>,
     task: &'a mut Q,
@@ -233,7 +237,7 @@ pub fn escalate(source: &Remembered<'_>, first: Precision, task: &mut impl Preci
     climb(first, &mut Posed { source, task });
 }
 
-/// As [`escalate`], of any question.
+/// Does the same as [`escalate`] for any question.
 pub fn climb(first: Precision, task: &mut impl Attempt) {
     if first <= Precision::Plain && task.attempt::<Ball>(Precision::Plain) {
         return;

@@ -1,4 +1,4 @@
-//! What f64 claims, shown in numbers that know their signs.
+//! Checks claims that f64 makes, in numbers that know their signs.
 
 use super::dictionary::Lack;
 use super::ranges::{Range, Ranges, Ray};
@@ -8,7 +8,7 @@ use crate::law::Mode;
 use crate::scalar::Ordered;
 use std::cmp::Ordering;
 
-/// That nothing leads to these modes of the first contacts, and the dictionary whose row says so.
+/// The claim that no impulses lead to these modes of the first contacts, with the dictionary whose row states it.
 #[derive(Debug, Clone)]
 pub struct Claim {
     pub modes: Vec<Mode>,
@@ -18,7 +18,8 @@ pub struct Claim {
 }
 
 impl Claim {
-    /// What the claim rests on if it holds in exact numbers, the strictness of inequalities included.
+    /// Returns the claim's nogood if the claim holds in exact numbers, including the strictness of inequalities; `None`
+    /// if it does not hold.
     pub fn shown<T: Ordered>(&self, problem: &ContactProblem<T>) -> Result<Option<Ranges>, Unsettled> {
         let rows = 2 * problem.contacts();
         let rays: Vec<Ray> = Ray::all(problem.laws()).collect();
@@ -27,7 +28,7 @@ impl Claim {
             t * problem.delassus(row, 2 * ray.contact) + n * problem.delassus(row, 2 * ray.contact + 1)
         };
         let (own, sign) = (self.lack.variable, T::from_f64(self.lack.sign));
-        // The multipliers y of velocities outside the basis make those of the rays inside it zero.
+        // The multipliers y of nonbasic velocities are chosen so that the multipliers of basic rays are zero.
         let unknown: Vec<usize> = (0..rows).filter(|row| !self.basic.contains(row)).collect();
         let equations = self.basic.iter().filter(|&&variable| variable >= rows).map(|&variable| {
             let ray = &rays[variable - rows];

@@ -1,22 +1,22 @@
-//! The dual simplex method in f64.
+//! The dual simplex method in f64, which only searches: its results are shown elsewhere.
 
 use super::ranges::Ranges;
 use std::cmp::Ordering;
 
-/// Scaled numbers nearer to zero count as zero where f64 chooses its way.
+/// Scaled numbers nearer to zero than this count as zero in the search.
 const TOLERANCE: f64 = 1e-9;
-/// What strict inequalities keep from zero where f64 chooses its way.
+/// The distance from zero that strict inequalities keep in the search.
 const STRICT: f64 = 1e-7;
-/// More pivots per row than this show nothing.
+/// The search gives up after this many pivots per row.
 const PIVOTS: usize = 6;
-/// Rows are padded to multiples of this.
+/// Rows are padded to a multiple of this length.
 pub const LANES: usize = 4;
 
-/// Basic variables as affine functions of the others. Variables below 2n are velocities, the others multipliers of
-/// rays.
+/// Basic variables as affine functions of the nonbasic ones. Variables below 2n are velocities, the others multipliers
+/// of rays.
 #[derive(Debug, Clone, Default)]
 pub struct Dictionary {
-    /// By rows: per basic variable its coefficients of the nonbasic ones, padding, and last its value.
+    /// One row per basic variable: its coefficients of the nonbasic variables, padding, and last its value.
     pub entries: Vec<f64>,
     pub width: usize,
     pub basic: Vec<usize>,
@@ -24,7 +24,7 @@ pub struct Dictionary {
     pub ranges: Ranges,
 }
 
-/// A variable that cannot get into its range, and the sign of what it lacks.
+/// A variable that cannot reach its range, and the sign of the change that it lacks.
 #[derive(Debug, Clone, Copy)]
 pub struct Lack {
     pub variable: usize,
@@ -39,7 +39,7 @@ impl Dictionary {
         self.width = other.width;
     }
 
-    /// Counts a velocity from where it is strictly positive or negative.
+    /// Measures a velocity from [`STRICT`] in the direction `sign`, so that a strict sign keeps it away from zero.
     pub fn keep_from_zero(&mut self, variable: usize, sign: Ordering) {
         let from = f64::from(sign as i8) * STRICT;
         let width = self.width;
@@ -52,7 +52,8 @@ impl Dictionary {
         }
     }
 
-    /// Brings all variables into their ranges, or finds one that cannot get there.
+    /// Pivots until all variables are in their ranges. Returns a variable that cannot reach its range; `None` if there
+    /// is none, or if the search gives up.
     pub fn impossible(&mut self) -> Option<Lack> {
         let width = self.width;
         for _ in 0..PIVOTS * self.basic.len() {

@@ -1,20 +1,21 @@
-//! Whether any impulses lead to the modes of some contacts, whatever the others do: a linear relaxation.
+//! A linear relaxation: whether any impulses lead to given modes of the first contacts, whatever the other contacts do.
 //!
 //! ```text
-//!     undecided contact   xi_n >= 0                       L in the cone of all modes
+//!     undecided contact   xi_n >= 0                       L in the cone that holds those of all modes
 //!     decided contact     the signs of its velocity       L zero, on its ray or in that cone
 //! ```
 //!
 //! Velocities are affine in the multipliers of the rays. The dual simplex method pivots in f64 until every variable is
-//! in its range, or until one cannot get there (Chvatal, *Linear Programming*, 1983, chapters 3 and 10). Its row then
-//! claims that nothing leads there: with the multipliers y of the velocities and sigma of the rays (Farkas)
+//! in its range, or until one cannot get there (Chvatal, *Linear Programming*, 1983, chapters 3 and 10). The row of
+//! that variable then claims that no impulses lead to these modes: with multipliers y of the velocities and sigma of
+//! the rays (Farkas)
 //!
 //! ```text
-//!     y . xi + sigma . lambda = y . xi_free < 0,   sigma = -y G rays,   though no term may be negative
+//!     y . xi + sigma . lambda = y . xi_free < 0,   sigma = -y G rays,   although no term on the left is negative
 //! ```
 //!
-//! Nothing that f64 has done is trusted: a [`Claim`] is shown to hold by an error bound ([`Relaxation::shows`]), or in
-//! numbers that know their signs ([`Claim::shown`]).
+//! No f64 result is trusted: a [`Claim`] is shown by an error bound ([`Relaxation::shows`]), or in numbers that know
+//! their signs ([`Claim::shown`]).
 
 mod ranges;
 mod dictionary;
@@ -36,35 +37,36 @@ use nalgebra::{DMatrix, DVector};
 use ranges::{Range, Ranges, Ray};
 use std::cmp::Ordering;
 
-/// So many nogoods are kept.
+/// The number of nogoods that are kept.
 const NOGOODS: usize = 256;
-/// What is added to the diagonal of a G that may be singular.
+/// The addition to the diagonal of a G that may be singular.
 const DAMPING: f64 = 1e-9;
 
-/// The relaxation of one problem in f64, free of units; memory that is reused.
+/// The relaxation of one problem in f64, free of units; its memory is reused.
 #[derive(Debug, Clone, Default)]
 pub struct Relaxation {
     rows: usize,
     laws: Vec<Law>,
     rays: Vec<Ray>,
-    /// Scaled velocities by the rays' multipliers, then without impulses: row by row.
+    /// The scaled velocities, row by row: their coefficients of the rays' multipliers, padding, and last their values
+    /// without impulses.
     response: Vec<f64>,
-    /// What their entries may be off by.
+    /// Errors of the entries of `response`: of the coefficients and of the values without impulses.
     errors: Pair<f64>,
-    /// Whether these errors are bounds.
+    /// Whether `errors` are bounds.
     is_known: bool,
     /// Whether f64 shows that G is regular.
     pub is_regular: bool,
-    /// A bound of the sum of all multipliers; infinite if there is none.
+    /// An upper bound of the sum of all multipliers; infinite if none is known.
     reach: f64,
-    /// By contact, its variables as bits, and their ranges with each of its modes.
+    /// For each contact, its variables as bits, and their ranges in each of its modes.
     own: Vec<(u64, Vec<(Mode, Ranges)>)>,
-    /// After the decisions on the first contacts.
+    /// The dictionary after the decisions on the first contacts, by their number.
     depths: Vec<Dictionary>,
     multipliers: [Vec<f64>; 2],
-    /// What the claims that were shown rest on: nothing leads to ranges for which none of these speaks.
+    /// The nogoods of the claims that were shown: ranges that a nogood does not allow are impossible.
     nogoods: Vec<Ranges>,
-    /// How many were found.
+    /// How many nogoods were found.
     shown: usize,
 }
 
@@ -77,8 +79,8 @@ impl Relaxation {
         self.rays.extend(Ray::all(problem.laws()));
         let mobility = &scale.mobility;
         let scaled = |i: usize, j: usize| problem.delassus(i, j) / (mobility[i] * mobility[j]);
-        // Scaled impulses along each ray; their entries' sizes add up to one. Friction may be so great that its products
-        // with mobilities are not.
+        // Scaled impulses along each ray; the magnitudes of their entries add up to one. Dividing by the greatest entry
+        // first keeps products of a huge friction with mobilities finite.
         let along = |ray: &Ray| {
             let greatest = ray.entries[0].abs().max(ray.entries[1].abs());
             let [t, n] = [0, 1].map(|row| ray.entries[row] / greatest * mobility[2 * ray.contact + row]);
@@ -134,12 +136,12 @@ impl Relaxation {
         self.response.clone_into(&mut root.entries);
         (root.width, root.ranges) = (width, ranges);
         (root.basic, root.nonbasic) = ((0..rows).collect(), (rows..rows + self.rays.len()).collect());
-        // What all modes have in common is found once.
+        // Pivots that all modes have in common are done once.
         root.impossible();
     }
 
-    /// A bound of the sum of all multipliers of impulses that a contact law may give, which do no positive work: L . xi
-    /// <= 0. With p^2 = L G L, any z and rho = xi_free - G z:
+    /// An upper bound of the sum of all multipliers. It holds for impulses within the contact laws that do no positive
+    /// work, L . xi <= 0. With p^2 = L G L, any z and rho = xi_free - G z:
     ///
     /// ```text
     ///     p^2 <= -L . xi_free <= p sqrt(z G z) + sum(lambda) |rho|
@@ -147,7 +149,7 @@ impl Relaxation {
     ///     sum(lambda) <= p sqrt(2n / least eigenvalue of G) / least normal entry of a ray
     /// ```
     ///
-    /// The first w is a motion that lifts all contacts.
+    /// w solves G w = u, where u is a velocity that lifts all contacts.
     fn bound(&mut self, matrix: &DMatrix<f64>, up: &DVector<f64>, along: &[Pair<f64>]) -> f64 {
         let rows = self.rows;
         let width = self.response.len() / rows;
@@ -164,7 +166,7 @@ impl Relaxation {
         let is_two_way = self.rays.iter().any(|ray| ray.both);
         let kappa = (0..self.rays.len()).map(lifts).fold(f64::INFINITY, f64::min) - w.lp_norm(1) * of_matrix;
         let by_lift = if kappa > 0.0 && !is_two_way { size(&w) / kappa } else { f64::INFINITY };
-        // The part of a ray that pushes may be smaller than f64 holds.
+        // The normal part of a ray may be too small for f64.
         let pushing = self.rays.iter().zip(along).filter(|(ray, _)| ray.entries[1] != 0.0);
         let least = pushing.map(|(_, entries)| entries[1]).fold(1.0, f64::min);
         self.is_regular = is_definite(matrix.clone(), of_matrix);
@@ -175,7 +177,8 @@ impl Relaxation {
         per_root * (size(&z) + per_root * rest)
     }
 
-    /// Decides the mode of a contact after all before it; what lacks if that is impossible in f64.
+    /// Decides the mode of a contact after those of all contacts before it; returns what is lacking if f64 finds that
+    /// impossible.
     pub fn decide(&mut self, contact: usize, mode: Mode) -> Option<Lack> {
         let ranges = self.ranges(contact, mode);
         let (before, after) = self.depths.split_at_mut(contact + 1);
@@ -190,21 +193,21 @@ impl Relaxation {
         dictionary.impossible()
     }
 
-    /// The ranges of all variables if a contact has this mode after all before it.
+    /// The ranges of all variables if the contact has this mode, after the decisions on all contacts before it.
     fn ranges(&self, contact: usize, mode: Mode) -> Ranges {
         let (variables, modes) = &self.own[contact];
         let own = modes.iter().find(|(other, _)| *other == mode).map_or_else(Ranges::default, |(_, own)| *own);
         self.depths[contact].ranges.replaced(*variables, own)
     }
 
-    /// Whether what was shown of other beginnings shows that a contact cannot have this mode after all before it.
+    /// Whether a nogood excludes this mode of the contact after the decisions on all contacts before it.
     pub fn excludes(&mut self, contact: usize, mode: Mode) -> bool {
         self.has_shown(self.ranges(contact, mode))
     }
 
     fn has_shown(&mut self, ranges: Ranges) -> bool {
         let found = self.nogoods.iter().position(|nogood| !nogood.allows(ranges));
-        // What says no often comes early.
+        // Moves a nogood that applies toward the front, where it is found sooner.
         found.inspect(|&index| self.nogoods.swap(index, index / 2)).is_some()
     }
 
@@ -217,7 +220,7 @@ impl Relaxation {
         }
     }
 
-    /// Learns what contacts that depend on each other cannot do: y = z and y = -z.
+    /// Learns what the kernel's relations exclude, as nogoods with y = z and y = -z.
     pub fn learn_from(&mut self, kernel: &Kernel) {
         for Relation { terms, constant } in &kernel.relations {
             for (constant, turned) in [(*constant, false), (constant.reverse(), true)] {
@@ -233,20 +236,20 @@ impl Relaxation {
         }
     }
 
-    /// Whether a claim holds in exact numbers, the strictness of inequalities included.
+    /// Whether a claim holds in exact numbers, including the strictness of inequalities.
     pub fn confirms<T: Ordered>(&mut self, claim: &Claim, problem: &ContactProblem<T>) -> Result<bool, Unsettled> {
         let holds =
             self.has_shown(claim.ranges) || T::freeing(|| claim.shown(problem))?.map(|own| self.learn(own)).is_some();
         Ok(holds)
     }
 
-    /// What the last decision, the one of the last of these contacts, claims.
+    /// The claim of the last decision, which was on the last contact in `modes`.
     pub fn claim(&self, modes: &[Mode], lack: Lack) -> Claim {
         let Dictionary { basic, ranges, .. } = &self.depths[modes.len()];
         Claim { modes: modes.to_vec(), lack, basic: basic.clone(), ranges: *ranges }
     }
 
-    /// Whether error bounds show that the last decision, on `contact`, is impossible.
+    /// Whether error bounds show that the last decision, which was on `contact`, is impossible.
     pub fn shows(&mut self, contact: usize, Lack { variable, sign }: Lack) -> bool {
         let Dictionary { entries, width, basic, nonbasic, ranges } = &self.depths[contact + 1];
         let width = *width;
@@ -262,7 +265,7 @@ impl Relaxation {
         }
         let mut nogood = Ranges::default();
         let mut size = 0.0;
-        // y . (response of the rays, xi_free); what it says of the rays is computed from the velocities' alone.
+        // y . (response of the rays, xi_free). The rays' part is computed from the multipliers of the velocities alone.
         sums.clear();
         sums.resize(width, 0.0);
         for (row, (response, &factor)) in self.response.chunks_exact(width).zip(&*y).enumerate() {
@@ -275,7 +278,7 @@ impl Relaxation {
         if sums.iter().any(|sum| !sum.is_finite()) {
             return false;
         }
-        // By how much what a range admits may be positive.
+        // The largest rate at which a ray's term can rise with its multiplier, within the multiplier's range.
         let wrong = |sum: f64, range: Range| {
             let above = if range.above_zero { sum } else { f64::NEG_INFINITY };
             above.max(if range.below_zero { -sum } else { f64::NEG_INFINITY })
@@ -302,7 +305,8 @@ mod tests {
     use crate::law::Friction;
     use crate::scalar::{Ball, Certified, Real};
 
-    /// One body of mass 1 on two points, one above the other's line: both strike.
+    /// One body of mass 1 on two points of the same height, to the left and right of its center; both strike the
+    /// ground.
     fn struck(friction: Friction) -> ContactProblem {
         let rows = [[1.0, 0.0, 0.5], [0.0, 1.0, -1.0], [1.0, 0.0, 0.5], [0.0, 1.0, 1.0]];
         let dot = |a: &[f64; 3], b: &[f64; 3]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
@@ -310,7 +314,8 @@ mod tests {
         ContactProblem::new(delassus, vec![[0.5, -1.0]; 2], vec![friction; 2], vec![0.0; 2]).unwrap()
     }
 
-    /// Whether f64 finds these beginnings impossible, whether it shows so, and whether exact numbers do.
+    /// `None` if f64 does not find these modes impossible; otherwise whether an error bound shows that they are, and
+    /// whether exact numbers do.
     fn found(problem: &ContactProblem, modes: &[Mode]) -> Option<(bool, bool)> {
         let (mut relaxation, mut scale) = (Relaxation::default(), Scale::default());
         scale.measure(problem, Errors::NONE);
@@ -327,13 +332,14 @@ mod tests {
     fn what_is_impossible_is_shown() {
         use Mode::{Separate, SlideMinus, SlidePlus, Stick};
         for (friction, modes, expected) in [
-            // The body falls flat: one point alone turns the other into the ground.
+            // The body falls flat: an impulse at one point alone turns the other into the ground.
             (0.3, vec![Separate, Separate], Some((true, true))),
             (0.3, vec![Separate, Stick], Some((true, true))),
             (0.3, vec![SlideMinus], Some((true, true))),
             (0.3, vec![SlidePlus, SlidePlus], None),
             (0.8, vec![Stick, Stick], None),
-            // Both points move along the ground alike, so that only strictness speaks against these: no bound shows it.
+            // Both points have the same tangential velocity, so only strictness excludes these: no error bound can show
+            // it.
             (0.8, vec![Stick, SlidePlus], Some((false, true))),
             (0.8, vec![SlidePlus, Stick], Some((false, true))),
         ] {
@@ -362,7 +368,7 @@ mod tests {
 
     #[test]
     fn a_false_claim_is_seen_through() {
-        // A claim about another problem, in which the first point may well leave.
+        // A claim about one problem is checked in another one, in which the first point may well slide backward.
         let problem = struck(Friction::Finite(0.3));
         let (mut relaxation, mut scale) = (Relaxation::default(), Scale::default());
         scale.measure(&problem, Errors::NONE);

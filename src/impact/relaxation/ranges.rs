@@ -4,7 +4,7 @@ use crate::law::{Impulse, Law, Mode};
 use crate::planar::Pair;
 use std::cmp::Ordering;
 
-/// The values that a variable may take.
+/// The signs that the value of a variable may have, besides zero.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Range {
     pub above_zero: bool,
@@ -25,7 +25,7 @@ impl Range {
         }
     }
 
-    /// Whether a multiple of the variable, by a factor of this sign, is nowhere negative.
+    /// Whether the variable times a factor of this sign can never be negative.
     pub fn admits(self, factor: Ordering) -> bool {
         match factor {
             Ordering::Greater => !self.below_zero,
@@ -35,12 +35,12 @@ impl Range {
     }
 }
 
-/// The ranges of all variables, a bit each: two velocities and at most two rays of each of up to 16 contacts.
+/// The ranges of all variables as bits: up to 16 contacts with two velocities and at most two rays each.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Ranges {
     pub above_zero: u64,
     pub below_zero: u64,
-    /// Velocities that are not zero.
+    /// The velocities that must not be zero.
     pub moves: u64,
 }
 
@@ -56,7 +56,7 @@ impl Ranges {
         self.below_zero = put(self.below_zero, range.below_zero);
     }
 
-    /// These, but for some variables.
+    /// These ranges with those of some `variables`, given as bits, replaced.
     pub fn replaced(self, variables: u64, by: Self) -> Self {
         Self {
             above_zero: self.above_zero & !variables | by.above_zero,
@@ -65,7 +65,9 @@ impl Ranges {
         }
     }
 
-    /// Whether what these name speaks for other ranges: a variable that may take its sign, or that none of `moves` does.
+    /// Whether this nogood allows the ranges `other`. It does if some variable may take the sign that makes its term of
+    /// the contradiction negative. It also does if the contradiction needs one of the velocities `moves` to be nonzero
+    /// and `other` requires none of them to be.
     pub fn allows(self, other: Self) -> bool {
         let admitted = self.above_zero & other.above_zero | self.below_zero & other.below_zero;
         admitted != 0 || self.moves != 0 && self.moves & other.moves == 0
@@ -77,7 +79,7 @@ impl Ranges {
 pub struct Ray {
     pub contact: usize,
     pub entries: Pair<f64>,
-    /// Whether its opposite is in the cone, too.
+    /// Whether the opposite ray is in the cone, too.
     pub both: bool,
 }
 
@@ -88,7 +90,7 @@ impl Ray {
         })
     }
 
-    /// The range of its multiplier if its contact has this mode, or any.
+    /// The range of the ray's multiplier in a mode of its contact, or in any mode.
     pub fn range(&self, law: &Law, mode: Option<Mode>) -> Range {
         let own = if self.both { Range::FREE } else { Range::ABOVE };
         match mode.map(|mode| law.impulse(mode)) {
