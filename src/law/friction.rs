@@ -1,9 +1,9 @@
-//! How much friction a contact has.
+//! Coulomb friction of a contact: a finite coefficient or infinite.
 
 use std::fmt;
 use std::str::FromStr;
 
-/// Coulomb friction of a contact.
+/// The Coulomb friction of a contact.
 ///
 /// ```
 /// use heelstrike::Friction;
@@ -13,14 +13,14 @@ use std::str::FromStr;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Friction<T = f64> {
-    /// The coefficient mu, from 0 on.
+    /// The coefficient mu, at least 0.
     Finite(T),
-    /// No bound on the tangential impulse; a case of its own, not a big number (paper, section 2).
+    /// No bound on the tangential impulse. This is a case of its own, not a large mu (paper, section 2).
     Infinite,
 }
 
 impl Friction {
-    /// No friction at all.
+    /// No friction: mu = 0.
     pub const ZERO: Friction = Friction::Finite(0.0);
 
     /// Whether mu = 0.
@@ -28,7 +28,7 @@ impl Friction {
         self == Friction::ZERO
     }
 
-    /// The same friction with its coefficient in another number.
+    /// Converts the coefficient to another number type.
     pub(crate) fn map<T>(self, number: impl FnOnce(f64) -> T) -> Friction<T> {
         match self {
             Self::Finite(mu) => Friction::Finite(number(mu)),
@@ -38,7 +38,7 @@ impl Friction {
 }
 
 impl From<f64> for Friction {
-    /// The coefficient mu; of infinity [`Friction::Infinite`].
+    /// Takes mu; [`f64::INFINITY`] becomes [`Friction::Infinite`].
     fn from(mu: f64) -> Self {
         if mu == f64::INFINITY { Self::Infinite } else { Self::Finite(mu) }
     }
@@ -47,7 +47,7 @@ impl From<f64> for Friction {
 impl FromStr for Friction {
     type Err = String;
 
-    /// Reads a number from 0 on, or `infinite`.
+    /// Parses a number of at least 0, or `infinite`.
     fn from_str(text: &str) -> Result<Self, String> {
         match text.parse::<f64>() {
             _ if text == "infinite" => Ok(Self::Infinite),
@@ -60,7 +60,7 @@ impl FromStr for Friction {
 impl fmt::Display for Friction {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            // Far from one its zeros would be all that is seen.
+            // Without an exponent, a very small or very large mu would be mostly zeros.
             Friction::Finite(mu) if mu != 0.0 && !(1e-5..1e16).contains(&mu) => f.pad(&format!("{mu:e}")),
             Friction::Finite(mu) => mu.fmt(f),
             Friction::Infinite => f.pad("infinite"),

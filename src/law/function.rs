@@ -1,4 +1,4 @@
-//! An inequality as a linear function of the two numbers that an elimination leaves of a contact.
+//! Inequalities as linear functions of the two numbers of a contact that an elimination yields.
 //!
 //! ```text
 //!     [first, second] = [c_t, xi_n] if L = 0,   [c_t, lambda] if L lies along a ray,   [L_t, L_n] if L is free
@@ -7,24 +7,25 @@
 use super::inequality::Inequality;
 use crate::scalar::Real;
 
-/// A linear function of a contact's two numbers.
+/// A linear function of a contact's two numbers; `T` is the number type of its coefficient.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Function<T = f64> {
     /// The first number.
     First,
-    /// The first number times -1.
+    /// Minus the first number.
     MinusFirst,
     /// The second number.
     Second,
-    /// mu second - first: the distance from the edge of the friction cone on the side of +t.
+    /// mu second - first: the slack of the friction cone on the side of +t.
     ConeMinus(T),
-    /// mu second + first: that on the side of -t.
+    /// mu second + first: the slack of the friction cone on the side of -t.
     ConePlus(T),
 }
 
 impl<T: Real> Function<T> {
-    /// The value at the contact's numbers, first (0) and second (1), which are `scaled` by the law's coefficients.
+    /// Evaluates the function. `number` gives the contact's first (0) or second (1) number, and `scaled` multiplies a
+    /// number by a coefficient of the law.
     #[inline]
     pub fn at<N: Real>(self, number: impl Fn(usize) -> N, scaled: impl Fn(T, N) -> N) -> N {
         match self {
@@ -38,9 +39,9 @@ impl<T: Real> Function<T> {
 }
 
 impl Function {
-    /// What the value of an `inequality` is multiplied by to be free of units, once divided by S; `mobility` is
-    /// sqrt(G_ii) of the contact's rows \[1/sqrt(kg)\]. A velocity counts c_i / sqrt(G_ii), an impulse L_i sqrt(G_ii), a
-    /// cone (mu L_n - |L_t|) / sqrt(mu^2 / G_nn + 1 / G_tt).
+    /// The factor that makes the value of an `inequality` free of units once it is divided by S; `mobility` is
+    /// sqrt(G_ii) of the contact's rows \[1/sqrt(kg)\]. A velocity is scaled as c_i / sqrt(G_ii), an impulse as L_i
+    /// sqrt(G_ii), a cone as (mu L_n - |L_t|) / sqrt(mu^2 / G_nn + 1 / G_tt).
     #[inline]
     pub fn scale(self, inequality: Inequality, mobility: [f64; 2]) -> f64 {
         let own = mobility[inequality.row()];

@@ -1,4 +1,4 @@
-//! Which inequality of a contact holds, is zero or is violated: one list for reasons, borders and transitions.
+//! The inequalities of a contact: one list for the reasons of rejections, for borders and for transitions.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -36,11 +36,11 @@ pub enum Inequality {
 }
 
 impl Inequality {
-    /// Those of impulses and forces.
+    /// The inequalities of impulses and forces that an outcome's border can have.
     pub const OF_IMPULSES: [Self; 5] =
         [Self::NormalImpulse, Self::TangentialImpulse, Self::FrictionCone, Self::NormalForce, Self::TangentialForce];
 
-    /// The same in sustained contact.
+    /// The corresponding inequality of sustained contact.
     pub fn of_forces(self) -> Self {
         match self {
             Self::NormalVelocity => Self::NormalAcceleration,
@@ -51,17 +51,18 @@ impl Inequality {
         }
     }
 
-    /// Whether it is about a velocity. It is strict then: a velocity of zero belongs to another mode.
+    /// Whether the inequality is one of a velocity or acceleration. These are strict: a value of zero belongs to
+    /// another mode.
     pub fn is_strict(self) -> bool {
         matches!(self.of_forces(), Self::NormalAcceleration | Self::TangentialAcceleration)
     }
 
-    /// The row that it is scaled by: 0 tangential, 1 normal.
+    /// The row whose mobility scales the inequality: 0 tangential, 1 normal.
     pub(super) fn row(self) -> usize {
         usize::from(!matches!(self.of_forces(), Self::TangentialAcceleration | Self::TangentialForce))
     }
 
-    /// What its violation means, as a clause about the contact of this name.
+    /// The meaning of its violation, as a clause about the contact named `name`.
     pub fn violated_by(self, name: &str) -> String {
         match self {
             Self::NormalVelocity => format!("{name} moves into the ground"),
@@ -75,7 +76,7 @@ impl Inequality {
         }
     }
 
-    /// What happens on its border, as a clause about the contact of this name.
+    /// What happens on its border, as a clause about the contact named `name`.
     pub fn reached_by(self, name: &str) -> String {
         let zero = |what: &str| format!("the {what} of {name} reaches zero");
         match self {
@@ -92,7 +93,7 @@ impl Inequality {
         }
     }
 
-    /// What its violation means, of no contact in particular.
+    /// The meaning of its violation, without naming a contact.
     pub fn violation(self) -> &'static str {
         match self {
             Self::NormalVelocity => "a contact would move into the ground",
@@ -108,7 +109,7 @@ impl Inequality {
 }
 
 impl fmt::Display for Inequality {
-    /// As the equation that holds on its border.
+    /// Writes the equation that holds on its border.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(match self {
             Self::NormalVelocity => "c_n+ = 0",

@@ -1,19 +1,20 @@
-//! The contact law: what each mode demands of one contact's impulse and velocity.
+//! The contact law: the conditions of each mode on the impulse and velocity of a contact.
 //!
 //! ```text
-//!     velocity   separate  xi_n > 0    stick  c_t = xi_n = 0      slide+-  xi_n = 0,  +-c_t > 0   the same for every law
+//!     velocity   separate  xi_n > 0    stick  c_t = xi_n = 0      slide+-  xi_n = 0,  +-c_t > 0   for every law
 //!     impulse    separate  L = 0       stick  L free in its cone  slide+-  L = lambda (-+mu, 1), lambda >= 0
 //! ```
 //!
-//! The velocities are those of [`Mode`], with Newton's restitution in Moreau's form: xi_n = c_n+ + e min(c_n-, 0). The
-//! impulses are each law's own, and all of a law is in [`Law`]: code that enumerates, bounds or reads combinations asks
-//! it, and matches on no mode and no friction itself.
+//! The conditions on velocities are those of [`Mode`], with Newton's restitution in Moreau's form: xi_n = c_n+ + e
+//! min(c_n-, 0). The conditions on impulses depend on the law. All of a law is in [`Law`]: code that enumerates, bounds
+//! or reads combinations asks it and does not match on modes or friction itself.
 //!
-//! In sustained contact the same holds with forces for impulses and accelerations for velocities, for contacts at rest.
-//! One that slides already has a direction, and its friction with it:
+//! In sustained contact, the same conditions hold for contacts at rest, with forces in place of impulses and
+//! accelerations in place of velocities. A contact that already slides has a given direction, which also determines the
+//! direction of its friction:
 //!
 //! ```text
-//!     separate  a_n > 0,  f = 0        slide+-  a_n = 0,  f = lambda (-+mu, 1), lambda >= 0,  whatever a_t is
+//!     separate  a_n > 0,  f = 0        slide+-  a_n = 0,  f = lambda (-+mu, 1), lambda >= 0,  a_t any
 //! ```
 
 mod inequality;
@@ -29,33 +30,34 @@ pub use mode::Mode;
 use crate::scalar::Real;
 use std::cmp::Ordering;
 
-/// The impulses that a mode admits before its inequalities are asked; as many unknowns as equations of its velocity.
+/// The impulses that a mode admits, before its inequalities. They have as many unknowns as the mode has velocity
+/// equations, except where [`Law::is_unheld`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Impulse<T = f64> {
     /// L = 0.
     Zero,
-    /// L = lambda times these entries, [tangential, normal].
+    /// L = lambda times these entries [tangential, normal].
     Along([T; 2]),
     /// Both entries are unknowns.
     Free,
 }
 
-/// The law of a contact; `T` is the number of its coefficients.
+/// The law of a contact; `T` is the number type of its coefficients.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Law<T = f64> {
-    /// No friction: the impulse is normal, and a closed contact sticks or slides as the others let it.
+    /// No friction: the impulse is normal. Whether a closed contact sticks or slides depends on the other contacts.
     Frictionless,
-    /// |L_t| <= mu L_n, and a sliding contact is resisted by all of it.
+    /// Coulomb's law with coefficient mu: |L_t| <= mu L_n, with equality for a sliding contact, against its motion.
     Coulomb(T),
-    /// No bound on L_t: a sticking contact is held whatever it takes, and one that slides has no normal impulse.
+    /// Infinite friction: L_t has no bound. A sliding contact has no normal impulse.
     Unbounded,
-    /// It slides already as this mode says, before any force acts: it slides on or separates.
+    /// In sustained contact, a contact that already slides as this mode says: it keeps sliding or separates.
     Sliding(Friction<T>, Mode),
 }
 
 impl<T: Real> Law<T> {
-    /// The friction as it is given and written.
+    /// The friction of the law, as given in states and written in results.
     pub fn friction(&self) -> Friction<T> {
         match *self {
             Self::Frictionless => Friction::Finite(T::zero()),
@@ -65,8 +67,8 @@ impl<T: Real> Law<T> {
         }
     }
 
-    /// The modes that the contact may take, in the order in which they are tried. Those of one group have the same
-    /// impulses, so that one elimination serves them all; its first mode stands for the group.
+    /// The modes that the contact may take, in groups and in the order in which they are tried. Modes of one group have
+    /// the same impulses, so that one elimination serves them all; the first mode represents the group.
     pub fn modes(&self) -> &'static [&'static [Mode]] {
         match self {
             Self::Frictionless => &[&[Mode::Separate], &[Mode::Stick, Mode::SlidePlus, Mode::SlideMinus]],
@@ -78,14 +80,15 @@ impl<T: Real> Law<T> {
         }
     }
 
-    /// The signs of the velocity after a mode, as [`Mode::velocity`] has them, or of the acceleration of a contact that
-    /// slides already.
+    /// The signs that a mode requires of [c_t, xi_n] after the impact, as [`Mode::velocity`]; for a contact that
+    /// already slides, of its acceleration. `None` for an entry of any sign.
     pub fn velocity(&self, mode: Mode) -> [Option<Ordering>; 2] {
         let [tangential, normal] = mode.velocity();
         [if matches!(self, Self::Sliding(..)) { None } else { tangential }, normal]
     }
 
-    /// Whether L . xi <= 0 in every mode. Friction on a contact that slides already does not ask for its acceleration.
+    /// Whether L . xi <= 0 holds in every mode. It need not for a contact that already slides, whose friction does not
+    /// depend on its acceleration.
     pub fn is_dissipative(&self) -> bool {
         !matches!(self, Self::Sliding(..))
     }
@@ -95,19 +98,19 @@ impl<T: Real> Law<T> {
         if let Self::Sliding(_, mode) = self { *mode } else { Mode::closed(velocity) }
     }
 
-    /// The mode that stands for those with the same impulses.
+    /// The first mode with the same impulses as `mode`, which represents its group.
     pub fn representative(&self, mode: Mode) -> Mode {
         self.modes().iter().find(|group| group.contains(&mode)).map_or(mode, |group| group[0])
     }
 
-    /// Which impulses a contact of this mode can have.
+    /// The impulses that a contact in this mode can have.
     #[inline]
     pub fn impulse(&self, mode: Mode) -> Impulse<T> {
         match (*self, mode) {
             (_, Mode::Separate) => Impulse::Zero,
-            // Minus zero: times the lambda of a contact that is pulled it is a plain zero.
+            // Minus zero, so that the product with a negative lambda is plus zero.
             (Self::Frictionless, _) => Impulse::Along([T::from_f64(-0.0), T::one()]),
-            // However it is closed, its friction has its direction.
+            // In every closed mode the friction acts against the given direction.
             (Self::Sliding(friction, mode), _) => match friction {
                 Friction::Finite(mu) => Impulse::Along([T::from_f64(-mode.direction()) * mu, T::one()]),
                 Friction::Infinite => Impulse::Along([T::from_f64(-mode.direction()), T::zero()]),
@@ -118,7 +121,8 @@ impl<T: Real> Law<T> {
         }
     }
 
-    /// The rays of the convex cone that holds the impulses of all modes, and of each whether its opposite does so, too.
+    /// The rays that span the convex cone of the impulses of all modes. The flag of a ray says whether its opposite is
+    /// in the cone, too.
     pub fn rays(&self) -> Vec<([T; 2], bool)> {
         let (zero, one) = (T::zero(), T::one());
         match *self {
@@ -132,7 +136,7 @@ impl<T: Real> Law<T> {
         }
     }
 
-    /// Calls `visit` with every inequality of a mode, that of its velocity last.
+    /// Calls `visit` with every inequality of a mode; that of its velocity comes last.
     #[inline]
     pub fn conditions(&self, mode: Mode, mut visit: impl FnMut(Inequality, Function<T>)) {
         let pushed = match (self, mode) {
@@ -163,14 +167,14 @@ impl<T: Real> Law<T> {
         }
     }
 
-    /// Whether c_t = 0 of a mode has no impulse to hold it: an equation more than unknowns.
+    /// Whether the mode demands c_t = 0 although no impulse can enforce it: one more equation than unknowns.
     #[inline]
     pub fn is_unheld(&self, mode: Mode) -> bool {
         mode == Mode::Stick && matches!(self, Self::Frictionless | Self::Sliding(..))
     }
 
-    /// The modes that share velocity and impulse with a closed `mode` whose `inequality` is zero; `tangential` is the
-    /// sign of L_t. Without friction the direction of a slide changes without a border.
+    /// The modes that have the same velocity and impulse as a closed `mode` whose `inequality` is zero; `tangential` is
+    /// the sign of L_t. Frictionless slides are not included, since their direction changes without a border.
     pub fn beyond(&self, mode: Mode, inequality: Inequality, tangential: Ordering) -> Vec<Mode> {
         let at_edge = match self {
             Self::Frictionless | Self::Sliding(..) => return vec![Mode::Separate],
@@ -178,7 +182,7 @@ impl<T: Real> Law<T> {
             Self::Unbounded => tangential.is_ne(),
         };
         match mode {
-            // Friction acts against the slide.
+            // Friction opposes the slide.
             Mode::Stick if at_edge => vec![Mode::closed(tangential.reverse())],
             Mode::Stick => vec![Mode::Separate, Mode::SlidePlus, Mode::SlideMinus],
             _ => vec![Mode::Separate],

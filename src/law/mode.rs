@@ -1,4 +1,4 @@
-//! How a contact ends, and which velocity that is.
+//! The modes in which a contact can end, and the velocity conditions of each.
 
 use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
@@ -31,13 +31,13 @@ impl Mode {
     /// All modes, in the order in which combinations are tried.
     pub const ALL: [Mode; 4] = [Mode::Separate, Mode::Stick, Mode::SlidePlus, Mode::SlideMinus];
 
-    /// As it is written in results.
+    /// The name in results, such as `slide+`.
     pub fn name(self) -> &'static str {
         static NAMES: LazyLock<[String; 4]> = LazyLock::new(|| Mode::ALL.map(|mode| mode.to_string()));
         &NAMES[self as usize]
     }
 
-    /// The signs of the velocity after, [c_t, xi_n]; `None` of an entry that the mode leaves open.
+    /// The signs that the mode requires of [c_t, xi_n] after the impact; `None` for an entry of any sign.
     pub fn velocity(self) -> [Option<Ordering>; 2] {
         match self {
             Mode::Separate => [None, Some(Ordering::Greater)],
@@ -47,7 +47,7 @@ impl Mode {
         }
     }
 
-    /// The mode with the tangent reversed.
+    /// The mode seen with the tangent reversed.
     pub fn mirrored(self) -> Self {
         match self {
             Mode::SlidePlus => Mode::SlideMinus,
