@@ -1,29 +1,29 @@
-//! Enclosures that remember which uncertain data they depend on.
+//! Affine forms: enclosures that keep track of the uncertain data that they depend on.
 
 use super::ball::LIBM_ERROR;
 use super::double::two_sum;
 use super::{Ordered, Real, Sign, Trigonometry};
 
-/// A number as `center + sum_i slopes[i] e_i +- error`, where each e_i is somewhere in -1..1.
+/// A number of the form `center + sum_i slopes[i] e_i +- error`, where each cause e_i is an unknown number in -1..1.
 ///
-/// Numbers share their e_i, so that effects of a common cause cancel, which they do not between [`Ball`](super::Ball)s:
-/// an enclosure over intervals of half-width r is too wide by O(r^2) only (affine arithmetic: de Figueiredo and Stolfi,
-/// Numerical Algorithms 2004). Every operation encloses its exact result; all that is not linear, and all rounding,
-/// goes into `error`. As with the ball, exact zeros stay exact, and a quotient by what may be zero is unknown.
+/// Numbers share their causes, so that effects of a common cause cancel. Between [`Ball`](super::Ball)s they do not. An
+/// enclosure over intervals of half-width r is too wide only by O(r^2) (affine arithmetic: de Figueiredo and Stolfi,
+/// Numerical Algorithms 2004). Every operation encloses its exact result; nonlinear terms and rounding go into `error`.
+/// As with a ball, exact zeros stay exact, and a quotient by a number that may be zero is unknown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Affine<const N: usize> {
     center: f64,
     slopes: [f64; N],
-    /// Never negative; infinite if nothing is known.
+    /// The remaining error: never negative, infinite if nothing is known.
     error: f64,
 }
 
 const ROUNDING: f64 = f64::EPSILON / 2.0;
 
 impl<const N: usize> Affine<N> {
-    /// Covers the rounding in sums of N terms and in the formulas of the errors.
+    /// A factor that covers the rounding in sums of N terms and in the formulas of the errors.
     const BLOW_UP: f64 = 1.0 + (4 * N + 16) as f64 * f64::EPSILON;
-    /// Covers what N products lose by underflow.
+    /// A bound of what N products lose by underflow.
     const TINY: f64 = (N + 4) as f64 * f64::MIN_POSITIVE;
 
     fn unknown() -> Self {
@@ -35,8 +35,8 @@ impl<const N: usize> Affine<N> {
         if center.is_finite() && error.is_finite() { Self { center, slopes, error } } else { Self::unknown() }
     }
 
-    /// Any number at most `radius` from `center`. Its place there is the cause number `symbol`; from number N on a
-    /// cause is not followed, and its effects do not cancel.
+    /// A number at most `radius` from `center`, whose offset is the cause number `symbol`. Causes from number N on are
+    /// not tracked: their effects go into the error and do not cancel.
     pub fn varying(center: f64, radius: f64, symbol: usize) -> Self {
         let mut slopes = [0.0; N];
         let own = match slopes.get_mut(symbol) {
@@ -49,7 +49,7 @@ impl<const N: usize> Affine<N> {
         if center.is_finite() && radius.is_finite() { Self { center, slopes, error: own } } else { Self::unknown() }
     }
 
-    /// Cosine and sine of this angle \[rad\], narrow for angles near zero.
+    /// The cosine and sine of this angle \[rad\]; the enclosures are narrow for angles near zero.
     pub fn cos_sin_near_zero(self) -> [Self; 2] {
         // cos d is within r^2 / 4 of 1 - r^2 / 4, sin d within r^3 / 6 of d, for every |d| <= r.
         let radius = self.center.abs() + self.error();
@@ -61,12 +61,12 @@ impl<const N: usize> Affine<N> {
         [cos, sin]
     }
 
-    /// How it moves with each cause, to first order.
+    /// The change of the number with each cause, to first order.
     pub fn slopes(&self) -> &[f64; N] {
         &self.slopes
     }
 
-    /// The part of its radius that belongs to no cause.
+    /// The part of the error that belongs to no tracked cause.
     pub fn rest(&self) -> f64 {
         self.error
     }
@@ -155,7 +155,7 @@ impl<const N: usize> Affine<N> {
         let (a, b) = (self.center, other.center);
         let slopes = std::array::from_fn(|i| a * other.slopes[i] + b * self.slopes[i]);
         let (reach, other_reach) = (self.reach(), other.reach());
-        // Squares of causes are 1/2 +- 1/2; all other products of two are +- 1.
+        // The square of a cause lies in 1/2 +- 1/2; any other product of two causes lies in 0 +- 1.
         let (mut shift, mut squares) = (0.0, 0.0);
         for (one, other) in self.slopes.iter().zip(&other.slopes) {
             let square = one * other / 2.0;
@@ -163,7 +163,7 @@ impl<const N: usize> Affine<N> {
             squares += square.abs();
         }
         let (product, center) = (a * b, a * b + shift);
-        // Two products and their sum are rounded in each slope.
+        // Each slope has the rounding of two products and their sum.
         let rounding = ROUNDING * (product.abs() + center.abs() + 2.0 * (a.abs() * other_reach + b.abs() * reach))
             + 4.0 * Self::TINY;
         let spread = (a.abs() + reach + self.error) * other.error + (b.abs() + other_reach) * self.error;
@@ -174,7 +174,7 @@ impl<const N: usize> Affine<N> {
     fn over(self, other: Self) -> Self {
         let divisor = other.center;
         let spread = (other.reach() + other.error) * Self::BLOW_UP;
-        // The least magnitude in the divisor.
+        // The least magnitude of a divisor in the enclosure.
         let least = (divisor.abs() - spread) * (1.0 - 2.0 * f64::EPSILON);
         if least <= 0.0 || least.is_nan() {
             return Self::unknown();
@@ -182,7 +182,7 @@ impl<const N: usize> Affine<N> {
         if self.is_exact_zero() {
             return self;
         }
-        // x / y = q + w / y with w = x - q y, little of it at the center; w / y = w / c - (w / c) (y - c) / y.
+        // x / y = q + w / y with w = x - q y, which is small at the center; w / y = w / c - (w / c) (y - c) / y.
         let quotient = self.center / divisor;
         let rest: [f64; N] = std::array::from_fn(|i| self.slopes[i] - quotient * other.slopes[i]);
         let reach: f64 = rest.iter().map(|slope| slope.abs()).sum();
@@ -211,7 +211,7 @@ mod tests {
 
     type Number = Affine<3>;
 
-    /// Whether the number, its causes at `at`, may be `value`.
+    /// Whether the number can be `value` if its causes are `at`.
     fn encloses(number: Number, at: [f64; 3], value: &RBig) -> bool {
         if number.error.is_infinite() {
             return true;
@@ -269,7 +269,7 @@ mod tests {
         let x = Number::varying(1.0, 1e-3, 0);
         assert_eq!((x - x).error(), 0.0);
         assert!((x / x - Number::one()).error() < 1e-14);
-        // x^2 - 1 moves by 2e-3 and bends by 1e-6.
+        // x^2 - 1 has a slope of 2e-3 and a nonlinear part of 1e-6.
         let bent = x * x - Number::one();
         assert_eq!((bent.slopes[0], bent.sign()), (2e-3, Sign::Undecided));
         assert!(bent.error < 1.1e-6);

@@ -1,19 +1,19 @@
-//! Numbers with an error bound.
+//! Balls: numbers with an error bound.
 
 use super::double::{DoubleDouble, two_sum};
 use super::{Enclosure, Midpoint, Ordered, Real, Sign, Trigonometry, series};
 
 /// A real number known to lie within `radius` of `mid`.
 ///
-/// Every operation encloses its exact result: the radius takes the operands' radii and the rounding of the midpoint.
-/// Radii are rounded to nearest and then enlarged by a relative 2^-50, which covers the few roundings of each formula
-/// (Rump, Acta Numerica 2010, section 9); an operation that is exact because an operand is an exact zero adds nothing,
-/// so that structural zeros stay zeros. A quotient by a ball that contains zero has an infinite radius.
+/// Every operation encloses its exact result: the new radius covers the operands' radii and the rounding of the
+/// midpoint. Radii are rounded to nearest and then enlarged by a relative 2^-50, which covers the few roundings of each
+/// formula (Rump, Acta Numerica 2010, section 9). An operation that is exact because an operand is an exact zero adds
+/// no error, so that structural zeros stay exact. A quotient by a ball that contains zero has an infinite radius.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Ball<M = f64> {
-    /// Its center.
+    /// The center.
     pub mid: M,
-    /// The greatest distance of the number from the center; never negative, infinite if nothing is known.
+    /// The greatest distance of the number from the center: never negative, infinite if nothing is known.
     pub radius: f64,
 }
 
@@ -31,14 +31,14 @@ impl Midpoint for f64 {
     }
 }
 
-/// Covers the roundings in the computation of a radius itself.
+/// A factor that covers the roundings in the computation of a radius itself.
 const BLOW_UP: f64 = 1.0 + 4.0 * f64::EPSILON;
 
-/// The error that the proofs assume of `libm::sincos`, relative to its result: two units in the last place. Its
-/// authors (FreeBSD's msun) claim less than one, and the tests look for more at 100,000 angles.
+/// The error of `libm::sincos` that the proofs assume, relative to its result: two units in the last place. The authors
+/// of the algorithm (FreeBSD's msun) claim less than one, and the tests check half of it at 100,000 angles.
 pub(super) const LIBM_ERROR: f64 = 2.0 * f64::EPSILON;
 
-/// Bits of the series on double-doubles, about one rounding.
+/// Bits of the series on double-doubles: about one rounding.
 const DOUBLE_DOUBLE_BITS: u32 = 106;
 
 impl<M: Midpoint> Ball<M> {
@@ -46,13 +46,13 @@ impl<M: Midpoint> Ball<M> {
         Self { mid: M::zero(), radius: f64::INFINITY }
     }
 
-    /// A ball around `mid`; with a center or a radius that is not finite nothing is known.
+    /// A ball around `mid`; unknown if the center or the radius is not finite.
     fn around(mid: M, radius: f64) -> Self {
         let known = mid.parts().iter().all(|part| part.is_finite()) && radius.is_finite();
         if known { Self { mid, radius: radius * BLOW_UP } } else { Self::unknown() }
     }
 
-    /// How far the number may be from [`Ordered::to_f64`].
+    /// A bound of the distance between the number and [`Ordered::to_f64`].
     pub fn error_of_nearest(self) -> f64 {
         (self.mid.parts()[1].abs() + self.radius) * BLOW_UP
     }
@@ -102,7 +102,7 @@ impl Trigonometry for Ball<DoubleDouble> {
     fn cos_sin(angle: f64) -> [Self; 2] {
         let halvings = series::halvings(angle, DOUBLE_DOUBLE_BITS);
         series::cos_sin::<Self>(angle, halvings, DOUBLE_DOUBLE_BITS)
-            // After the doublings of a huge angle only what holds for every angle is known.
+            // After the doublings of a huge angle, only the bound that holds for every angle may be left.
             .map(|value| if value.radius <= 1.0 { value } else { Self { mid: Real::zero(), radius: 1.0 } })
     }
 }
@@ -116,7 +116,7 @@ impl<M: Midpoint> Ball<M> {
         if other.is_exact_zero() {
             return self;
         }
-        // Exact sums, cancellations above all, add no error.
+        // Exact sums, especially cancellations, add no error.
         let (mid, error) = self.mid.sum(other.mid);
         Self::around(mid, self.radius + other.radius + error)
     }
@@ -138,7 +138,7 @@ impl<M: Midpoint> Ball<M> {
 
     #[inline(never)]
     fn over(self, other: Self) -> Self {
-        // The least magnitude in the divisor; not positive when it may be zero.
+        // The least magnitude of a divisor in the ball; not positive if the divisor may be zero.
         let least = other.mid.least_magnitude() - other.radius * BLOW_UP;
         if least <= 0.0 || least.is_nan() {
             return Self::unknown();
@@ -148,7 +148,7 @@ impl<M: Midpoint> Ball<M> {
         }
         let mid = self.mid / other.mid;
         let rounding = mid.quotient_rounding(least);
-        // The loss of the product by underflow is divided by the divisor below.
+        // The product's loss by underflow is divided by the divisor as well.
         let tiny = if other.radius == 0.0 { 0.0 } else { f64::MIN_POSITIVE };
         let spread = (self.radius + (mid.magnitude() + rounding) * other.radius + tiny) / least;
         Self::around(mid, spread + rounding)

@@ -1,22 +1,23 @@
-//! Enclosures that know when they are exactly zero.
+//! Enclosures that recognize an exact zero.
 
 use super::{Ordered, Real, Residue, Sign, Trigonometry};
 
 /// An enclosure together with the [`Residue`] of the same number.
 ///
-/// The enclosure proves the signs except zero. The residue proves that a number is not zero, and finds that it is (how
-/// surely is said there). If the residue finds a number zero, the enclosure becomes exactly zero as well. So more
-/// digits decide every sign that is [`Sign::Undecided`] although the residue is not zero.
+/// The enclosure proves all signs except zero. The residue proves that a number is not zero, and shows that it is zero
+/// with the certainty stated there. If the residue is zero, the enclosure becomes exactly zero as well. Thus every sign
+/// that is [`Sign::Undecided`] although the residue is not zero can be decided with more digits.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Certified<B> {
-    /// Where the number is.
+    /// The enclosure of the number.
     pub enclosure: B,
-    /// Its residue, which knows whether it is zero.
+    /// The residue of the number, which tells whether it is zero.
     pub residue: Residue,
 }
 
 impl<B: Ordered> Certified<B> {
-    /// The number of a residue: zero, unknown (after a division by zero), or in the enclosure.
+    /// Pairs a residue with its enclosure: zero if the residue is zero, unknown after a division by zero, else
+    /// `enclosure`.
     fn paired(residue: Residue, enclosure: impl FnOnce() -> B) -> Self {
         let enclosure = match residue.is_zero() {
             Some(false) => enclosure(),

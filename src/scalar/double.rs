@@ -1,23 +1,23 @@
-//! Twice the digits of f64, by error-free transforms.
+//! Double-doubles: twice the digits of f64, by error-free transforms.
 
 use super::{Midpoint, Real, Sign};
 
 /// The unevaluated sum `hi + lo` of two f64 with `|lo| <= ulp(hi) / 2`: about 106 bits, in the range of f64.
 ///
-/// With u = 2^-53 and away from underflow the relative errors are, after Joldes, Muller and Popescu, "Tight and
-/// rigorous error bounds for basic building blocks of double-word arithmetic", ACM TOMS 44 (2017): sums 3 u^2 / (1 - 4
-/// u) (their algorithm 6), products 7 u^2 (algorithm 10), quotients 15 u^2 + 56 u^3 (algorithm 17). Products split
-/// their factors (Dekker, Veltkamp) and need no fused multiply-add. Beyond 2^996, where a split overflows, a result is
-/// not a number; it is never silently wrong. Below 2^-969 a product loses digits, by less than 2^-1022 in all.
+/// With u = 2^-53 and away from underflow, the relative errors are 3 u^2 / (1 - 4 u) for sums (algorithm 6), 7 u^2 for
+/// products (algorithm 10) and 15 u^2 + 56 u^3 for quotients (algorithm 17), after Joldes, Muller and Popescu, "Tight
+/// and rigorous error bounds for basic building blocks of double-word arithmetic", ACM TOMS 44 (2017). Products split
+/// their factors (Dekker, Veltkamp) and need no fused multiply-add. Beyond 2^996, where a split overflows, the result
+/// is NaN and never silently wrong. Below 2^-969 a product loses digits, by less than 2^-1022 in all.
 ///
-/// It encloses nothing by itself; [`Ball`](super::Ball) adds the bound. Cost: about 20 f64 operations.
+/// The type itself has no error bound; [`Ball`](super::Ball) adds one. Cost: about 20 f64 operations.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct DoubleDouble {
     hi: f64,
     lo: f64,
 }
 
-/// `a + b` and its rounding error, exactly (Knuth).
+/// The rounded sum `a + b` and its rounding error, exactly (Knuth).
 #[inline]
 pub(crate) fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
@@ -25,14 +25,14 @@ pub(crate) fn two_sum(a: f64, b: f64) -> (f64, f64) {
     (sum, (a - (sum - part)) + (b - part))
 }
 
-/// The same where `|a| >= |b|` or `a` is zero (Dekker).
+/// The same as [`two_sum`] for `|a| >= |b|` or `a` zero (Dekker).
 #[inline]
 fn fast_two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     (sum, b - (sum - a))
 }
 
-/// Two halves of 26 bits whose sum is `a`; NaN where that overflows.
+/// Splits `a` into two halves of 26 bits whose sum is `a`; NaN if that overflows.
 #[inline]
 fn split(a: f64) -> (f64, f64) {
     let scaled = 134_217_729.0 * a; // 2^27 + 1
@@ -40,7 +40,7 @@ fn split(a: f64) -> (f64, f64) {
     (high, a - high)
 }
 
-/// `a * b` and its rounding error, exactly unless the error underflows.
+/// The rounded product `a * b` and its rounding error, exactly unless the error underflows.
 #[inline]
 fn two_product(a: f64, b: f64) -> (f64, f64) {
     let product = a * b;
@@ -55,7 +55,7 @@ impl Real for DoubleDouble {
 }
 
 impl Midpoint for DoubleDouble {
-    /// 16 u^2, which covers the quotient and all else.
+    /// 16 u^2, which covers quotients and all other operations.
     const ROUNDING: f64 = 4.0 * f64::EPSILON * f64::EPSILON;
 
     fn parts(self) -> [f64; 2] {
@@ -70,7 +70,7 @@ impl Midpoint for DoubleDouble {
         self.hi.abs() * (1.0 - 2.0 * f64::EPSILON)
     }
 
-    /// Both roundings of the accurate sum are known exactly, so that an exact sum is seen to be one.
+    /// Both rounding errors of the accurate sum are known exactly, so that an exact sum has an error of zero.
     #[inline]
     fn sum(self, other: Self) -> (Self, f64) {
         let (high, high_error) = two_sum(self.hi, other.hi);
@@ -81,7 +81,7 @@ impl Midpoint for DoubleDouble {
         (Self::renormalized(high, tail), first.abs() + second.abs())
     }
 
-    /// The product that corrects a quotient may underflow; that loss is divided by the divisor.
+    /// The product that corrects a quotient may underflow, and its loss is divided by the divisor.
     fn quotient_rounding(self, divisor: f64) -> f64 {
         self.rounding() + f64::MIN_POSITIVE / divisor
     }
@@ -118,7 +118,7 @@ impl DoubleDouble {
     #[inline(never)]
     fn over(self, other: Self) -> Self {
         let high = self.hi / other.hi;
-        // The divisor times the first digits (their algorithm 7), and what that leaves of the dividend.
+        // The divisor times the first digits of the quotient (their algorithm 7), and the rest of the dividend.
         let (product, error) = two_product(other.hi, high);
         let back = Self::renormalized(product, error + other.lo * high);
         let rest = (self.hi - back.hi) + (self.lo - back.lo);
@@ -151,7 +151,7 @@ mod tests {
         })
     }
 
-    /// Whether `value` errs by at most `units` u^2, relatively.
+    /// Whether the relative error of `value` is at most `units` u^2.
     fn within(value: DoubleDouble, truth: &RBig, units: u32) -> bool {
         let unit = exact(f64::EPSILON * f64::EPSILON / 4.0);
         magnitude(rational(value) - truth) <= magnitude(truth.clone()) * RBig::from(units) * unit
@@ -183,7 +183,7 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(20_000))]
-        /// Significands of a few bits meet every tie and every cancellation.
+        /// With significands of a few bits, all kinds of ties and cancellations occur.
         #[test]
         fn cancelling_sum_knows_its_error(
             a in -9..=9i32, b in -9..=9i32, c in -9..=9i32, d in -9..=9i32, i in 48..60i32, j in 48..60i32, k in -3..=3i32,

@@ -1,4 +1,4 @@
-//! Enclosures with as many digits as a decision needs.
+//! Enclosures with any number of bits.
 
 use super::{Enclosure, Ordered, Real, Sign, Trigonometry, series};
 use dashu_float::round::mode::HalfEven;
@@ -6,9 +6,9 @@ use dashu_float::{Context, FBig, FpError, Repr, Word};
 use std::cell::RefCell;
 
 const DEFAULT_BITS: usize = 256;
-/// Bits beyond those that the doublings of an angle lose.
+/// Additional bits beyond those that the doublings of an angle lose.
 const GUARD_BITS: u32 = 16;
-/// Of numbers beyond this binary exponent, which no robot reaches, nothing is known.
+/// Numbers beyond this binary exponent, which no robot reaches, become unknown.
 const EXPONENT_LIMIT: i64 = 1 << 24;
 
 thread_local! {
@@ -20,20 +20,20 @@ struct Store {
     bits: usize,
 }
 
-/// A midpoint of as many bits as the scope says, and the greatest distance from it.
+/// A midpoint with the bits of its scope, and the greatest distance of the number from it.
 #[derive(Clone)]
 struct Enclosed {
     mid: Repr<2>,
     radius: Magnitude,
 }
 
-/// A real number enclosed with as many bits as its scope has; unknown after a division by what may be zero.
+/// A real number enclosed with as many bits as its scope has; unknown after a division by a number that may be zero.
 ///
-/// It is a `Copy` handle into storage of its thread, which [`Interval::scope`] frees; it must not leave its scope.
+/// It is a `Copy` handle into thread-local storage, which [`Interval::scope`] frees; it must not leave its scope.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Interval(Option<usize>);
 
-/// Frees a scope's numbers at its end, however it ends.
+/// Frees the numbers of a scope at its end, even on a panic.
 struct Scope {
     length: usize,
     bits: usize,
@@ -49,7 +49,7 @@ impl Drop for Scope {
 }
 
 impl Interval {
-    /// Runs `work` on numbers of `bits` bits and frees the numbers that it made.
+    /// Runs `work` with numbers of `bits` bits and frees the numbers that it created.
     pub fn scope<R>(bits: usize, work: impl FnOnce() -> R) -> R {
         let _scope = STORE.with_borrow_mut(|store| {
             let outer = std::mem::replace(&mut store.bits, bits.max(2));
@@ -87,7 +87,7 @@ impl Store {
     }
 }
 
-/// A rounded result and the greatest error of its rounding: a unit in the last place, twice what it needs.
+/// A rounded result, with a bound of its rounding error: a unit in the last place, which is twice the greatest error.
 fn rounded(result: Result<dashu_float::round::Rounded<FBig<HalfEven, 2>>, FpError>, bits: usize) -> Option<Enclosed> {
     let result = result.ok()?;
     let exact = matches!(result, dashu_float::round::Rounded::Exact(_));
@@ -221,7 +221,7 @@ impl Enclosure for Interval {
 }
 
 impl Trigonometry for Interval {
-    /// Computed with more bits, as the doublings lose them, and returned with those of the scope.
+    /// Computes with more bits, since the doublings lose some, and rounds the results to the bits of the scope.
     fn cos_sin(angle: f64) -> [Self; 2] {
         let bits = STORE.with_borrow(|store| store.bits);
         let wanted = u32::try_from(bits).unwrap_or(u32::MAX / 4);
@@ -261,15 +261,16 @@ impl Interval {
 
 operators!([] Interval);
 
-/// Covers the roundings of one operation on bounds.
+/// A factor that covers the roundings of one operation on bounds.
 const UP: f64 = 1.0 + 4.0 * f64::EPSILON;
 const DOWN: f64 = 1.0 - 4.0 * f64::EPSILON;
-/// Bits of f64's significand.
+/// The bits of an f64's significand.
 const DIGITS: u32 = 53;
-/// f64's exponent bits hold the exponent plus this.
+/// The exponent bits of an f64 hold its exponent plus this.
 const BIAS: i64 = 1023;
 
-/// A bound `significand 2^exponent` of a magnitude, with the exponents that f64 lacks; every operation rounds upwards.
+/// A bound `significand * 2^exponent` of a magnitude, with a larger exponent range than f64. It is an upper bound and
+/// rounds upward, except in [`Magnitude::below`] and [`Magnitude::less`].
 ///
 /// The significand is zero or lies in \[1, 2).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -289,28 +290,28 @@ impl Magnitude {
         Self { significand: 1.0, exponent }
     }
 
-    /// The bound of a significand that is a positive normal number.
+    /// The bound `significand * 2^exponent` of a significand that is any positive normal number.
     #[inline]
     fn normalized(significand: f64, exponent: i64) -> Self {
         let bits = significand.to_bits();
         let shift = (bits >> (DIGITS - 1)) as i64 - BIAS;
         let kept = bits & ((1 << (DIGITS - 1)) - 1) | ((BIAS as u64) << (DIGITS - 1));
-        // Exponents stay bounded: a larger bound is a bound, too.
+        // The exponent is bounded from below. A larger upper bound is valid, and lower bounds do not get that small.
         Self { significand: f64::from_bits(kept), exponent: (exponent + shift).max(-4 * EXPONENT_LIMIT) }
     }
 
-    /// 2^-shift of 0 to 63.
+    /// 2^-shift, for a shift of 0 to 63.
     fn down(shift: i64) -> f64 {
         f64::from_bits(((BIAS - shift) as u64) << (DIGITS - 1))
     }
 
-    /// The top bits of a number and their exponent, and whether these are all.
+    /// The top bits of a number, their exponent, and whether the number has no others.
     #[inline]
     fn leading(number: &Repr<2>) -> (u64, i64, bool) {
         let (_, words) = number.significand().as_sign_words();
         let Some(&high) = words.last() else { return (0, 0, true) };
         let low = if words.len() > 1 { words[words.len() - 2] } else { 0 };
-        // The two top words end at bit `width` of `both`.
+        // The two top words as one integer.
         let both = (u128::from(high) << Word::BITS) | u128::from(low);
         let dropped = (128 - both.leading_zeros()).saturating_sub(DIGITS);
         let significand = both >> dropped;
@@ -320,20 +321,20 @@ impl Magnitude {
         (significand as u64, exponent, all)
     }
 
-    /// At least the magnitude of a number.
+    /// An upper bound of a number's magnitude.
     fn above(number: &Repr<2>) -> Self {
         let (significand, exponent, all) = Self::leading(number);
         let significand = if all { significand } else { significand + 1 };
         if significand == 0 { Self::ZERO } else { Self::normalized(significand as f64, exponent) }
     }
 
-    /// At most the magnitude of a number.
+    /// A lower bound of a number's magnitude.
     fn below(number: &Repr<2>) -> Self {
         let (significand, exponent, _) = Self::leading(number);
         if significand == 0 { Self::ZERO } else { Self::normalized(significand as f64, exponent) }
     }
 
-    /// At most `self - other`, if that is positive.
+    /// A lower bound of `self - other`; `None` unless it is positive.
     fn less(self, other: Self) -> Option<Self> {
         if self.is_zero() {
             return None;
@@ -349,7 +350,7 @@ impl Magnitude {
         (significand > 0.0).then(|| Self::normalized(significand * DOWN, self.exponent))
     }
 
-    /// The nearest f64, infinite above and tiny below the range of f64.
+    /// The bound as an f64: infinite above the range of f64, and the least normal number below it.
     fn to_f64(self) -> f64 {
         if self.is_zero() {
             0.0
@@ -384,7 +385,7 @@ impl Magnitude {
         Self::normalized(self.significand * other.significand * UP, self.exponent + other.exponent)
     }
 
-    /// By a lower bound of the divisor that is not zero.
+    /// Divides by a lower bound of the divisor, which is not zero.
     #[inline]
     fn over(self, other: Self) -> Self {
         if self.is_zero() {

@@ -1,15 +1,16 @@
-//! What the terms of a number add up to if none cancels another.
+//! The sum of the magnitudes of all terms of a number.
 
 use super::Real;
 
-/// The sum of the magnitudes of all terms that a number was computed from: what its rounding is relative to.
+/// The sum of the magnitudes of all terms that a number was computed from. The rounding of the number is relative to
+/// this.
 ///
-/// A result of N operations, one on top of the other, is off by no more than (N + 1) u times its magnitude, and by what
-/// underflowed, which counts as a magnitude here. Source: Higham 2002, section 3.1 (with sums of terms in any order).
+/// After N successive operations, the rounding error is at most (N + 1) u times the magnitude, which also accounts for
+/// underflow. Source: Higham 2002, section 3.1 (with sums of terms in any order).
 #[derive(Debug, Clone, Copy, Default, PartialEq, PartialOrd)]
 pub struct Magnitude(pub f64);
 
-/// Divided by the roundoff, it covers the underflow of a few products.
+/// A magnitude that accounts for underflow: times the unit roundoff, it exceeds what a few products lose by underflow.
 pub const UNDERFLOW: f64 = 1e20 * f64::MIN_POSITIVE;
 
 operators!([] Magnitude);
@@ -30,7 +31,7 @@ impl Magnitude {
         Self(self.0 * other.0 + UNDERFLOW)
     }
 
-    /// A quotient has no bound of this kind.
+    /// A quotient has no bound of this kind, so its magnitude is infinite.
     fn over(self, _: Self) -> Self {
         Self(f64::INFINITY)
     }
@@ -56,7 +57,7 @@ mod tests {
         let numbers = [3.0, -4.0, 1e-200].map(Magnitude::from_f64);
         let sum = dot(&numbers, &numbers) - Magnitude::from_f64(5.0);
         assert_eq!((sum.0, (-sum).0), (30.0, 30.0));
-        // 1e-400 underflows, and is off by no more than its bound.
+        // 1e-400 underflows; the magnitude accounts for its loss.
         assert!((numbers[2] * numbers[2]).0 >= UNDERFLOW && (numbers[0] / numbers[1]).0 == f64::INFINITY);
     }
 }

@@ -1,22 +1,22 @@
-//! The numbers that the core runs on.
+//! The number types that the core runs on.
 //!
-//! From kinematics to the slacks of the modes every algorithm is written once over [`Real`]. It neither branches on a
-//! number nor takes a root, so that a ball, a double-double or an exact rational run the same code as
-//! `f64`. Only the stage that turns numbers into signs looks inside.
+//! From kinematics to the slacks of the modes, every algorithm is written once over [`Real`]. These algorithms neither
+//! branch on a number nor take a root, so that a ball, a double-double or an interval runs the same code as `f64`. Only
+//! the stage that turns numbers into signs inspects them.
 //!
 //! | Number | Encloses | Cost of an operation |
 //! | --- | --- | --- |
 //! | `f64` | nothing | 1 |
 //! | [`DoubleDouble`] | nothing; 106 bits | about 20 |
-//! | [`Rounded`] | the exact result of its operations far from overflow, checked at the end | about 3 |
+//! | [`Rounded`] | the exact result of its operations; overflow is noticed at the end | about 3 |
 //! | [`Ball`] | the exact result of its operations, over f64 or [`DoubleDouble`] | about 5, or 30 |
-//! | [`Interval`] | the same, with any number of bits | an allocation, some 100 |
-//! | [`Residue`] | nothing; knows whether the exact result is zero | about 20, a quotient by a new divisor some 500 |
+//! | [`Interval`] | the exact result of its operations, with any number of bits | an allocation, about 100 |
+//! | [`Residue`] | nothing; knows whether the exact result is zero | about 20; a quotient by a new divisor about 500 |
 //! | [`Certified`] | an enclosure and a residue of the same number | both |
-//! | [`Magnitude`] | nothing; the size of all terms that an `f64` was added up from | 1 |
-//! | [`Affine`] | results for data that are known to an interval only, linear in N common causes | N |
+//! | [`Magnitude`] | nothing; the sum of the magnitudes of all terms of an `f64` | 1 |
+//! | [`Affine`] | results for uncertain data, linear in N common causes | N |
 
-/// Implements the operators of a number by its methods `plus`, `minus`, `times`, `over` and `negated`.
+/// Implements the operators of a number type by its methods `plus`, `minus`, `times`, `over` and `negated`.
 macro_rules! operators {
     ([$($parameters:tt)*] $number:ty) => {
         operators!(@ [$($parameters)*] $number, Add add plus);
@@ -64,10 +64,10 @@ pub use rounded::Rounded;
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A number of the core: `Copy`, with the four operations, negation, and every `f64` exactly.
+/// A number type of the core: `Copy`, with the four operations and negation. It represents every `f64` exactly.
 ///
-/// A number on the heap takes part by a `Copy` handle, as [`Interval`] does: the algorithms stay free of borrows.
-/// `Default` is asked for by memory that begins empty; its value is never read.
+/// A type that stores its numbers on the heap, such as [`Interval`], implements this by a `Copy` handle, so that the
+/// algorithms need no borrows. `Default` only fills memory before its first use; its value is never read.
 pub trait Real:
     Copy
     + Default
@@ -91,7 +91,7 @@ pub trait Real:
         Self::from_f64(1.0)
     }
 
-    /// The product with a number that is exactly `factor`.
+    /// The product with exactly `factor`.
     #[inline]
     fn scaled(self, factor: f64) -> Self {
         Self::from_f64(factor) * self
@@ -109,7 +109,7 @@ pub fn dot<T: Real>(a: &[T], b: &[T]) -> T {
     a.iter().zip(b).fold(T::zero(), |sum, (&a, &b)| sum + a * b)
 }
 
-/// y := y - factor z.
+/// Subtracts `factor` times `z` from `y`.
 #[inline]
 pub fn subtract<T: Real>(y: &mut [T], z: &[T], factor: T) {
     for (y, &z) in y.iter_mut().zip(z) {
@@ -120,13 +120,13 @@ pub fn subtract<T: Real>(y: &mut [T], z: &[T], factor: T) {
 /// The sign of a number that may be known inexactly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sign {
-    /// It is negative.
+    /// The number is negative.
     Negative,
-    /// It is exactly zero.
+    /// The number is exactly zero.
     Zero,
-    /// It is positive.
+    /// The number is positive.
     Positive,
-    /// The error does not exclude zero.
+    /// The error bound does not exclude zero.
     Undecided,
 }
 
@@ -146,31 +146,32 @@ impl Sign {
     }
 }
 
-/// A number that knows its own sign, or that its precision does not suffice for it.
+/// A number that knows its own sign, or knows that its precision is not enough to tell.
 pub trait Ordered: Real {
-    /// The sign; never guessed.
+    /// The sign of the number; never guessed.
     fn sign(self) -> Sign;
 
-    /// The nearest f64, or one as near as the number is known; NaN if nothing is known.
+    /// The nearest f64, or the closest one that the known digits give; NaN if nothing is known.
     fn to_f64(self) -> f64;
 
-    /// Runs `work` and frees the storage of the numbers that it made; none of them may leave it.
+    /// Runs `work` and frees the storage of all numbers that it created. None of them may be used afterward.
     fn freeing<R>(work: impl FnOnce() -> R) -> R {
         work()
     }
 
-    /// The same for numbers of which only what `work` returns is kept.
+    /// Runs `work` and frees the storage of the numbers that it created, except those that it returns.
     fn keeping<E>(work: impl FnOnce() -> Result<Vec<Self>, E>) -> Result<Vec<Self>, E> {
         work()
     }
 
-    /// How far the number may be from [`Ordered::to_f64`], that rounding excepted; infinite if nothing is known.
+    /// A bound of the distance between the number and [`Ordered::to_f64`] before that is rounded to f64; infinite if
+    /// nothing is known.
     fn error(self) -> f64;
 }
 
-/// A number that has the cosine and sine of an f64 angle.
+/// A number type with the cosine and sine of an f64 angle.
 pub trait Trigonometry: Real {
-    /// Cosine and sine of exactly the angle that `angle` \[rad\] is.
+    /// The cosine and sine of exactly the f64 `angle` \[rad\].
     fn cos_sin(angle: f64) -> [Self; 2];
 }
 
@@ -181,9 +182,9 @@ impl Trigonometry for f64 {
     }
 }
 
-/// A number that is known up to an error.
+/// A number with an error bound that can be widened.
 pub trait Enclosure: Ordered {
-    /// This number, known only up to a further error of at most the magnitude of `by`.
+    /// The number with its error bound enlarged by at least the magnitude of `by`.
     fn widened(self, by: Self) -> Self;
 }
 
@@ -192,33 +193,34 @@ pub trait Midpoint: Real {
     /// The greatest relative error of a product or a quotient.
     const ROUNDING: f64;
 
-    /// The nearest f64 and the rest.
+    /// The nearest f64 and the remainder; their sum is the number.
     fn parts(self) -> [f64; 2];
 
-    /// At least the absolute value.
+    /// An upper bound of the absolute value.
     fn magnitude(self) -> f64 {
         self.parts()[0].abs()
     }
 
-    /// At most the absolute value.
+    /// A lower bound of the absolute value.
     fn least_magnitude(self) -> f64 {
         self.parts()[0].abs()
     }
 
-    /// The sum and a bound of its error up to a relative 2^-52, which is zero if the sum is exact.
+    /// The sum and a bound of its error. The bound is accurate to a relative 2^-52, and zero if the sum is exact.
     fn sum(self, other: Self) -> (Self, f64);
 
-    /// The sign of a number at most `radius` away.
+    /// The sign of any number at most `radius` away from this one.
     fn sign_within(self, radius: f64) -> Sign {
         Sign::within(self.parts()[0], radius)
     }
 
-    /// The greatest error of a product that was rounded to this number; its last part covers underflow.
+    /// A bound of the error of a product that was rounded to this number. The last term covers underflow.
     fn rounding(self) -> f64 {
         self.magnitude() * Self::ROUNDING + f64::MIN_POSITIVE
     }
 
-    /// The greatest error of a quotient that was rounded to this number, by a divisor no smaller than `divisor`.
+    /// A bound of the error of a quotient that was rounded to this number; `divisor` is a lower bound of the divisor's
+    /// magnitude.
     fn quotient_rounding(self, _divisor: f64) -> f64 {
         self.rounding()
     }
@@ -226,7 +228,7 @@ pub trait Midpoint: Real {
 
 #[cfg(test)]
 mod tests {
-    //! What all numbers promise; what only one of them does is tested in its file.
+    //! Tests of what all number types promise. The tests of a single type are in its file.
 
     use super::*;
     use dashu_ratio::RBig;
@@ -241,7 +243,7 @@ mod tests {
     }
 
     pub trait Bounded: Ordered + Trigonometry {
-        /// Center and radius; `None` if nothing is known.
+        /// The center and radius of the enclosure; `None` if nothing is known.
         fn bounds(self) -> Option<[RBig; 2]>;
     }
 
@@ -255,7 +257,7 @@ mod tests {
         }
     }
 
-    /// Checks what the operations make of three numbers, each the sum of two f64.
+    /// Checks that the operations on three numbers, each the sum of two f64, enclose the exact results.
     fn check<N: Bounded>(numbers: [[f64; 2]; 3]) -> Result<(), TestCaseError> {
         let [x, y, z] = numbers.map(|[hi, lo]| N::from_f64(hi) + N::from_f64(lo));
         let [p, q, r] = numbers.map(|[hi, lo]| exact(hi) + exact(lo));
@@ -307,7 +309,8 @@ mod tests {
         }
     }
 
-    /// Asserts the signs that all numbers know or do not know, and gives those of identities and of a small number.
+    /// Asserts the signs that all number types must know or leave undecided. Returns those of three identities and of a
+    /// small number.
     fn signs<N: Ordered + Trigonometry>() -> ([Sign; 3], Sign) {
         let number = N::from_f64;
         let [zero, one, two, three] = [0.0, 1.0, 2.0, 3.0].map(number);

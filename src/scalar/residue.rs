@@ -1,35 +1,38 @@
-//! Numbers modulo two primes: whether a number is exactly zero.
+//! Numbers modulo two primes, which show whether a number is exactly zero.
 
 use super::{Real, Trigonometry};
 use std::cell::Cell;
 
-/// A number modulo two primes just below 2^61, with the angles' cosines and sines replaced by a point of the circle.
+/// A number modulo two primes just below 2^61, with cosines and sines replaced by the coordinates of points on a
+/// circle.
 ///
-/// It finds whether a number that was computed from f64 and from cosines and sines of f64 angles is zero. All these
+/// It shows whether a number that was computed from f64 and from cosines and sines of f64 angles is zero. All these
 /// angles are multiples of one 2^-k, so such a number is a rational function R, with rational coefficients, of w = e^(i
-/// 2^-k). By the theorem of Lindemann and Weierstrass w is transcendental, so R(w) vanishes only if R does identically.
-/// Here R is evaluated at a point of the circle x^2 + y^2 = 1 over a finite field instead of w. A residue other than
-/// zero therefore proves that the number is not zero. Zero modulo both primes proves that it is, except for chance: an
-/// R other than zero would have to vanish at both points, which are fixed but unrelated to any robot; of a random point
-/// that has the probability (degree of R / 2^59)^2, about 2^-100 at a degree of a few hundred. (Or its coefficients
-/// would have to be divisible by both primes, as likely.)
+/// 2^-k). By the theorem of Lindemann and Weierstrass w is transcendental, so R(w) is zero only if R is identically
+/// zero. Here R is evaluated not at w but at a point of the circle x^2 + y^2 = 1 over a finite field. A nonzero residue
+/// therefore proves that the number is not zero.
 ///
-/// After a division by a residue of zero nothing is known modulo that prime.
+/// Zero modulo both primes proves that the number is zero, except for chance: a nonzero R would have to vanish at both
+/// points, which are fixed but unrelated to any robot. For random points the probability is (degree of R / 2^59)^2,
+/// about 2^-100 at a degree of a few hundred. (Coefficients that are all divisible by both primes are as unlikely.)
+///
+/// After a division by a residue of zero, nothing is known modulo that prime.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Residue([u64; 2]);
 
-/// The primes 2^61 - c for these c are the largest that are 3 modulo 8 and whose (p + 1) / 4 is prime, too. So -1 is no
-/// square, the circle has p + 1 points, and their order is a prime times 1, 2 or 4.
+/// The primes are 2^61 - c for these c: the largest that are 3 modulo 8 and whose (p + 1) / 4 is prime, too. So -1 is
+/// not a square, the circle has p + 1 points, and the order of a point is that prime times 1, 2 or 4, or a divisor of
+/// 4.
 const FIRST: u64 = 11_029;
 const SECOND: u64 = 13_669;
 
 type FirstField = Modulus<61, FIRST>;
 type SecondField = Modulus<61, SECOND>;
-/// The orders (p + 1) / 4 = 2^59 - (c - 1) / 4 of the points that stand for angles.
+/// The orders (p + 1) / 4 = 2^59 - (c - 1) / 4 of the points that represent angles.
 type FirstOrder = Modulus<59, { (FIRST - 1) / 4 }>;
 type SecondOrder = Modulus<59, { (SECOND - 1) / 4 }>;
 
-/// Stands for an unknown residue.
+/// Marks an unknown residue.
 const NONE: u64 = u64::MAX;
 
 static FIRST_TABLES: Tables =
@@ -37,15 +40,16 @@ static FIRST_TABLES: Tables =
 static SECOND_TABLES: Tables =
     SecondField::tables::<59, { (SECOND - 1) / 4 }>([0xA409_3822_299F_31D0, 0x082E_FA98_EC4E_6C89]);
 
-/// Exponents of two in f64, in steps of this many.
+/// The powers of two are tabulated in steps of this many exponents.
 const STEP: i32 = 32;
 const STEPS: usize = 65;
-/// The least exponent, below that of the least f64.
+/// The least tabulated exponent, below that of the least f64.
 const LEAST: i32 = -1088;
-/// Multiples of angles are taken by digits of four bits.
+/// The number of four-bit digits by which a multiple of the angle 1 is computed.
 const DIGITS: usize = 15;
 
-/// Numbers and their inverses, those found last, at their remainders: eliminations divide all rows by the same pivots.
+/// The numbers that were inverted last, with their inverses, at their remainders modulo [`KEPT`]. Eliminations divide
+/// whole rows by the same pivot.
 type Inverses = [Cell<(u64, u64)>; KEPT];
 
 const KEPT: usize = 32;
@@ -54,11 +58,11 @@ thread_local! {
     static INVERSES: [Inverses; 2] = const { [const { [const { Cell::new((0, 0)) }; KEPT] }; 2] };
 }
 
-/// Constants of a prime.
+/// The constants of a prime.
 struct Tables {
-    /// 2^(LEAST + STEP i) modulo the prime and modulo the order of the circle's points.
+    /// 2^(LEAST + STEP i) modulo the prime and modulo the order of the points.
     powers: [[u64; 2]; STEPS],
-    /// The point of the angle 1 to the power of `j 16^i`.
+    /// The point of the angle 1 to the power j 16^i.
     turns: [[[u64; 2]; 16]; DIGITS],
 }
 
@@ -70,7 +74,7 @@ impl<const BITS: u32, const C: u64> Modulus<BITS, C> {
     const HALF: u64 = Self::PRIME.div_ceil(2);
     const MASK: u64 = (1 << BITS) - 1;
 
-    /// A number below 2^122, reduced: 2^BITS is C.
+    /// Reduces a number below 2^(2 BITS + 1), using 2^BITS = C.
     #[inline]
     const fn reduced(number: u128) -> u64 {
         let folded = (number as u64 & Self::MASK) as u128 + (number >> BITS) * C as u128;
@@ -105,10 +109,10 @@ impl<const BITS: u32, const C: u64> Modulus<BITS, C> {
         result
     }
 
-    /// The inverse of a number other than zero, by Euclid's algorithm.
+    /// The inverse of a nonzero number, by Euclid's algorithm.
     fn inverse(number: u64) -> u64 {
         let (mut last, mut rest) = (Self::PRIME, number);
-        // `factor * number` is `rest`, modulo the prime; no factor exceeds the prime.
+        // `factor * number` equals `rest` modulo the prime; no factor exceeds the prime.
         let (mut last_factor, mut factor) = (0i64, 1i64);
         while rest > 1 {
             let quotient = last / rest;
@@ -118,7 +122,7 @@ impl<const BITS: u32, const C: u64> Modulus<BITS, C> {
         if factor < 0 { factor.wrapping_add(Self::PRIME as i64) as u64 } else { factor as u64 }
     }
 
-    /// The product of two points of the circle, as complex numbers.
+    /// The product of two points of the circle, taken as complex numbers.
     #[inline]
     const fn turned([a, b]: [u64; 2], [c, d]: [u64; 2]) -> [u64; 2] {
         [
@@ -127,7 +131,7 @@ impl<const BITS: u32, const C: u64> Modulus<BITS, C> {
         ]
     }
 
-    /// The point is ((a + ib)^2 / (a^2 + b^2))^4 of a fixed (a, b), here of digits of pi.
+    /// The tables of the point ((a + ib)^2 / (a^2 + b^2))^4, where a and b are digits of pi.
     const fn tables<const ORDER_BITS: u32, const ORDER_C: u64>([a, b]: [u64; 2]) -> Tables {
         let least = LEAST.unsigned_abs() as u64;
         let order = Modulus::<ORDER_BITS, ORDER_C>::power(Modulus::<ORDER_BITS, ORDER_C>::HALF, least);
@@ -159,7 +163,8 @@ impl<const BITS: u32, const C: u64> Modulus<BITS, C> {
         Tables { powers, turns }
     }
 
-    /// `value` modulo the prime, where `part` says which of the powers belong to it.
+    /// `value` modulo [`Self::PRIME`]; `part` selects the powers of two in `tables`: 0 modulo the prime, 1 modulo the
+    /// order.
     #[inline]
     fn of(value: f64, tables: &Tables, part: usize) -> u64 {
         let (integer, exponent) = decomposed(value);
@@ -196,7 +201,7 @@ impl<const BITS: u32, const C: u64> Modulus<BITS, C> {
     }
 }
 
-/// The integer and the exponent of a finite f64's magnitude.
+/// The integer and the binary exponent of a finite f64's magnitude.
 fn decomposed(value: f64) -> (u64, i32) {
     let bits = value.to_bits();
     let (fraction, exponent) = (bits & ((1 << 52) - 1), ((bits >> 52) & 0x7FF) as i32);
@@ -204,13 +209,14 @@ fn decomposed(value: f64) -> (u64, i32) {
 }
 
 impl Residue {
-    /// Nothing known modulo either prime.
+    /// The residue of an unknown number.
     pub const UNDEFINED: Self = Self([NONE; 2]);
 
-    /// The number zero itself.
+    /// The residue of the exact number zero.
     pub const ZERO: Self = Self([0; 2]);
 
-    /// Whether the number is zero: proved if it is not, and nearly so if it is; `None` after a division by zero.
+    /// Whether the number is zero. `Some(false)` is proven, `Some(true)` is nearly certain; `None` after a division by
+    /// zero.
     pub fn is_zero(self) -> Option<bool> {
         let [first, second] = self.0;
         if first == 0 && second == 0 {
@@ -236,7 +242,8 @@ impl Real for Residue {
 }
 
 impl Trigonometry for Residue {
-    /// The point of an angle: a homomorphism from f64 angles to the circle keeps all relations between angles.
+    /// The coordinates of an angle's point. The map from f64 angles to the circle is a homomorphism, which preserves
+    /// all relations between angles.
     fn cos_sin(angle: f64) -> [Self; 2] {
         if !angle.is_finite() {
             return [Self::UNDEFINED; 2];
@@ -251,7 +258,7 @@ impl Trigonometry for Residue {
 }
 
 impl Residue {
-    /// An operation modulo each prime, if both numbers are known modulo it.
+    /// Applies an operation modulo each prime for which both numbers are known.
     #[inline]
     fn by_prime(self, other: Self, first: impl FnOnce(u64, u64) -> u64, second: impl FnOnce(u64, u64) -> u64) -> Self {
         let ([a, b], [c, d]) = (self.0, other.0);
@@ -294,7 +301,7 @@ mod tests {
     use dashu_ratio::RBig;
     use proptest::prelude::*;
 
-    /// The test of Miller and Rabin, which these bases decide below 2^64.
+    /// The primality test of Miller and Rabin, which is exact below 2^64 with these bases.
     fn is_prime(n: u64) -> bool {
         let (ring, twos) = (ConstDivisor::new(n.into()), (n - 1).trailing_zeros());
         [2u8, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37].into_iter().all(|base| {

@@ -1,26 +1,26 @@
-//! An f64 and how far it may be off.
+//! An f64 with an error bound.
 
 use super::{Ordered, Real, Sign};
 
-/// A number that lies within `error` of `value`: a [`Ball`](super::Ball) that checks nothing on its way.
+/// A number that lies within `error` of `value`: a [`Ball`](super::Ball) whose operations do not check for overflow.
 ///
-/// Errors are rounded to nearest, and one part in a million covers what they lose themselves. A result beyond f64 has an
-/// error that is infinite or NaN, which leaves the sign undecided. A known number times an exact zero is one. Source:
-/// Higham 2002, chapter 3.
+/// Errors are rounded to nearest; a relative 1e-6 covers their own rounding. A result beyond the range of f64 has an
+/// error that is infinite or NaN, which leaves the sign undecided. A known number times an exact zero is an exact zero.
+/// Source: Higham 2002, chapter 3.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Rounded {
     /// The rounded number.
     pub value: f64,
-    /// How far the exact number may be from it.
+    /// The greatest distance of the exact number from `value`, up to its own rounding.
     pub error: f64,
 }
 
 const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
-/// Covers the roundings of the errors: thousands of operations, one on top of the other.
+/// A factor that covers the rounding of the errors themselves, over thousands of successive operations.
 const SLACK: f64 = 1.0 + 1e-6;
 
 impl Rounded {
-    /// The greatest magnitude that the number may have.
+    /// The greatest possible magnitude of the number.
     #[inline]
     fn reach(self) -> f64 {
         self.value.abs() + self.error
@@ -42,7 +42,7 @@ impl Rounded {
     fn times(self, other: Self) -> Self {
         let (value, [own, others]) = (self.value * other.value, [self.reach(), other.reach()]);
         let error = self.value.abs() * other.error + self.error * others + UNIT_ROUNDOFF * value.abs();
-        // Only a product with an exact zero cannot underflow.
+        // Every product may underflow, except one with an exact zero.
         let least = if own < others { own } else { others };
         Self { value, error: error + if least == 0.0 { 0.0 } else { f64::MIN_POSITIVE } }
     }
@@ -50,7 +50,7 @@ impl Rounded {
     #[inline]
     fn over(self, other: Self) -> Self {
         let value = self.value / other.value;
-        // Not positive, or not a number, if the divisor may be zero.
+        // The least magnitude of the divisor; not positive, or NaN, if the divisor may be zero.
         let least = other.value.abs() - other.error * SLACK;
         let underflow = if self.reach() == 0.0 { 0.0 } else { f64::MIN_POSITIVE };
         let spread = self.error + value.abs() * other.error + underflow;
@@ -87,7 +87,7 @@ impl Ordered for Rounded {
         Sign::within(self.value, self.error())
     }
 
-    /// The value, whatever is known of it: rejected combinations are printed with it.
+    /// The value, even if its error is infinite: rejected combinations are printed with it.
     #[inline]
     fn to_f64(self) -> f64 {
         self.value
@@ -106,7 +106,7 @@ mod tests {
     use dashu_ratio::RBig;
     use proptest::prelude::*;
 
-    /// Whether `truth` is as near to the number as its error says.
+    /// Whether `truth` lies within the error of the number.
     fn encloses(found: Rounded, truth: RBig) -> bool {
         !found.error().is_finite() || magnitude(exact(found.value) - truth) <= exact(found.error())
     }
@@ -118,7 +118,7 @@ mod tests {
             [off_a, off_b] in prop::array::uniform2((-1.0..1.0f64, -60..-2i32)),
         ) {
             let [a, b, c] = [a, b, c].map(|(part, bits, minus)| libm::scalbn(if minus { -part } else { part }, bits));
-            // Numbers near others that are exact.
+            // Numbers that differ from their exact counterparts by at most their errors.
             let near = |value: f64, (part, bits): (f64, i32)| {
                 let off = libm::scalbn(part * value, bits);
                 (Rounded { value, error: off.abs() }, exact(value) + exact(off))
@@ -135,7 +135,7 @@ mod tests {
                 (-z / (x * y), -&r / (&p * &q)),
             ] {
                 let is_enclosed = found.value.is_finite() && encloses(found, truth);
-                // Beyond the range of f64 nothing is known.
+                // Beyond the range of f64, nothing is known.
                 prop_assert!(is_enclosed || found.sign() == Sign::Undecided, "{found:?}");
             }
         }
@@ -160,7 +160,7 @@ mod tests {
         ] {
             assert_eq!(number.sign(), Sign::Undecided, "{number:?}");
         }
-        // A product that underflows is no zero.
+        // A product that underflows is not zero.
         let tiny = Rounded::from_f64(1e-200);
         assert_eq!([tiny * tiny, tiny.scaled(1e-200)].map(Ordered::sign), [Sign::Undecided; 2]);
     }

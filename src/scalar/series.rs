@@ -1,10 +1,12 @@
-//! Cosine and sine of an exact angle by the Taylor series, in any number that encloses.
+//! The cosine and sine of an exact angle by the Taylor series, in any number type with an error bound.
 //!
-//! One series serves [`Interval`](super::Interval) and the ball of double-doubles: both need bounds of these digits.
+//! [`Interval`](super::Interval) and the ball of double-doubles share the series, because both need proven bounds of
+//! all their digits.
 
 use super::Enclosure;
 
-/// How often an angle is halved before the series: until r doublings cost about as much as its terms below 2^-r.
+/// How often an angle is halved before the series. The halved angle is below 2^-r with an r for which r doublings cost
+/// about as much as the terms of the series.
 pub(super) fn halvings(angle: f64, bits: u32) -> u32 {
     // No halving may underflow.
     let below = (bits.isqrt() / 2).min(900) as i32;
@@ -12,9 +14,9 @@ pub(super) fn halvings(angle: f64, bits: u32) -> u32 {
     u32::try_from(exponent + below).unwrap_or(0)
 }
 
-/// Cosine and sine of `angle` \[rad\], of which the series gives `bits` before each doubling loses up to two.
+/// The cosine and sine of `angle` \[rad\]. The series gives `bits` bits, of which each doubling loses up to two.
 ///
-/// The halved angle is exact and at most 1: the series alternate with falling terms.
+/// The halved angle is exact and at most 1, so that the terms of the series alternate and decrease.
 pub(super) fn cos_sin<N: Enclosure>(angle: f64, halvings: u32, bits: u32) -> [N; 2] {
     if angle == 0.0 {
         return [N::one(), N::zero()];
@@ -33,8 +35,8 @@ pub(super) fn cos_sin<N: Enclosure>(angle: f64, halvings: u32, bits: u32) -> [N;
         order += 2.0;
         reached += fewer + f64::from(libm::frexp(order * (order - 1.0)).1 - 1);
     }
-    // All terms times the factorial of the last, by which the sum is divided once; with those left out the last is
-    // between 1 - x^2 and 1.
+    // All terms are multiplied by the factorial of the last, by which the sum is divided once. The last term plus all
+    // omitted ones is between 1 - x^2 and 1 times the last term.
     let last = N::one().widened(square);
     let ([mut cos, mut sin], mut factorials) = ([last; 2], [N::one(); 2]);
     while order > 0.0 {
@@ -56,7 +58,7 @@ mod tests {
     use crate::scalar::{Ball, DoubleDouble, Interval, Midpoint, Ordered, Real, Sign, Trigonometry};
     use proptest::prelude::*;
 
-    /// Whether `truth`, known far better, is not proved to lie beyond `radius` of the sum of `mid`.
+    /// Whether `truth`, which is known far better, may lie within `radius` of the sum of `mid`.
     fn near(truth: Interval, mid: &[f64], radius: f64) -> bool {
         let mid = mid.iter().fold(Interval::zero(), |sum, part| sum + Interval::from_f64(*part));
         let bound = Interval::from_f64(radius);
@@ -85,7 +87,7 @@ mod tests {
         })
     }
 
-    /// Angles of every size, most of them ordinary.
+    /// Angles of every magnitude, most of them ordinary.
     fn angle() -> impl Strategy<Value = f64> {
         prop_oneof![
             6 => -10.0..10.0f64,
@@ -103,7 +105,7 @@ mod tests {
         }
     }
 
-    /// The assumption about `libm`, near its worst places as well: next to the multiples of half a right angle.
+    /// Checks the assumed error of `libm`, also at its worst places, next to the multiples of pi / 4.
     #[test]
     fn libm_errs_by_less_than_assumed() {
         for turn in -3000..3000 {
