@@ -47,8 +47,7 @@ impl Analysis {
         self.energy_note().into_iter().chain(self.balance_note(problem, mass)).chain(self.unlisted_note())
     }
 
-    /// A note if contacts push against each other far harder than their motion needs: then the last digits of the input
-    /// decide.
+    /// A note if contacts push against each other far harder than they move: then the last digits of the input decide.
     pub(crate) fn balance_note(&self, problem: &ContactProblem, mass: impl FnOnce() -> f64) -> Option<String> {
         if self.verdict == Verdict::NoImpact {
             return None;
@@ -145,8 +144,7 @@ impl Scratch {
         })
     }
 
-    /// Computes beta, gamma and the regions. For slow contacts it uses the velocities with the digits that decide their
-    /// outcomes.
+    /// Computes beta, gamma and the regions, for slow contacts from the velocities that decided their outcomes.
     fn explain(&self, problem: &ContactProblem, source: &dyn Ladder) -> Option<Explanation> {
         let velocity = if self.scale.is_slow() { source.velocity() } else { None };
         let moving = velocity.map(|velocity| problem.moving(&velocity).0);
@@ -242,8 +240,7 @@ impl Scratch {
             F64Pass { regular, undecided, .. } = pass;
         }
         let is_asked = !(options.brief || self.tableau.without_slip);
-        // If all combinations are visited, the visit includes the one in which every contact sticks, which shows
-        // whether G is regular.
+        // A visit of all combinations includes the one in which every contact sticks, which shows whether G is regular.
         let is_shown =
             contacts < SEARCHED && problem.laws().iter().all(|law| law.impulse(Mode::Stick) == Impulse::Free);
         if is_asked && !is_shown {

@@ -66,8 +66,7 @@ impl Default for AnalysisOptions<'_> {
 /// The most undecided combinations that are listed; there may be 4^n.
 const LISTED: u64 = 100;
 
-/// A combination that needs more digits. Its number from 0 counts all 4^n combinations: the modes are its digits in
-/// base 4.
+/// A combination that needs more digits. Its number among all 4^n, from 0, has the modes as digits in base 4.
 #[derive(Debug, Clone)]
 pub struct Pending {
     pub number: u64,
@@ -151,8 +150,7 @@ pub struct Collected<'a> {
     memory: &'a mut OutcomeMemory,
     /// Combinations whose velocities form a set.
     pub pending_families: Vec<Pending>,
-    /// With the number of each family's combination. Until [`Self::finish`], corners are places in the order of
-    /// discovery.
+    /// With the number of each family's combination. Until [`Self::finish`], corners are in the order of discovery.
     families: Vec<(u64, Family)>,
     rejected: Vec<(u64, Rejection)>,
 }
@@ -224,8 +222,7 @@ impl<'a> Collected<'a> {
         self.push(number, modes, numbers, Solution { index, margin, range, at_zero: &at_zero });
     }
 
-    /// Counts a combination that no precision decided. The first ones are also listed, with zeros for the unknown
-    /// impulses.
+    /// Counts a combination that no precision decided, and lists the first ones with zeros for the unknown impulses.
     pub fn add_undecided(&mut self, Pending { number, modes }: Pending) {
         self.found.undecided += 1;
         if self.found.undecided > LISTED {

@@ -41,8 +41,7 @@ impl<T> From<SingularCase<T>> for Solved {
 }
 
 impl Solved {
-    /// Whether the numbers of the outcome have the promised digits; true if the combination is not an outcome by
-    /// itself.
+    /// Whether the numbers of the outcome have the promised digits; true if there is no outcome yet.
     pub fn is_sharp(&self) -> bool {
         match self {
             Self::Regular { numbers, .. } => numbers.are_sharp,

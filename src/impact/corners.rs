@@ -135,8 +135,7 @@ impl<T: Ordered> Hull<'_, T> {
         Ok(())
     }
 
-    /// The facet through these corners; `None` if they do not determine a plane, or if known corners lie on both sides
-    /// of it.
+    /// The facet through these corners; `None` if they determine no plane, or known corners lie on both sides of it.
     fn facet(&self, through: &[usize]) -> Result<Option<Facet<T>>, Unsettled> {
         let [normal] = &self.normals(through)?[..] else { return Ok(None) };
         let mut facet = Facet { normal: normal.clone(), corners: Vec::new(), open: true };

@@ -14,8 +14,7 @@
 //! ```
 //!
 //! with S of [`Scale`]. Each number is right to 1e-10 of its scale. If the errors at hand exceed [`DIGITS`], it is
-//! computed with more digits. The larger scales of the last line keep contacts that hardly feel a blow from always
-//! needing them.
+//! computed with more digits; the larger scales of the last line spare that to contacts that hardly feel a blow.
 
 use super::enumerate::Leaf;
 use super::generators::Generators;
@@ -98,8 +97,7 @@ impl Numbers {
         Self { motion, energy_loss, friction_needed: friction, are_sharp: true }
     }
 
-    /// The numbers of a combination: `impulse`, and velocities `xi` as `[c_t, xi_n]`, in numbers that know their
-    /// errors.
+    /// The numbers of a combination, which know their errors: `impulse`, and velocities `xi` as `[c_t, xi_n]`.
     pub fn of<T: Ordered>(
         (problem, scale): (&ContactProblem<T>, &Scale),
         modes: &[Mode],
@@ -159,8 +157,7 @@ pub fn is_known<T: Ordered>(number: T, scale: f64, digits: f64) -> bool {
     number.error() <= digits * scale.max(number.to_f64().abs())
 }
 
-/// Whether the errors of a range's ends are at most `digits` times the largest magnitude of both ends and `own`, which
-/// lies between them.
+/// Whether the errors of both ends of a range are at most `digits` times the largest magnitude of the ends and `own`.
 pub fn is_known_range<T: Ordered>(ends: [Option<T>; 2], own: T, digits: f64) -> bool {
     let scale = ends.into_iter().flatten().fold(own.to_f64().abs(), |most, end| most.max(end.to_f64().abs()));
     ends.into_iter().flatten().all(|end| is_known(end, scale, digits))
@@ -228,8 +225,7 @@ struct Candidate<'a> {
 }
 
 impl Candidate<'_> {
-    /// Whether all numbers have their digits if the two numbers of each contact ([`Leaf::numbers`]) are off by
-    /// `errors`.
+    /// Whether all numbers have their digits if each contact's two numbers ([`Leaf::numbers`]) are off by `errors`.
     fn serves(&self, errors: impl Fn(usize) -> [f64; 2]) -> bool {
         let Self { modes, problem, scale, motion, margin, .. } = self;
         let scales = match scale.likely_rounding {

@@ -10,8 +10,7 @@
 //! share this work: a tree of Schur complements. The contact law says which impulses a mode allows. The product of the
 //! pivots is det A (paper, section 2). No number is compared with another here.
 //!
-//! Cost: 4^n leaves of O(n) each. If k contacts are frictionless, 2^k 4^(n-k) leaves, since their closed modes share
-//! one elimination.
+//! Cost: 4^n leaves of O(n) each. A frictionless contact counts 2 in place of 4, since its closed modes are one leaf.
 
 use super::problem::ContactProblem;
 use crate::law::{Friction, Impulse, Law, Mode};
@@ -318,8 +317,7 @@ pub struct Labels {
 }
 
 impl Labels {
-    /// Visits every combination that a leaf's `modes` stand for. `shares` says whether modes with the same impulses are
-    /// visited as one leaf.
+    /// Visits every combination that a leaf's `modes` stand for; `shares` if modes with the same impulses are one leaf.
     pub fn visit(&mut self, modes: &[Mode], laws: &[Law], shares: bool, mut visit: impl FnMut(&[Mode])) {
         if !shares {
             return visit(modes);

@@ -13,8 +13,7 @@ use crate::planar::Pair;
 use crate::scalar::{Ordered, subtract};
 use std::cmp::Ordering;
 
-/// The sign of det B. If det B is zero, the sign of the lowest nonzero coefficient of det(B + s I); `None` if all are
-/// zero.
+/// The sign of det B; if det B is zero, that of the lowest nonzero coefficient of det(B + s I), `None` without any.
 pub fn index<T: Ordered>(problem: &ContactProblem<T>, modes: &[Mode]) -> Result<Option<i8>, Unsettled> {
     let mut stuck: Vec<usize> = Vec::new();
     let mut sliding: Vec<(usize, Pair<T>)> = Vec::new();
@@ -58,8 +57,7 @@ pub fn index<T: Ordered>(problem: &ContactProblem<T>, modes: &[Mode]) -> Result<
     lowest_coefficient(&schur)
 }
 
-/// The place in `open` of the pivot: among the diagonal entries shown not to be zero, the one farthest from zero.
-/// `None` if all are zero.
+/// The place in `open` of the pivot, the diagonal entry that is farthest from zero; `None` if all are shown to be zero.
 fn pivot<T: Ordered>(open: &[usize], matrix: &[Vec<T>]) -> Result<Option<usize>, Unsettled> {
     let mut best: Option<(usize, f64)> = None;
     for (place, &index) in open.iter().enumerate() {

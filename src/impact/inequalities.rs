@@ -4,8 +4,8 @@
 //!     slack s = N / det A      N and det A are as smooth as the problem; s changes its sign at N = 0 and det A = 0
 //! ```
 //!
-//! A set of outcomes changes only where some N passes zero. The numbers are f64 without error bounds; they only show
-//! where to look.
+//! A set of outcomes changes only where some N passes zero. The numbers are f64 without error bounds: hints to search
+//! by.
 //!
 //! Cost: that of the enumeration, 4^n combinations of n contacts.
 

@@ -18,8 +18,7 @@ pub fn least_impulse<T: Ordered>(
 ) -> Result<Vec<T>, Unsettled> {
     let mut y = vec![T::zero(); directions.len()];
     let mut binding: Vec<usize> = Vec::new();
-    // Each round binds a function or releases one. The rule of the lowest index prevents cycling at a degenerate
-    // corner.
+    // Each round binds a function or releases one. The rule of the lowest index prevents cycles at a degenerate corner.
     for _ in 0..ROUNDS * (functions.len() + 1) {
         let (target, multipliers) = least_on_face(origin, directions, functions, &binding)?;
         let step: Vec<T> = target.iter().zip(&y).map(|(&to, &from)| to - from).collect();
@@ -74,8 +73,8 @@ fn least_on_face<T: Ordered>(
     Ok((found.origin[..free].to_vec(), multipliers))
 }
 
-/// The function that reaches zero first along `step`, and the fraction of the step at which it does; `None` if none
-/// does before the end.
+/// The first function to reach zero along `step`, and the fraction of the step there; `None` if none does before its
+/// end.
 fn first_reached<T: Ordered>(
     functions: &[LinearFunction<T>],
     binding: &[usize],

@@ -1,9 +1,8 @@
 //! Solves linear equations without tolerances: each branch depends on a sign that was shown.
 //!
 //! The systems are small, a few contacts each, so plain dense elimination is enough. If a number may be zero in its
-//! precision, the work ends as [`Unsettled`], and the caller starts again with more digits. The work ends the same way
-//! once the budget is spent, because every loop here and in the modules that use this one asks for a sign in each
-//! round.
+//! precision, the work ends as [`Unsettled`], and the caller starts again with more digits. A spent budget ends the
+//! work the same way, because every loop here and in the modules that use this one asks for a sign in each round.
 
 use crate::budget::is_spent;
 use crate::scalar::{Ordered, Real, Sign, dot, subtract};
@@ -84,8 +83,7 @@ impl<T: Ordered> LinearFunction<T> {
     }
 }
 
-/// All solutions of linear equations: x = origin + sum of y_j times direction j; the directions are linearly
-/// independent.
+/// All solutions of linear equations: origin + sum of y_j times direction j, with linearly independent directions.
 #[derive(Debug, Clone)]
 pub struct Solutions<T> {
     pub origin: Vec<T>,
@@ -133,8 +131,7 @@ impl<T: Ordered> Solutions<T> {
     }
 }
 
-/// Solves `equations`, each of which lists the coefficients of the `unknowns` and then the right-hand side; `None` if
-/// there is no solution.
+/// Solves `equations`, each with the coefficients of the `unknowns` and then the right-hand side; `None` if unsolvable.
 pub fn solve<T: Ordered>(unknowns: usize, mut equations: Vec<Vec<T>>) -> Result<Option<Solutions<T>>, Unsettled> {
     let mut pivots = Vec::new();
     for column in 0..unknowns {

@@ -99,8 +99,7 @@ fn least_common<'a, T: Ordered + 'a>(
     functions: &[LinearFunction<T>],
 ) -> Result<Option<T>, Unsettled> {
     let dimension = functions.first().map_or(0, |function| function.coefficients.len());
-    // The largest value that the smallest slack can have with this friction. It is shown to be negative if the friction
-    // is not enough.
+    // The largest possible smallest slack with this friction; it is shown to be negative if the friction is not enough.
     let room = |friction: f64| {
         let edge = |side: f64| {
             move |[t, n]: &'a Pair<LinearFunction<T>>| {

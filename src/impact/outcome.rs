@@ -1,4 +1,4 @@
-//! The answer of an analysis: outcomes, rejections and the verdict. This file has only data types.
+//! The types of an analysis's answer: outcomes, rejections and the verdict.
 
 use crate::law::{Inequality, Mode};
 use crate::planar::{Pair, Vector};
@@ -219,8 +219,8 @@ pub struct Rejection {
     pub because: RejectionReason,
     /// The smallest slack, free of units: negative, or zero on a border. `None` if no solution gives one.
     pub margin: Option<f64>,
-    /// The impulses that the combination would need and the velocities that they would cause; `None` if its equations
-    /// have no solution.
+    /// The impulses that the combination would need, with the velocities that they cause; `None` if there is no
+    /// solution.
     pub motion: Option<Motion>,
 }
 
@@ -362,8 +362,7 @@ pub struct Analysis {
     pub index_sum: Option<i32>,
     /// The rank of the Delassus matrix; `None` if it was not asked for or is not known within the budget.
     pub rank: Option<usize>,
-    /// The condition number of the Delassus matrix scaled to a unit diagonal; `None` if the matrix is singular or
-    /// `rank` is `None`.
+    /// The condition number of the Delassus matrix scaled to a unit diagonal; `None` if it is singular or not known.
     pub condition: Option<f64>,
     /// Whether some outcome has no sliding contact; `None` if that depends on an undecided combination.
     pub no_slip_consistent: Option<bool>,

@@ -15,8 +15,7 @@ use crate::law::{Impulse, Law, Mode};
 use crate::planar::Pair;
 use crate::scalar::{Ordered, Rounded, Sign};
 
-/// The most combinations that are tried with many digits. The remaining ones of many contacts would take too long and
-/// stay undecided.
+/// The most combinations that are tried with many digits; the rest would take too long and stay undecided.
 const PRECISE_COMBINATIONS: usize = 2_000;
 
 /// The pass over all combinations in f64.
@@ -117,8 +116,7 @@ pub struct UndecidedPass<'a, 'c> {
 }
 
 impl UndecidedPass<'_, '_> {
-    /// Adds the combinations that no precision finished: solutions that lack digits, and combinations whose signs are
-    /// open.
+    /// Adds the combinations that no precision finished: those whose numbers lack digits, and those with open signs.
     pub fn finish(mut self) {
         for Undecided { pending, blunt } in std::mem::take(&mut self.undecided) {
             if let Some(solved) = blunt {
@@ -162,8 +160,8 @@ impl PrecisionTask for UndecidedPass<'_, '_> {
             let listed = collected.options.rejections.contain(&pending.modes);
             let blunt = match if stops { Err(Unsettled) } else { solver.solve(&pending.modes) } {
                 Ok(solved) if solved.is_sharp() && !(listed && solved.is_vague()) => {
-                    // The combination has the velocity of others because contacts depend on each other, not because one
-                    // of them is on a border.
+                    // It has the velocity of others because contacts depend on each other, not because it is on a
+                    // border.
                     let solved = match solved {
                         Solved::Rejected(Rejection { because: RejectionReason::OnBorder, .. }) if place >= decisive => {
                             Solved::Rejected(Rejection::of(&pending.modes, RejectionReason::RedundantTwin))

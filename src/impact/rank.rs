@@ -8,8 +8,7 @@ use crate::reductions::Reductions;
 use crate::scalar::Ordered;
 use nalgebra::DMatrix;
 
-/// The rank of G and, if G is regular, the condition number of G scaled to a unit diagonal. `None` if the budget ends
-/// first.
+/// The rank of G and, if G is regular, its condition number at a unit diagonal; `None` if the budget ends first.
 pub fn rank_and_condition(
     problem: &ContactProblem,
     remembered: &Remembered<'_>,

@@ -29,8 +29,8 @@ impl CombinationReading {
 }
 
 impl Rejection {
-    /// The rejection of a combination whose reading is negative. `motion` is not called if two equations contradict
-    /// each other.
+    /// The rejection of a combination whose reading is negative; `motion` is not called if two equations are
+    /// contradictory.
     pub(super) fn read(modes: &[Mode], reading: CombinationReading, motion: impl FnOnce() -> Motion) -> Self {
         let solved = !matches!(reading.because, RejectionReason::NothingHolds { .. });
         let is_vague = reading.is_vague();
@@ -51,8 +51,7 @@ pub fn rejects<T: Ordered>(numbers: Pair<T>, mode: Mode, law: &Law) -> bool {
     wrong
 }
 
-/// Reads the signs of all slacks, and the equality c_t = 0 of frictionless contacts that stick. `at_zero` is empty
-/// memory.
+/// Reads the signs of all slacks, and of c_t = 0 at frictionless contacts that stick; `at_zero` is empty memory.
 pub fn read<T: Ordered>(
     leaf: &Leaf<'_, T>,
     modes: &[Mode],

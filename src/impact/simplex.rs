@@ -274,8 +274,8 @@ mod tests {
 
     #[test]
     fn a_degenerate_program_does_not_cycle() {
-        // Beale's example, which cycles under the largest-coefficient rule; the rows x >= 0 are functions here. The
-        // maximum is 1/20.
+        // Beale's example, which cycles under the largest-coefficient rule; the rows x >= 0 are functions. The maximum
+        // is 1/20.
         let unit = |own: usize| std::array::from_fn(|entry| f64::from(u8::from(entry == own)));
         let mut rows: Vec<LinearFunction<Number>> = (0..4).map(|own| affine(0.0, &unit(own) as &[f64; 4])).collect();
         rows.push(affine(0.0, &[-0.25, 60.0, 0.04, -9.0]));

@@ -36,8 +36,7 @@ use std::cmp::Ordering;
 /// The cap of the least slack, free of units: a program that reaches it has unbounded impulses.
 const UNBOUNDED: f64 = 1e3;
 
-/// Violated inequalities whose values differ by less than this relative amount count as equal when one of them is
-/// named.
+/// Violated inequalities within this relative distance of the worst one count as equal when one of them is named.
 const EQUALLY_BAD: f64 = 1e-9;
 
 /// The result for a combination whose equations are singular.
@@ -322,8 +321,8 @@ impl<'a, T: Ordered> Equations<'a, T> {
     fn rejected(&self, space: &Space<T>, y: &[T]) -> Rejection {
         let values = space.inequalities.iter().map(|inequality| (inequality, inequality.function.at(y).to_f64()));
         let least = values.clone().map(|(_, value)| value).fold(f64::INFINITY, f64::min);
-        // At the optimum several inequalities are equally violated, up to rounding. The first contact's is named, the
-        // cone before others.
+        // At the optimum several inequalities are equally violated up to rounding; the first contact's is named, first
+        // its cone.
         let order = |own: &Constraint<T>| (own.contact, own.inequality != Inequality::FrictionCone);
         let equals = values.filter(|(_, value)| *value <= least + EQUALLY_BAD * least.abs());
         let worst = equals.min_by_key(|(own, _)| order(own));

@@ -70,8 +70,8 @@ impl Scale {
             self.speed = bounces.fold(0.0, f64::max);
         }
         if self.speed == 0.0 {
-            // Speeds that underflow in the division do not mean rest. The tiny scale leaves such problems to other
-            // numbers than f64.
+            // Speeds that underflow in the division do not mean rest; with so tiny a scale, f64 leaves them to other
+            // numbers.
             let at_rest = problem.velocity_free().iter().flatten().all(|&c| c == 0.0);
             self.speed = if at_rest { 1.0 } else { f64::MIN_POSITIVE };
         }
@@ -121,8 +121,7 @@ impl Scale {
         }
     }
 
-    /// The problem as balls around its f64 numbers. Tangential rows that contacts are known to share are copies of one
-    /// row.
+    /// The problem as balls around its f64 numbers, in which shared tangential rows are copies of one row.
     pub fn enclosed(
         &self,
         problem: &ContactProblem,

@@ -14,8 +14,7 @@ use crate::budget::{ROUNDS, is_spent_after};
 use crate::law::{Law, Mode};
 use crate::scalar::Ordered;
 
-/// From this number of contacts on, combinations are searched as a tree; with fewer contacts they are visited one by
-/// one.
+/// From this number of contacts on, combinations are searched as a tree; with fewer contacts all are visited.
 pub const SEARCHED: usize = 4;
 
 /// Finds the combinations that may be outcomes.

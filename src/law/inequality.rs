@@ -51,8 +51,7 @@ impl Inequality {
         }
     }
 
-    /// Whether the inequality is one of a velocity or acceleration. These are strict: a value of zero belongs to
-    /// another mode.
+    /// Whether the inequality is one of velocities or accelerations. These are strict: zero belongs to another mode.
     pub fn is_strict(self) -> bool {
         matches!(self.of_forces(), Self::NormalAcceleration | Self::TangentialAcceleration)
     }

@@ -121,8 +121,7 @@ impl<T: Real> Law<T> {
         }
     }
 
-    /// The rays that span the convex cone of the impulses of all modes. The flag of a ray says whether its opposite is
-    /// in the cone, too.
+    /// The rays that span the cone of the impulses of all modes, and whether the cone holds the opposite of each, too.
     pub fn rays(&self) -> Vec<([T; 2], bool)> {
         let (zero, one) = (T::zero(), T::one());
         match *self {

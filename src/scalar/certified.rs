@@ -16,8 +16,7 @@ pub struct Certified<B> {
 }
 
 impl<B: Ordered> Certified<B> {
-    /// Pairs a residue with its enclosure: zero if the residue is zero, unknown after a division by zero, else
-    /// `enclosure`.
+    /// Pairs a residue with its enclosure: zero for a residue of zero, unknown after a division by zero.
     fn paired(residue: Residue, enclosure: impl FnOnce() -> B) -> Self {
         let enclosure = match residue.is_zero() {
             Some(false) => enclosure(),

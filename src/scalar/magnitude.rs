@@ -2,8 +2,7 @@
 
 use super::Real;
 
-/// The sum of the magnitudes of all terms that a number was computed from. The rounding of the number is relative to
-/// this.
+/// The sum of the magnitudes of all terms that a number was computed from, to which its rounding is relative.
 ///
 /// After N successive operations, the rounding error is at most (N + 1) u times the magnitude, which also accounts for
 /// underflow. Source: Higham 2002, section 3.1 (with sums of terms in any order).

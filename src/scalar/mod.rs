@@ -164,8 +164,7 @@ pub trait Ordered: Real {
         work()
     }
 
-    /// A bound of the distance between the number and [`Ordered::to_f64`] before that is rounded to f64; infinite if
-    /// nothing is known.
+    /// A bound of the distance from [`Ordered::to_f64`], apart from its rounding to f64; infinite if nothing is known.
     fn error(self) -> f64;
 }
 
@@ -219,8 +218,7 @@ pub trait Midpoint: Real {
         self.magnitude() * Self::ROUNDING + f64::MIN_POSITIVE
     }
 
-    /// A bound of the error of a quotient that was rounded to this number; `divisor` is a lower bound of the divisor's
-    /// magnitude.
+    /// A bound of the error of a quotient that was rounded to this number; the divisor is no smaller than `divisor`.
     fn quotient_rounding(self, _divisor: f64) -> f64 {
         self.rounding()
     }
@@ -309,8 +307,7 @@ mod tests {
         }
     }
 
-    /// Asserts the signs that all number types must know or leave undecided. Returns those of three identities and of a
-    /// small number.
+    /// Asserts the signs that all number types must share; returns those of three identities and of a small number.
     fn signs<N: Ordered + Trigonometry>() -> ([Sign; 3], Sign) {
         let number = N::from_f64;
         let [zero, one, two, three] = [0.0, 1.0, 2.0, 3.0].map(number);

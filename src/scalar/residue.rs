@@ -3,8 +3,7 @@
 use super::{Real, Trigonometry};
 use std::cell::Cell;
 
-/// A number modulo two primes just below 2^61, with cosines and sines replaced by the coordinates of points on a
-/// circle.
+/// A number modulo two primes just below 2^61; points of a circle replace cosines and sines.
 ///
 /// It shows whether a number that was computed from f64 and from cosines and sines of f64 angles is zero. All these
 /// angles are multiples of one 2^-k, so such a number is a rational function R, with rational coefficients, of w = e^(i
@@ -21,8 +20,8 @@ use std::cell::Cell;
 pub struct Residue([u64; 2]);
 
 /// The primes are 2^61 - c for these c: the largest that are 3 modulo 8 and whose (p + 1) / 4 is prime, too. So -1 is
-/// not a square, the circle has p + 1 points, and the order of a point is that prime times 1, 2 or 4, or a divisor of
-/// 4.
+/// not a square, the circle has p + 1 points, and the order of a point is a divisor of 4, or 1, 2 or 4 times that
+/// prime.
 const FIRST: u64 = 11_029;
 const SECOND: u64 = 13_669;
 
@@ -163,8 +162,7 @@ impl<const BITS: u32, const C: u64> Modulus<BITS, C> {
         Tables { powers, turns }
     }
 
-    /// `value` modulo [`Self::PRIME`]; `part` selects the powers of two in `tables`: 0 modulo the prime, 1 modulo the
-    /// order.
+    /// `value` modulo [`Self::PRIME`]; `part` selects the powers in `tables`: 0 modulo the prime, 1 modulo the order.
     #[inline]
     fn of(value: f64, tables: &Tables, part: usize) -> u64 {
         let (integer, exponent) = decomposed(value);
@@ -215,8 +213,7 @@ impl Residue {
     /// The residue of the exact number zero.
     pub const ZERO: Self = Self([0; 2]);
 
-    /// Whether the number is zero. `Some(false)` is proven, `Some(true)` is nearly certain; `None` after a division by
-    /// zero.
+    /// Whether the number is zero: proven if false, nearly certain if true; `None` after a division by zero.
     pub fn is_zero(self) -> Option<bool> {
         let [first, second] = self.0;
         if first == 0 && second == 0 {

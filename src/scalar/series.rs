@@ -1,7 +1,6 @@
 //! The cosine and sine of an exact angle by the Taylor series, in any number type with an error bound.
 //!
-//! [`Interval`](super::Interval) and the ball of double-doubles share the series, because both need proven bounds of
-//! all their digits.
+//! [`Interval`](super::Interval) and the ball of double-doubles share it: both need proven bounds of all their digits.
 
 use super::Enclosure;
 

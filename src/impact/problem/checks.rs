@@ -130,8 +130,7 @@ impl ContactProblem {
     /// geometric mean of its two diagonal entries by the most. `None` if no single entry does.
     fn offending(&self, sizes: &[f64], rounding: f64) -> Option<(usize, usize)> {
         let rows = 2 * self.contacts();
-        // Infinite for an entry whose diagonal entries include one that is not positive; NaN if that entry is zero
-        // itself.
+        // Infinite for a nonzero entry with a diagonal entry that is not positive; NaN for a zero entry there.
         let excess = |(i, j): (usize, usize)| {
             let entry = if i == j { -self.delassus(i, i) } else { self.delassus(i, j).abs() };
             entry / sizes[i] / sizes[j] - 1.0

@@ -53,11 +53,11 @@ impl Dynamics {
 
 impl ContactProblem {
     /// Builds a problem from the dynamics: M (dofs x dofs), J (two rows per contact, tangential then normal; dofs
-    /// columns) and v (dofs), in consistent units. Contacts that are exactly redundant stay so, which a rounded G would
-    /// not preserve.
+    /// columns) and v (dofs), in consistent units. Exactly redundant contacts stay so, which a rounded G would not
+    /// preserve.
     ///
     /// # Errors
-    /// Returns an error where [`ContactProblem::new`] does, and if the mass matrix is asymmetric or not positive
+    /// Returns the errors of [`ContactProblem::new`], and one if the mass matrix is asymmetric or not positive
     /// definite.
     pub fn from_dynamics(
         mass_matrix: &[Vec<f64>],

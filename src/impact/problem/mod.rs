@@ -4,8 +4,7 @@
 //!     c+ = c_free + G L,    c_free = c- + (effect of applied impulses)
 //! ```
 //!
-//! with one contact law per contact (paper, section 2). A problem can also be built from matrices alone, without a
-//! robot.
+//! with one contact law per contact (paper, section 2). A problem can also be built from matrices, without a robot.
 
 mod checks;
 mod source;
@@ -66,8 +65,8 @@ impl<T: Real> ContactProblem<T> {
         self.velocity_before.len()
     }
 
-    /// An entry of the Delassus matrix \[1/kg\]; rows and columns 2i (tangential) and 2i + 1 (normal) belong to contact
-    /// i.
+    /// An entry of the Delassus matrix \[1/kg\]; contact i has the rows and columns 2i (tangential) and 2i + 1
+    /// (normal).
     pub fn delassus(&self, row: usize, column: usize) -> T {
         self.delassus[row * 2 * self.contacts() + column]
     }
@@ -102,8 +101,7 @@ impl<T: Real> ContactProblem<T> {
         &self.restitution
     }
 
-    /// The bounce of a contact, e min(c_n-, 0), which is not positive \[m/s\]. Newton's restitution in Moreau's form is
-    /// xi_n = c_n+ + bounce.
+    /// The bounce e min(c_n-, 0) of a contact \[m/s\], so that xi_n = c_n+ + bounce (Newton's law in Moreau's form).
     pub fn bounce(&self, contact: usize) -> T {
         T::from_f64(self.restitution[contact]) * self.approach[contact]
     }
@@ -169,8 +167,7 @@ impl ContactProblem {
     /// # Errors
     /// Returns an error if lengths do not match, if there are more contacts than [`MATRIX_LIMIT`], if a number is not
     /// finite, if a friction is negative or a restitution outside 0..1, and if the Delassus matrix is asymmetric or
-    /// indefinite by more than rounding. Each entry is judged relative to the geometric mean of its two diagonal
-    /// entries.
+    /// indefinite beyond rounding, each entry relative to the geometric mean of its two diagonal entries.
     pub fn new(
         delassus: Vec<f64>,
         velocity_before: Vec<Pair<f64>>,
@@ -336,8 +333,7 @@ mod tests {
         assert_eq!(place(&[0.0, 1.0, 1.0, 0.0]).as_deref(), Some("delassus[1][0]"));
         let mut g = [[4.0, 0.0, 0.0, 0.0], [0.0, 3.0, 0.0, 2.5], [0.0, 0.0, 1.0, 0.0], [0.0, 2.5, 0.0, 2.0]];
         assert_eq!(place(g.as_flattened()).as_deref(), Some("delassus[3][1]"));
-        // Every pair of rows is consistent, but the three together are indefinite: elimination leaves a negative last
-        // pivot.
+        // No two rows alone are inconsistent, but the three together are: elimination leaves a negative last pivot.
         g = [[1.0, -0.9, -0.9, 0.0], [-0.9, 1.0, -0.9, 0.0], [-0.9, -0.9, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
         assert_eq!(place(g.as_flattened()).as_deref(), Some("delassus[0][0]"));
     }
@@ -355,7 +351,7 @@ mod tests {
         let [exact, rounded] = [exact, rounded].map(|own| crate::impact::analyze(&own, false.into()).unwrap());
         assert!(exact.proven && rounded.proven);
         assert_eq!(exact.outcomes[0].modes, rounded.outcomes[0].modes);
-        // Rows that are equal except for the digit that makes the matrix asymmetric: that digit alone makes the mean
+        // Rows that are equal except for the digit that makes the matrix asymmetric, which alone makes the mean
         // definite.
         let rows = [[2.0, -1.0, 2.0, 1.0], [-1.0, 2.0, -1.0, 0.0], [2.0, -1.0, 2.0, 1.0], [1.0, 0.0, 1.0, 2.0]];
         let mut delassus = rows.concat();

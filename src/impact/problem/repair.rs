@@ -30,8 +30,7 @@ impl FactorRows {
             for (i, line) in rest.iter_mut().enumerate() {
                 rows[i].push(column[i]);
                 subtract(line, &column, column[i]);
-                // The rest of the pivot's column is zero by construction; its rounding must not be taken for another
-                // rank.
+                // The rest of the pivot's column is zero by construction; its rounding must not count as more rank.
                 line[pivot] = 0.0;
             }
             rest[pivot].fill(0.0);

@@ -8,8 +8,7 @@
 //!
 //! "Balls" and all later numbers also carry a residue that shows whether a number is exactly zero (see
 //! [`Residue`](crate::scalar::Residue)). Plain balls have none; they cost less than half and serve where no zeros are
-//! expected. Thus borders and dependent contacts are recognized, and a number that is not zero shows its sign once it
-//! has enough digits.
+//! expected. Thus borders and dependent contacts are recognized, and enough digits show the sign of every other number.
 
 use super::{ContactProblem, Origin};
 use crate::budget::{ROUNDS, is_spent, is_spent_after};
@@ -28,8 +27,8 @@ pub trait Source {
     /// Error bounds of the f64 problem.
     fn errors(&self) -> Errors<'_>;
 
-    /// c- in pairs of f64 \[m/s\], with errors far smaller than [`Self::errors`] states; `None` if c- needs M^-1 or
-    /// differs from c_free.
+    /// c- in pairs of f64 \[m/s\], with far smaller errors than [`Self::errors`]; `None` if it needs M^-1 or is not
+    /// c_free.
     fn velocity(&self) -> Option<Vec<Pair<Ball<DoubleDouble>>>> {
         None
     }
@@ -85,8 +84,8 @@ impl<S: Source> Ladder for S {
     }
 }
 
-/// A source that computes its problem once in each kind of numbers. Intervals are computed each time, since they live
-/// only in their scope.
+/// A source that computes its problem once in each kind of numbers; in intervals each time, since these end with a
+/// scope.
 pub struct Remembered<'a> {
     pub source: &'a dyn Ladder,
     plain: OnceCell<ContactProblem<Ball>>,
@@ -133,8 +132,8 @@ impl Rung for Certified<Interval> {
 /// Error bounds of an f64 problem.
 #[derive(Debug, Clone, Copy)]
 pub struct Errors<'a> {
-    /// Bound of the error of an entry G_ij, relative to sqrt(G_ii G_jj) of the f64 matrix; infinite if nothing is
-    /// known, not even of c.
+    /// Bound of the error of G_ij, relative to sqrt(G_ii G_jj) of the f64 matrix; infinite if nothing is known, even of
+    /// c.
     pub delassus: f64,
     /// Bounds of the errors of c- and c_free, per contact \[m/s\]; `None` if they are exact.
     pub velocity: Option<&'a [Pair<f64>]>,

@@ -18,8 +18,7 @@ pub struct Claim {
 }
 
 impl Claim {
-    /// Returns the claim's nogood if the claim holds in exact numbers, including the strictness of inequalities; `None`
-    /// if it does not hold.
+    /// Returns the claim's nogood; `None` if the claim does not hold in exact numbers, strictness included.
     pub fn shown<T: Ordered>(&self, problem: &ContactProblem<T>) -> Result<Option<Ranges>, Unsettled> {
         let rows = 2 * problem.contacts();
         let rays: Vec<Ray> = Ray::all(problem.laws()).collect();

@@ -12,8 +12,8 @@ const PIVOTS: usize = 6;
 /// Rows are padded to a multiple of this length.
 pub const LANES: usize = 4;
 
-/// Basic variables as affine functions of the nonbasic ones. Variables below 2n are velocities, the others multipliers
-/// of rays.
+/// Basic variables as affine functions of the nonbasic ones. The first 2n variables are velocities, the others
+/// multipliers.
 #[derive(Debug, Clone, Default)]
 pub struct Dictionary {
     /// One row per basic variable: its coefficients of the nonbasic variables, padding, and last its value.

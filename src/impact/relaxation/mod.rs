@@ -48,8 +48,7 @@ pub struct Relaxation {
     rows: usize,
     laws: Vec<Law>,
     rays: Vec<Ray>,
-    /// The scaled velocities, row by row: their coefficients of the rays' multipliers, padding, and last their values
-    /// without impulses.
+    /// The scaled velocities by rows: their coefficients of the rays' multipliers, padding, and their free values.
     response: Vec<f64>,
     /// Errors of the entries of `response`: of the coefficients and of the values without impulses.
     errors: Pair<f64>,
@@ -177,7 +176,7 @@ impl Relaxation {
         per_root * (size(&z) + per_root * rest)
     }
 
-    /// Decides the mode of a contact after those of all contacts before it; returns what is lacking if f64 finds that
+    /// Decides the mode of a contact after all contacts before it; returns what is lacking if f64 finds that
     /// impossible.
     pub fn decide(&mut self, contact: usize, mode: Mode) -> Option<Lack> {
         let ranges = self.ranges(contact, mode);
@@ -305,8 +304,7 @@ mod tests {
     use crate::law::Friction;
     use crate::scalar::{Ball, Certified, Real};
 
-    /// One body of mass 1 on two points of the same height, to the left and right of its center; both strike the
-    /// ground.
+    /// One body of mass 1 on two points of the same height, left and right of its center; both strike the ground.
     fn struck(friction: Friction) -> ContactProblem {
         let rows = [[1.0, 0.0, 0.5], [0.0, 1.0, -1.0], [1.0, 0.0, 0.5], [0.0, 1.0, 1.0]];
         let dot = |a: &[f64; 3], b: &[f64; 3]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
@@ -338,7 +336,7 @@ mod tests {
             (0.3, vec![SlideMinus], Some((true, true))),
             (0.3, vec![SlidePlus, SlidePlus], None),
             (0.8, vec![Stick, Stick], None),
-            // Both points have the same tangential velocity, so only strictness excludes these: no error bound can show
+            // Both points have the same tangential velocity, so only strictness excludes these, and no bound can show
             // it.
             (0.8, vec![Stick, SlidePlus], Some((false, true))),
             (0.8, vec![SlidePlus, Stick], Some((false, true))),
