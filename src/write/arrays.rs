@@ -1,4 +1,4 @@
-//! Results as arrays: what a table of results has in its cells, as numbers of many states one after the other.
+//! Results as arrays: the cells of a table of results as numbers, for many states one after the other.
 
 use super::csv::{border, families, no_column, notes};
 use super::{Columns, ErrorObject};
@@ -7,57 +7,57 @@ use crate::{Impact, Result, Verdict};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// The answers to many states. Lists per state have one entry for each; lists per outcome one for each outcome of each
-/// state, and state `k` has those from `offsets[k]` to `offsets[k + 1]`. Matrices are row by row.
+/// The answers to many states. Lists per state have one entry per state. Lists per outcome have one entry for each
+/// outcome of each state; those of state `k` lie between `offsets[k]` and `offsets[k + 1]`. Matrices are row by row.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Arrays {
-    /// The contacts of a matrix's columns; read back, there are no more answers to come.
+    /// The contacts, in the order of the matrices' columns; not serialized, because arrays that are read back do not
+    /// grow.
     #[serde(skip)]
     contacts: Arc<[String]>,
-    /// Per state: the verdict as a number, in the order of [`Verdict`]; [`Arrays::REFUSED`] of a
-    /// refused state.
+    /// Per state: the verdict as a number, in the order of [`Verdict`]; [`Arrays::REFUSED`] for a refused state.
     pub verdict: Vec<u8>,
     /// Per state: whether every combination is decided by an error bound.
     pub all_proven: Vec<bool>,
-    /// Where the outcomes of each state begin, and where those of the last one end.
+    /// The index of each state's first outcome, and the number of all outcomes at the end.
     pub offsets: Vec<i64>,
-    /// Per outcome and contact: the mode as a number, in the order of [`Mode`](crate::Mode); [`Arrays::OPEN`] without
-    /// contact.
+    /// Per outcome and contact: the mode as a number, in the order of [`Mode`](crate::Mode); [`Arrays::OPEN`] if the
+    /// contact is not closed.
     pub modes: Vec<i8>,
-    /// Per outcome and contact: [tangential, normal] \[N s, of forces N\]; NaN without contact, and where the outcome is
-    /// not decided.
+    /// Per outcome and contact: impulse [tangential, normal] \[N s\], or force \[N\]; NaN if the contact is not closed
+    /// or the outcome is not decided.
     pub impulse: Vec<f64>,
-    /// Per outcome and coordinate: v after the impact \[m/s, rad/s\], of forces its rate \[m/s^2, rad/s^2\]; NaN where
-    /// the outcome is not decided.
+    /// Per outcome and coordinate: v after the impact \[m/s, rad/s\], or with forces its rate \[m/s^2, rad/s^2\]; NaN
+    /// if the outcome is not decided.
     pub velocity_after: Vec<f64>,
     /// Per outcome: the smallest slack; NaN if there is no inequality.
     pub margin: Vec<f64>,
-    /// Per outcome: the sign of det A; 0 if it is not defined.
+    /// Per outcome: the sign of det A, the determinant of the equations of its modes; 0 if it is not defined.
     pub index: Vec<i8>,
     /// Per outcome: whether an error bound shows every sign.
     pub proven: Vec<bool>,
     /// Per outcome: whether it is a corner of a family.
     pub family: Vec<bool>,
-    /// Of states: why each was refused.
+    /// Per refused state: why it was refused.
     pub error: Texts,
-    /// Of states: what a reader should know.
+    /// Per state: its notes.
     pub notes: Texts,
-    /// Of outcomes on a border: what is zero.
+    /// Per outcome on a border: the inequalities that are zero.
     pub border: Texts,
-    /// Of outcomes that are corners: the modes of their families.
+    /// Per outcome that is a corner: the modes of its families.
     pub families: Texts,
 }
 
-/// Texts of a few entries of a list, of which many are the same.
+/// Texts for a few entries of a list, many of which are equal.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Texts {
-    /// Entries of the list with a text, and which text.
+    /// Pairs of an entry of the list and the index of its text in `known`.
     pub at: Vec<(usize, usize)>,
-    /// The texts; one that was among the last is not repeated.
+    /// The texts; a text that equals one of the last few is not stored again.
     pub known: Vec<String>,
 }
 
-/// So many of the last texts are compared with a new one.
+/// The number of last texts that a new text is compared with.
 const NEAR: usize = 16;
 
 impl Texts {
@@ -79,7 +79,7 @@ impl Texts {
         self.known.clear();
     }
 
-    /// Adds those of a list that follows behind `before` entries.
+    /// Appends the texts of a list whose entries follow `before` earlier entries.
     fn append(&mut self, before: usize, other: Self) {
         for (at, place) in other.at {
             self.push(before + at, other.known[place].clone());
@@ -88,17 +88,17 @@ impl Texts {
 }
 
 impl Arrays {
-    /// The verdict of a refused state.
+    /// The `verdict` of a refused state.
     pub const REFUSED: u8 = Verdict::ALL.len() as u8;
-    /// The mode of a contact that is not closed.
+    /// The entry of `modes` for a contact that is not closed.
     pub const OPEN: i8 = -1;
 
-    /// No answer yet; those to come are of contacts and coordinates that have these `columns`.
+    /// Creates empty arrays for answers with the contacts of these `columns`.
     pub fn new(columns: &Columns) -> Self {
         Self::of(columns.contacts().into(), 0)
     }
 
-    /// No answer yet, of the same contacts, with room for those to so many states of one outcome each.
+    /// Creates empty arrays for the same contacts, with capacity for `states` states of one outcome each.
     pub fn for_states(&self, states: usize) -> Self {
         Self::of(Arc::clone(&self.contacts), states)
     }
@@ -121,7 +121,7 @@ impl Arrays {
         }
     }
 
-    /// Forgets all answers and keeps the memory for others.
+    /// Removes all answers but keeps the allocated memory.
     pub fn clear(&mut self) {
         self.offsets.clear();
         self.offsets.push(0);
@@ -139,7 +139,7 @@ impl Arrays {
         }
     }
 
-    /// Adds the answer to the next state; one whose contacts have no columns is refused.
+    /// Adds the answer to the next state; a state with a contact that has no columns is refused.
     pub fn push(&mut self, answer: Result<&Impact>) {
         if let Err(error) = answer.and_then(|impact| self.answered(impact)) {
             self.error.push(self.verdict.len(), ErrorObject::new(&error).to_string());
@@ -184,7 +184,7 @@ impl Arrays {
         Ok(())
     }
 
-    /// Adds the answers to the states that follow, of the same contacts.
+    /// Appends the answers to the states that follow; both must have the same contacts.
     pub fn append(&mut self, mut next: Self) {
         let (states, outcomes) = (self.verdict.len(), self.margin.len());
         self.offsets.extend(next.offsets.iter().skip(1).map(|offset| offset + outcomes as i64));

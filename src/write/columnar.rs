@@ -1,7 +1,7 @@
-//! Tables of results as columns with types: Parquet, and Arrow's file and stream.
+//! Tables of results with typed columns: Parquet, and Arrow's file and stream.
 //!
 //! ```text
-//!     rows of cells --[RowSink]--> Block, one per task --> RecordBatch --[Writer]--> bytes, some row groups at a time
+//! rows of cells --[RowSink]--> ColumnBlock, one per task --> RecordBatch --[Writer]--> bytes, some rows at a time
 //! ```
 
 use super::csv::{Cell, Columns, Kind, Row, RowSink};
@@ -20,15 +20,15 @@ use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use parquet::schema::types::ColumnPath;
 use std::sync::Arc;
 
-/// So many rows are written together, and to a row group of Parquet.
+/// Rows per write, and rows per Parquet row group.
 const TOGETHER: usize = 1 << 13;
 const ROW_GROUP: usize = 1 << 17;
 
-/// Rows of results in the making.
+/// A block of result rows that is being filled.
 #[derive(Debug)]
 pub struct ColumnBlock {
     columns: Vec<Column>,
-    /// How many there are; a column lacks those at its end that are empty.
+    /// The number of rows. A column may be shorter: the empty cells at its end are not stored yet.
     rows: usize,
 }
 
@@ -38,7 +38,8 @@ enum Column {
     Number(Float64Builder),
     Integer(Int64Builder),
     Boolean(BooleanBuilder),
-    /// Cells of these columns: which column, and of each row which of its arrays and where; the first array is null.
+    /// Cells of carried column `which`. For each row, `at` has the array (0 is a null, k is `sources[k - 1]`) and the
+    /// row there.
     Carried {
         which: usize,
         sources: Vec<Arc<RecordBatch>>,
@@ -46,7 +47,7 @@ enum Column {
     },
 }
 
-/// Appends the cell of a row before which there are so many `rows`, unless it is set already.
+/// Appends the cell of row `rows` (from 0), unless it is already set.
 #[inline]
 fn put<B: ArrayBuilder>(builder: &mut B, rows: usize, nulls: fn(&mut B, usize), append: impl FnOnce(&mut B)) {
     if has_room(builder, rows, nulls) {
@@ -54,7 +55,7 @@ fn put<B: ArrayBuilder>(builder: &mut B, rows: usize, nulls: fn(&mut B, usize), 
     }
 }
 
-/// Whether the cell of a row is not set yet; then the column has the cells before it.
+/// Fills the column with nulls up to row `rows`, and returns whether that row's cell is not set yet.
 #[inline]
 fn has_room<B: ArrayBuilder>(builder: &mut B, rows: usize, nulls: fn(&mut B, usize)) -> bool {
     let own = builder.len();
@@ -64,14 +65,14 @@ fn has_room<B: ArrayBuilder>(builder: &mut B, rows: usize, nulls: fn(&mut B, usi
     own <= rows
 }
 
-/// A column of so many rows.
+/// Finishes a column of `rows` rows; missing cells at its end are null.
 fn whole<B: ArrayBuilder>(mut builder: B, rows: usize, nulls: fn(&mut B, usize)) -> ArrayRef {
     has_room(&mut builder, rows, nulls);
     builder.finish()
 }
 
 impl ColumnBlock {
-    /// No row yet of these columns, with room for so many `rows`.
+    /// Creates a block of these columns without rows, with capacity for `rows`.
     pub fn new(columns: &Columns, rows: usize) -> Self {
         let column = |kind: &Kind| match *kind {
             Kind::Text => Column::Text(StringBuilder::with_capacity(rows, 8 * rows)),
@@ -114,9 +115,9 @@ impl RowSink for ColumnBlock {
     }
 }
 
-/// What a column cannot hold stays empty, and what is set twice is what it was first.
+/// A value that the column cannot hold leaves the cell empty; a cell that is set twice keeps its first value.
 impl Row for ColumnBlock {
-    // Which cell it is, is known where it is set: one case is left of all.
+    // Inlined because the kind of cell is a constant at each call, which removes the match over it.
     #[inline(always)]
     fn set(&mut self, at: usize, cell: Cell<'_>) {
         let rows = self.rows;
@@ -159,10 +160,10 @@ impl Row for ColumnBlock {
     }
 }
 
-/// Writes blocks of rows, in memory that the caller takes from time to time.
+/// Writes blocks of rows into memory, and hands over the bytes that are complete.
 pub struct ColumnWriter {
     schema: SchemaRef,
-    /// What is not written yet.
+    /// Blocks that are not written yet.
     waiting: Vec<RecordBatch>,
     rows: usize,
     writer: Writer,
@@ -174,16 +175,16 @@ enum Writer {
     ArrowStream(Box<StreamWriter<Vec<u8>>>),
 }
 
-/// The refusal of a table that the format has no room for.
+/// Returns the refusal of a table that the format cannot hold.
 fn unwritable(error: impl std::fmt::Display) -> Error {
     Error::new(Reason::Unsupported(format!("the results cannot be written so: {error}"))).hint("write CSV or NDJSON")
 }
 
 impl ColumnWriter {
-    /// The beginning of a table with these columns.
+    /// Begins a table with these columns.
     ///
     /// # Errors
-    /// Columns that are carried through and that the format has no type for.
+    /// Returns an error if the format has no type for a carried column, or if it is a text format.
     pub fn new(columns: &Columns, form: Form) -> Result<Self> {
         let field = |(name, kind): (&String, &Kind)| match *kind {
             Kind::Text => Field::new(name, DataType::Utf8, true),
@@ -205,11 +206,12 @@ impl ColumnWriter {
                 for (name, kind) in columns.names().iter().zip(columns.kinds()) {
                     let path = ColumnPath::new(vec![name.clone()]);
                     properties = match kind {
-                        // Of text no one asks for the least and the greatest, and ids are all different.
+                        // Minima and maxima of text are of no use, and a dictionary of ids has no use, because they are
+                        // all different.
                         Kind::Text => properties
                             .set_column_dictionary_enabled(path.clone(), name != "id")
                             .set_column_statistics_enabled(path, EnabledStatistics::None),
-                        // Lines and counts follow each other.
+                        // Consecutive lines and counts differ by little.
                         Kind::Integer => properties.set_column_encoding(path, Encoding::DELTA_BINARY_PACKED),
                         _ => properties,
                     };
@@ -226,10 +228,10 @@ impl ColumnWriter {
         Ok(Self { schema, waiting: Vec::new(), rows: 0, writer })
     }
 
-    /// Takes a block, and gives the bytes that are known now.
+    /// Adds a block, and returns the bytes that are complete.
     ///
     /// # Errors
-    /// As [`Self::new`].
+    /// Returns an error if the format cannot hold the rows.
     pub fn write(&mut self, block: ColumnBlock) -> Result<Vec<u8>> {
         let batch = block.finish(&self.schema)?;
         self.rows += batch.num_rows();
@@ -250,7 +252,7 @@ impl ColumnWriter {
         Ok(self.taken())
     }
 
-    /// The bytes that no one has taken.
+    /// Takes the bytes that are complete.
     fn taken(&mut self) -> Vec<u8> {
         std::mem::take(match &mut self.writer {
             Writer::Parquet(writer) => writer.inner_mut(),
@@ -259,10 +261,10 @@ impl ColumnWriter {
         })
     }
 
-    /// Ends the table, and gives its last bytes.
+    /// Ends the table, and returns its last bytes.
     ///
     /// # Errors
-    /// As [`Self::new`].
+    /// Returns an error if the last rows cannot be written.
     pub fn finish(mut self) -> Result<Vec<u8>> {
         let mut bytes = self.flush()?;
         let finished = match &mut self.writer {

@@ -1,4 +1,4 @@
-//! Results as tables: one row per outcome.
+//! Results as tables with one row per outcome.
 
 use crate::contact::Feet;
 use crate::impact::{Analysis, CONTACT_LIMIT, Family, Next};
@@ -15,46 +15,51 @@ use std::collections::HashSet;
 /// The columns between those that name the state and those of the contacts.
 const FIRST: [&str; 4] = ["verdict", "outcome", "margin", "proven"];
 
-/// With `next` these follow.
+/// Columns that are added by [`Layout::next`].
 const NEXT: [&str; 2] = ["next_verdict", "next_modes"];
 
-/// The columns of a touchdown, behind `touchdown_`; q and v before the impact follow, named as in a table of states.
+/// The columns of a touchdown, without their prefix `touchdown_`. q and v before the impact follow them, named as in a
+/// table of states.
 const TOUCHDOWN: [&str; 6] = ["row", "time", "striking", "shift_z", "at", "touching"];
 
-/// The last columns, behind all that the contract orders and the carried ones. In brief the first and the last are left
-/// out.
+/// The last columns, after the carried columns (those copied from the input). A brief table omits the first and the
+/// last of them.
 const LAST: [&str; 5] = ["border", "family", "families", "error", "notes"];
 
 /// The columns of a table of results, fixed before its first row.
 ///
-/// They are `id`, for a batch `line`, `verdict, outcome, margin, proven`, then `mode_<contact>, p_<contact>_t,
-/// p_<contact>_n` for every contact that the robot's feet can make, `v_after_<coordinate>`, the `touchdown_...` columns
-/// and `q_<coordinate>`, `v_<coordinate>` before the impact if touchdowns were requested, the columns copied from the
-/// input, and `border`, `family`, `families`, `error`, `notes`. Outcomes are counted from 1; a state without outcome
-/// has a row with these cells empty. A contact is named after its link if it is the only one there, so a link that can
-/// touch at several points has columns of its own name and of link/0, link/1, ... A refused state has a row with the
-/// verdict `refused`, its id and copied columns if they can be read, and its line and reason in `error`. A copied
-/// column whose name the output already has gets the prefix `in_`. Forces have `f_<contact>_t, f_<contact>_n` for the
-/// impulses and `a_<coordinate>` for the velocities after. In brief there are no impulses, velocities after, `border` and
-/// `notes`.
+/// The columns are, in this order:
+///
+/// * `id`, and for a batch `line`; `verdict, outcome, margin, proven`; with [`Layout::next`] `next_verdict, next_modes`
+/// * `mode_<contact>, p_<contact>_t, p_<contact>_n` for every contact that the robot's feet can make, and
+///   `v_after_<coordinate>`; with forces `f_<contact>_t, f_<contact>_n` and `a_<coordinate>` take their place
+/// * if touchdowns were requested, the `touchdown_...` columns, and `q_<coordinate>`, `v_<coordinate>` before the
+///   impact
+/// * the columns copied from the input; a name that the output already has gets the prefix `in_`
+/// * `border`, `family`, `families`, `error`, `notes`
+///
+/// Outcomes are counted from 1; a state without an outcome has one row in which their cells are empty. A link that can
+/// touch at several points has columns of its own name, for a single contact, and of link/0, link/1, ... A refused
+/// state has a row with the verdict `refused`, its id and copied columns if they can be read, and its line and reason
+/// in `error`. A brief table omits impulses, velocities after, `border` and `notes`.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Columns {
     names: Vec<String>,
     kinds: Vec<Kind>,
-    /// How many columns name the state.
+    /// The number of columns that identify the state.
     pub(super) named: usize,
-    /// The contacts that have columns, in their order.
+    /// The contacts that have columns, in the order of the columns.
     contacts: Vec<String>,
     pub(super) coordinates: usize,
     carried: usize,
     pub(super) layout: Layout,
-    /// The columns that are carried through, if they have types.
+    /// The Arrow schema of the carried columns, if they have types.
     #[cfg(feature = "columnar")]
     #[serde(skip)]
     types: Option<arrow_schema::SchemaRef>,
 }
 
-/// What the cells of a column hold.
+/// The type of a column's cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Kind {
     /// Text.
@@ -65,30 +70,30 @@ pub enum Kind {
     Integer,
     /// True or false.
     Boolean,
-    /// What a column of the input holds, of those that are carried through.
+    /// The type of a carried column, given by its number among them.
     #[cfg(feature = "columnar")]
     Carried(usize),
 }
 
-/// Takes the rows of a table of results.
+/// Receives the rows of a table of results.
 pub trait RowSink {
-    /// A row in the making.
+    /// A row that is being filled.
     type Row: Row;
 
-    /// Takes the next row, whose cells `fill` sets, none twice.
+    /// Appends the next row; `fill` sets each of its cells at most once.
     fn row(&mut self, columns: &Columns, fill: impl FnOnce(&mut Self::Row));
 }
 
-/// A row in the making, whose cells are empty until they are set.
+/// A row that is being filled; its cells are empty until they are set.
 pub trait Row {
     /// Sets the cell of a column.
     fn set(&mut self, at: usize, cell: Cell<'_>);
 }
 
-/// What a cell is set to.
+/// The content of a cell.
 #[derive(Debug, Clone, Copy)]
 pub enum Cell<'c> {
-    /// Text, if it is not empty.
+    /// Text; an empty text leaves the cell empty.
     Text(&'c str),
     /// A number with a fraction.
     Number(f64),
@@ -96,31 +101,31 @@ pub enum Cell<'c> {
     Integer(i64),
     /// True or false.
     Boolean(bool),
-    /// Of the cells of the input that are carried through the one of this number.
+    /// A carried cell, given by its number among them.
     Carried(&'c Carried, usize),
 }
 
-/// What the rows of a table of results hold, and how they are written.
+/// What the rows of a table of results contain, and how they are written.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 pub struct Layout {
-    /// What is asked about the states.
+    /// Whether the states are asked about impacts or about forces.
     pub aspect: Aspect,
-    /// Whether they are touchdowns that were found in the input.
+    /// Whether the states are touchdowns that were found in the input.
     pub touchdowns: bool,
-    /// Whether `next_verdict` and `next_modes` follow `proven`: the forces just after each outcome, in whose modes a
-    /// contact that has left the ground is `open`.
+    /// Whether `next_verdict` and `next_modes` follow `proven`. They are the forces just after each outcome; the mode
+    /// of a contact that has left the ground is `open`.
     pub next: bool,
-    /// Whether impulses, velocities after, `border` and `notes` are left out.
+    /// Whether to leave out impulses, velocities after, `border` and `notes`.
     pub brief: bool,
-    /// Whether an apostrophe stands before every cell of text that a spreadsheet would take as a formula: one that begins
+    /// Whether to put an apostrophe before every text cell that a spreadsheet would take for a formula: one that begins
     /// with =, +, -, @, a tab or a carriage return. Numbers stay numbers.
     pub guarded: bool,
-    /// How they are written.
+    /// The file format.
     pub form: Form,
 }
 
 impl Columns {
-    /// The columns for states of `robot` with these `feet`, read from the table `input` or found in it.
+    /// Creates the columns for states of `robot` with these `feet`, read from the table `input` or found in it.
     pub fn new(robot: &Robot, feet: &[NamedContact], input: Option<&Header>, layout: Layout) -> Self {
         let through: Vec<_> = input.into_iter().flat_map(Header::carried).map(|name| (name, Kind::Text)).collect();
         let named = [("id", Kind::Text), ("line", Kind::Integer)];
@@ -130,7 +135,7 @@ impl Columns {
         columns
     }
 
-    /// The same with the types of the input's columns, if they have some.
+    /// Takes over the types of the input's carried columns, if the input has types.
     #[cfg(feature = "columnar")]
     fn with_types(mut self, input: Option<&Header>) -> Self {
         let Some((carried, integers)) = input.and_then(|header| header.types.clone()) else { return self };
@@ -142,7 +147,7 @@ impl Columns {
         Self { types: Some(carried), ..self }
     }
 
-    /// The field of a column that is carried through.
+    /// Returns the Arrow field of a carried column.
     #[cfg(feature = "columnar")]
     pub(super) fn carried_field(&self, which: usize) -> arrow_schema::Field {
         let field = self.types.as_ref().and_then(|types| types.fields().get(which));
@@ -152,8 +157,8 @@ impl Columns {
         )
     }
 
-    /// The columns for states that have no line, with columns of these names that are carried through, and for contacts
-    /// that states name themselves.
+    /// Creates the columns for states without a line. `named` are contacts that the states name themselves, and
+    /// `through` are the carried columns.
     pub fn without_lines(
         robot: &Robot,
         feet: &[NamedContact],
@@ -182,7 +187,7 @@ impl Columns {
         let [given, taken] = if aspect == Aspect::Forces { ["f", "a"] } else { ["p", "v_after"] };
         let next = NEXT.into_iter().filter(|_| next).map(|name| (name, Text));
         let first = FIRST.into_iter().zip([Text, Integer, Number, Boolean]).chain(next);
-        // Each with whether it is kept in brief.
+        // Each column with whether a brief table keeps it.
         let columns = named.iter().copied().chain(first).map(|(name, kind)| (name.to_owned(), kind, true));
         let mut columns: Vec<(String, Kind, bool)> = columns.collect();
         for contact in &contacts {
@@ -226,7 +231,7 @@ impl Columns {
         }
     }
 
-    /// How they are written.
+    /// The file format.
     pub fn form(&self) -> Form {
         self.layout.form
     }
@@ -236,12 +241,12 @@ impl Columns {
         &self.names
     }
 
-    /// What the cells of each column hold.
+    /// The types of all columns.
     pub fn kinds(&self) -> &[Kind] {
         &self.kinds
     }
 
-    /// The contacts that have columns, in their order.
+    /// The contacts that have columns, in the order of the columns.
     pub fn contacts(&self) -> &[String] {
         &self.contacts
     }
@@ -254,8 +259,8 @@ impl Columns {
     /// Appends the rows of a result, one per outcome, with the state's id, line and touchdown.
     ///
     /// # Errors
-    /// Outcomes that were refused, and a contact without a column, because the state names it and the robot has no such
-    /// foot; then nothing is appended.
+    /// Returns an error, and appends nothing, if the outcomes were refused, or if a contact has no column because the
+    /// state names it and the robot has no foot of that name.
     pub fn append_result(
         &self,
         (id, line, touchdown): (Option<&Value>, Option<usize>, Option<&Touchdown>),
@@ -292,7 +297,7 @@ impl Columns {
         self.append_error((refused.id.as_ref(), Some(refused.line), carried), &error, out);
     }
 
-    /// Appends the row of a state without an id that has an error in place of outcomes.
+    /// Appends the row of a state without an id whose outcomes were replaced by an error.
     pub fn append_unnamed(&self, error: &str, carried: &Carried, out: &mut impl RowSink) {
         self.append_error((None, None, Some(carried)), error, out);
     }
@@ -310,7 +315,7 @@ impl Columns {
         });
     }
 
-    /// Sets the id, the line and what is carried through.
+    /// Sets the id, the line and the carried cells.
     fn name_state(&self, (id, line, carried): (Option<&Value>, Option<usize>, Option<&Carried>), row: &mut impl Row) {
         match (id, self.kinds[0]) {
             (Some(Value::Number(id)), Kind::Integer) => {
@@ -327,7 +332,7 @@ impl Columns {
         }
     }
 
-    /// Sets what all outcomes of a state have in common.
+    /// Sets the cells that are the same for all outcomes of a state.
     fn state(
         &self,
         (id, line, touchdown): (Option<&Value>, Option<usize>, Option<&Touchdown>),
@@ -359,7 +364,7 @@ impl Columns {
         row.set(self.named + 3, Cell::Boolean(outcome.proven));
         for ((&place, mode), impulse) in places.iter().zip(&outcome.modes).zip(&outcome.impulse) {
             row.set(place, Cell::Text(mode.name()));
-            // Of what is not decided no number is known.
+            // An undecided outcome has no known numbers.
             if outcome.decided && !self.layout.brief {
                 impulse.iter().zip(place + 1..).for_each(|(&entry, at)| row.set(at, Cell::Number(entry)));
             }
@@ -380,40 +385,40 @@ impl Columns {
         row.set(self.family(), Cell::Boolean(outcome.family));
     }
 
-    /// The first of the last columns.
+    /// The index of the first of the last columns.
     pub(super) fn last(&self) -> usize {
         self.names.len() - LAST.len() + if self.layout.brief { 2 } else { 0 }
     }
 
-    /// Among the last columns the one that says whether the outcome is of a family.
+    /// The index of the column `family`, which is one of the last columns.
     pub(super) fn family(&self) -> usize {
         self.last() + usize::from(!self.layout.brief)
     }
 
-    /// The first column of a velocity.
+    /// The index of the first velocity column.
     pub(super) fn velocities(&self) -> usize {
         self.contacts_start() + self.of_contact() * self.contacts.len()
     }
 
-    /// The first column of a contact.
+    /// The index of the first column of contacts.
     pub(super) fn contacts_start(&self) -> usize {
         self.named + FIRST.len() + if self.layout.next { NEXT.len() } else { 0 }
     }
 
-    /// How many columns a contact has.
+    /// The number of columns per contact.
     pub(super) fn of_contact(&self) -> usize {
         if self.layout.brief { 1 } else { 3 }
     }
 
-    /// The first of a contact's columns.
+    /// The index of the first column of `contact`.
     fn place(&self, contact: &str) -> Result<usize> {
         let at = self.contacts.iter().position(|known| known == contact).ok_or_else(|| no_column(contact))?;
         Ok(self.contacts_start() + self.of_contact() * at)
     }
 }
 
-/// The names of all contacts that the feet can give: of a polygon two corners at once, of touchdowns all of them. A
-/// link of several has its plain name as well, for when a single one of them touches.
+/// Returns the names of all contacts that the feet can make: two corners of a polygon at once, or with touchdowns all
+/// corners. A link with several contacts also has its plain name, for states in which only one of them touches.
 fn contacts(robot: &Robot, feet: &[NamedContact], layout: Layout) -> Vec<String> {
     let mut counts = vec![0; robot.links.len()];
     for foot in Feet::new(robot, feet).iter() {
@@ -430,26 +435,27 @@ fn contacts(robot: &Robot, feet: &[NamedContact], layout: Layout) -> Vec<String>
     names
 }
 
-/// The refusal of a state with a contact that the robot's feet cannot make.
+/// Returns the refusal of a state with a contact that the robot's feet cannot make.
 pub(super) fn no_column(contact: &str) -> Error {
     let reason = Reason::Unsupported(format!("the table of results has no columns for contact \"{contact}\""));
     Error::new(reason).hint("write NDJSON instead, or add the foot by `feet`")
 }
 
-/// What is zero on the border that an outcome is, as one cell.
+/// Returns the inequalities that are zero on the outcome's border as one cell, empty without a border.
 pub(super) fn border(outcome: &Outcome) -> String {
     let at_zero = outcome.border.iter().flat_map(|border| &border.at_zero);
     at_zero.map(|zero| format!("{}: {}", zero.contact, zero.inequality)).collect::<Vec<_>>().join("; ")
 }
 
-/// The modes of the families that have outcome `at` as a corner, as one cell.
+/// Returns the modes of the families that have outcome `at` as a corner, as one cell.
 pub(super) fn families(families: &[Family], at: usize) -> String {
     let modes = |family: &Family| family.modes.iter().map(|mode| mode.name()).collect::<Vec<_>>().join("/");
     let of_outcome = families.iter().filter(|family| family.corners.contains(&at));
     of_outcome.map(modes).collect::<Vec<_>>().join("; ")
 }
 
-/// Notes as one cell, with what is known of the state's uncertainty, and whether the budget left it open.
+/// Returns the notes as one cell, with whether the outcomes hold within the state's uncertainty, and whether the budget
+/// ended.
 pub(super) fn notes(impact: &Impact) -> String {
     let holds = impact.holds.as_ref().map(|holds| match holds {
         Robustness::Everywhere => "holds: true",
@@ -461,7 +467,7 @@ pub(super) fn notes(impact: &Impact) -> String {
     impact.notes.iter().map(|note| short(note)).chain(holds).chain(open).collect::<Vec<_>>().join("; ")
 }
 
-/// A note without the speeds of a resting contact: in a walk every row has such a contact.
+/// Cuts the speeds from a note on a resting contact, because in a walk every row has that note.
 fn short(note: &str) -> &str {
     memchr::memmem::find(note.as_bytes(), AT_REST.as_bytes()).map_or(note, |end| &note[..end + AT_REST.len()])
 }

@@ -13,7 +13,7 @@ use serde_json::Value;
 use std::cmp::Ordering;
 
 impl Report<'_> {
-    /// The result under the names of forces; `None` of an impact.
+    /// Returns the result under the names of forces; `None` if it is that of an impact.
     pub fn forces<'s>(&'s self) -> Option<ForcesRecord<'s>> {
         let (sustained, free) = self.sustained?;
         let contacts = self.contacts.iter().zip(&sustained.slips).zip(free);

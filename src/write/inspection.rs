@@ -1,4 +1,4 @@
-//! What was read of a robot: the reduced planar robot with every digit as JSON, or as text.
+//! The reduced planar robot that was read from a file: as JSON with every digit, or as text.
 
 mod text;
 
@@ -9,15 +9,14 @@ use crate::robot::{Axis, Base, Body, FootShape, FreezeReason, FrozenJoint, Joint
 use crate::state::NamedContact;
 use serde::Serialize;
 
-/// The reduced robot as it is written; what is proven refers to these numbers. [`Report`](super::Report) has an
-/// example.
+/// The reduced planar robot as it is written; proofs refer to these numbers. [`Report`](super::Report) has an example.
 #[derive(Debug, Clone, Serialize)]
 pub struct Inspection<'a> {
     /// The robot's name in its file.
     pub name: &'a str,
-    /// Forward and up in the file's root frame.
+    /// Axes of the file's root frame that point forward and up, as in `xz`.
     pub plane: &'static str,
-    /// Its normal there, with its sign.
+    /// Axis of that frame along the plane's normal, with its sign, as in `+y`.
     #[serde(skip)]
     normal: &'static str,
     /// Why this plane was taken, in words.
@@ -26,7 +25,7 @@ pub struct Inspection<'a> {
     pub base: &'static str,
     /// Why the base is floating or fixed, in words.
     pub base_because: &'a str,
-    /// What a user must know before trusting the rest, with the remedy.
+    /// Warnings to read before trusting the rest, each with its remedy.
     pub cautions: &'a [String],
     /// Total mass \[kg\].
     pub mass: f64,
@@ -36,24 +35,25 @@ pub struct Inspection<'a> {
     pub bodies: Vec<BodyRecord<'a>>,
     /// Moving joints in the file's order.
     pub joints: Vec<JointRecord<'a>>,
-    /// Joints that follow these, in the file's order; they have no coordinate of their own.
+    /// Mimic joints, in the file's order; they have no coordinate of their own.
     pub followers: Vec<MimicRecord<'a>>,
-    /// Joints of the file that have no coordinate, in its order.
+    /// Fixed and frozen joints, in the file's order.
     pub held: Vec<FrozenRecord<'a>>,
     /// Links in the file's order.
     pub links: Vec<LinkRecord<'a>>,
     /// Shapes that can touch the ground, in the links' order.
     pub feet: Vec<FootRecord<'a>>,
-    /// What of the file does not enter the analysis, and why.
+    /// What the analysis leaves out, and why.
     pub left_out: Vec<LeftOutRecord<'a>>,
 }
 
-/// Links that no moving joint separates, in the file's order; named after the one that carries its frame.
+/// A body: links that no moving joint separates, in the file's order. It is named after the link that carries its
+/// frame.
 #[derive(Debug, Clone, Serialize)]
 pub struct BodyRecord<'a> {
-    /// The link that carries its frame.
+    /// The link that carries the body's frame.
     pub name: &'a str,
-    /// All of its links.
+    /// All links of the body.
     pub links: Vec<&'a str>,
     /// Mass \[kg\].
     pub mass: f64,
@@ -61,10 +61,10 @@ pub struct BodyRecord<'a> {
     pub com: Vector<f64>,
     /// Moment of inertia about the plane's normal through the CoG \[kg m^2\].
     pub moment: f64,
-    /// The body that it is rigid on, if it is kept apart.
+    /// The body to which this one is rigidly fixed, if it is kept as a body of its own.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fixed_to: Option<&'a str>,
-    /// Its origin in that body's frame \[m\].
+    /// Origin of this body in the frame of that body \[m\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub origin: Option<Vector<f64>>,
 }
@@ -72,46 +72,46 @@ pub struct BodyRecord<'a> {
 /// A joint that moves in the plane, from its parent body to the body it moves.
 #[derive(Debug, Clone, Serialize)]
 pub struct JointRecord<'a> {
-    /// Its name in the file.
+    /// The joint's name in the file.
     pub name: &'a str,
     /// `turn` or `slide`.
     #[serde(rename = "type")]
     pub kind: &'static str,
-    /// The body that it is fixed to.
+    /// The parent body.
     pub parent: &'a str,
-    /// The body that it moves.
+    /// The child body, which the joint moves.
     pub child: &'a str,
-    /// Its origin in the parent body's frame at coordinate zero \[m\].
+    /// The joint's origin in the parent body's frame at coordinate zero \[m\].
     pub origin: Vector<f64>,
-    /// Of a turn: +1 about the plane's normal, -1 against it.
+    /// Revolute joint: +1 if it turns about the plane's normal, -1 if against it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sign: Option<f64>,
-    /// Of a slide: the unit vector of its motion in the parent body's frame.
+    /// Prismatic joint: unit vector of its motion in the parent body's frame.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub direction: Option<Vector<f64>>,
 }
 
-/// A joint that follows another: its coordinate is multiplier times that of the mimicked one plus offset \[rad, m\].
+/// A mimic joint: its coordinate is multiplier times that of the mimicked joint plus offset \[rad, m\].
 #[derive(Debug, Clone, Serialize)]
 pub struct MimicRecord<'a> {
     /// The joint itself.
     #[serde(flatten)]
     pub joint: JointRecord<'a>,
-    /// The joint that it follows.
+    /// The mimicked joint.
     #[serde(rename = "leader")]
     pub mimicked: &'a str,
-    /// How much it moves for a unit of the mimicked joint \[1, m/rad, rad/m\].
+    /// Change of its coordinate per unit of the mimicked joint's \[1, m/rad, rad/m\].
     pub multiplier: f64,
-    /// Its coordinate where that of the mimicked joint is zero \[rad, m\].
+    /// Its coordinate where the mimicked joint's is zero \[rad, m\].
     pub offset: f64,
 }
 
-/// A joint of the file that has no coordinate, why, and the body that its child is fixed to.
+/// A joint without a coordinate, with the reason and the body that its child link belongs to.
 #[derive(Debug, Clone, Serialize)]
 pub struct FrozenRecord<'a> {
-    /// Its name in the file.
+    /// The joint's name in the file.
     pub name: &'a str,
-    /// The body that its child is fixed to.
+    /// The body that its child link belongs to.
     pub body: &'a str,
     /// Why it has no coordinate, in words.
     pub why: String,
@@ -119,10 +119,10 @@ pub struct FrozenRecord<'a> {
     reason: &'a FreezeReason,
 }
 
-/// A link of the file, and the body it belongs to.
+/// A link of the file, and the body that it belongs to.
 #[derive(Debug, Clone, Serialize)]
 pub struct LinkRecord<'a> {
-    /// Its name in the file.
+    /// The link's name in the file.
     pub name: &'a str,
     /// The body that it belongs to.
     pub body: &'a str,
@@ -130,7 +130,7 @@ pub struct LinkRecord<'a> {
     pub has_inertial: bool,
 }
 
-/// A shape that can touch the ground, with the body whose frame it is given in.
+/// A shape that can touch the ground, given in the frame of a body.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct FootRecord<'a> {
     /// The link that has the shape.
@@ -139,25 +139,25 @@ pub struct FootRecord<'a> {
     pub body: &'a str,
     /// `disc` or `polygon`.
     pub shape: &'static str,
-    /// Of a disc \[m\].
+    /// Center of a disc \[m\].
     #[serde(rename = "centre", skip_serializing_if = "Option::is_none")]
     pub center: Option<Vector<f64>>,
-    /// Of a disc, 0 for a point, and of the circle that sweeps a polygon \[m\].
+    /// Radius of a disc, 0 for a point, or of the circle that sweeps a polygon \[m\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub radius: Option<f64>,
-    /// Of a polygon \[m\].
+    /// Corners of a polygon \[m\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub corners: Option<&'a [Vector<f64>]>,
-    /// Of a polygon swept by an ellipse (a cylinder oblique to the plane): two of its conjugate half diameters \[m\].
+    /// For a polygon swept by an ellipse (a cylinder oblique to the plane): two conjugate half diameters of it \[m\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub half_diameters: Option<[Vector<f64>; 2]>,
-    /// The file of the mesh whose hull it is.
+    /// The mesh file, if the shape is the hull of a mesh.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mesh: Option<&'a str>,
 }
 
 impl<'a> Inspection<'a> {
-    /// All that is known about `robot`, with `feet` in addition to its own.
+    /// Describes `robot`; `feet` are contacts in addition to its own shapes.
     pub fn new(robot: &'a Robot, feet: &[NamedContact]) -> Self {
         let body_name = |body: usize| robot.bodies[body].name.as_str();
         let mut links = vec![Vec::new(); robot.bodies.len()];

@@ -1,11 +1,11 @@
-//! What is written: the JSON contract, and text for people.
+//! Output: results, sweeps and inspections as JSON (a contract), tables, and text for people.
 //!
 //! ```text
 //!     Impact (a robot's state)  ──┐
 //!     Analysis (matrices alone) ──┴──> Report ──> one line of JSON      result
 //!                                         └────> text for people        text
 //!     Impact ───────────────────────> Arrays                            arrays.rs
-//!     Impact (sustained contact) ───> Report ──> the same under other names   forces.rs
+//! Impact (sustained contact) ───> Report ──> JSON with names for forces      forces.rs
 //!     Robot ──> Inspection ──> JSON, text                               inspection.rs
 //!     Header, Study ──> sentences                                       notes.rs
 //!     Survey, Map ──> Regions, samples ──> JSON, CSV, text              sweep
@@ -53,15 +53,15 @@ use serde::Serialize;
 /// Escape sequences that mark text on a terminal; empty for plain text.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Palette {
-    /// Begins what matters most.
+    /// Begins emphasized text.
     pub strong: &'static str,
     /// Begins secondary text.
     pub faint: &'static str,
-    /// Ends both.
+    /// Ends emphasized and secondary text.
     pub plain: &'static str,
 }
 
-/// The text that `write` writes.
+/// Returns the text that `write` writes.
 fn written(write: impl FnOnce(&mut String) -> std::fmt::Result) -> String {
     let mut out = String::new();
     // Writing into a string cannot fail.
@@ -72,18 +72,18 @@ fn written(write: impl FnOnce(&mut String) -> std::fmt::Result) -> String {
 /// How much of a result is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Detail {
-    /// Also why every other combination fails.
+    /// Whether to list why each rejected combination fails.
     pub explain: bool,
-    /// Also the matrices.
+    /// Whether to write the matrices.
     pub matrices: bool,
-    /// Only the verdict and each outcome's modes, index and margin.
+    /// Whether to write only the verdict and each outcome's modes, index and margin.
     pub brief: bool,
 }
 
 /// Appends `value` to `out` as one line of JSON.
 pub fn append_line<T: Serialize>(out: &mut Vec<u8>, value: &T) {
     let start = out.len();
-    // Writing into memory cannot fail, and no report has keys that are not strings; should one ever, nothing is left.
+    // Writing into memory cannot fail, and every key of a report is a string. If it fails all the same, nothing stays.
     match serde_json::to_writer(&mut *out, value) {
         Ok(()) => out.push(b'\n'),
         Err(_) => out.truncate(start),

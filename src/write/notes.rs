@@ -1,11 +1,12 @@
-//! What a reader should know of an input, in sentences: the tool writes them to standard error, Python warns with them.
+//! Notes on an input, in sentences. The tool writes them to standard error; Python raises them as warnings.
 
 use crate::budget::TotalBudget;
 use crate::gait::Dropped;
 use crate::read::Study;
 use crate::read::table::Header;
 
-/// That `count` inputs, each of them a `what`, have friction of their own, so that the one given for all is not theirs.
+/// Notes that `count` inputs, each called a `what`, have their own friction, which replaces the common one; `None` if
+/// none has.
 pub fn own_friction(count: u64, what: &str) -> Option<String> {
     let some = match count {
         0 => return None,
@@ -15,13 +16,14 @@ pub fn own_friction(count: u64, what: &str) -> Option<String> {
     Some(format!("`friction` is not used where a {what} has its own, as {some} here"))
 }
 
-/// How little time the answers beyond the budget have left for others, if it was less than each may take.
+/// Notes how little time remained for answers after others had used up the total budget; `None` if each had its full
+/// time.
 pub fn beyond_budget(total: Option<&TotalBudget>) -> Option<String> {
     let least = total?.least()?.as_secs_f64();
     Some(format!("answers beyond `budget` took so long together that one had {least:.2e} s"))
 }
 
-/// Which coordinates have no column.
+/// Names the coordinates without a column, which are taken as 0; `None` if there are none.
 pub fn missing(header: &Header) -> Option<String> {
     match header.missing() {
         [] => None,
@@ -30,7 +32,7 @@ pub fn missing(header: &Header) -> Option<String> {
     }
 }
 
-/// Which columns did not enter the analysis, and how much of the motion.
+/// Names the columns that were not read, and the motion that the projection of a three-dimensional base leaves out.
 pub fn left_out(header: &Header, dropped: &Dropped) -> impl Iterator<Item = String> {
     let ignored: Vec<&str> = header.ignored().collect();
     let not_read = (!ignored.is_empty()).then(|| {
@@ -47,8 +49,8 @@ pub fn left_out(header: &Header, dropped: &Dropped) -> impl Iterator<Item = Stri
     not_read.into_iter().chain(projected)
 }
 
-/// How many touchdowns were taken above the ground, of feet whose heights have no noise; have feet that are slowed down
-/// already; were taken far under the ground; have no impact.
+/// Notes on odd touchdowns. `counts` are those taken above the ground, of feet whose heights have no noise; those of
+/// feet that are already slowed down; those taken far below the ground; those without an impact.
 pub fn odd_touchdowns(counts: [u64; 4]) -> impl Iterator<Item = String> {
     let what = [
         ("taken above the ground, from heights without noise", "if they are of a simulation, give `simulated`"),
@@ -69,13 +71,13 @@ pub fn odd_touchdowns(counts: [u64; 4]) -> impl Iterator<Item = String> {
     found.map(|(count, (what, then))| format!("touchdowns {what}: {count}; {then}"))
 }
 
-/// That a short table does not say of `count` states whether their outcomes hold within their uncertainty.
+/// Notes that a brief table does not say for `count` states whether their outcomes hold within their uncertainty.
 pub fn without_holds(count: u64) -> Option<String> {
     let what = "states with an `uncertainty`, without a word on whether they hold";
     (count > 0).then(|| format!("{what}: {count}; without `brief` it stands in the column notes"))
 }
 
-/// Which parameters change nothing.
+/// Names the parameters that nothing in the state or the robot depends on.
 pub fn unused(study: &Study) -> impl Iterator<Item = String> {
     study.unused().into_iter().map(|name| format!("nothing in the state or the robot depends on {name}"))
 }

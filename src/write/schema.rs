@@ -1,13 +1,14 @@
-//! JSON Schema (draft 2020-12) of what is read and written.
+//! JSON Schema (draft 2020-12) of the documents that are read and written.
 //!
-//! A result's schema is derived from the very structs that are written; those of states, problems and studies are parts
-//! of `format.json`, from which their readers know their fields, in a study with expressions in place of numbers:
+//! The schema of a result is derived from the structs that are serialized. The schemas of states, problems and studies
+//! are parts of `format.json`, from which the readers take the known fields. In a study, an expression may replace any
+//! number:
 //!
 //! ```text
 //!     {"type": "number", ...} --> {"anyOf": [{"type": "number", ...}, {"$ref": "#/$defs/Expression"}]}
 //! ```
 //!
-//! The schemas are closed: as for the strict readers, a field that they do not name does not exist.
+//! The schemas are closed: like the strict readers, they allow no fields except those they name.
 
 #![expect(dead_code, reason = "of these types the schema is all that is wanted")]
 
@@ -20,7 +21,7 @@ use schemars::transform::RecursiveTransform;
 use schemars::{JsonSchema, Schema};
 use serde_json::{Map, Value, json};
 
-/// Marks a property that may be null although it may also be absent.
+/// Marks a property that may be absent and may also be null.
 const MAY_BE_NULL: &str = "x-may-be-null";
 
 /// The schema of a state.
@@ -33,7 +34,7 @@ pub fn problem() -> Value {
     input("Problem")
 }
 
-/// The schema of a study; every number of it but an id may be an expression.
+/// The schema of a study, in which every number except an id may be an expression.
 pub fn study() -> Value {
     let mut schema = input("Study");
     allow_expressions(&mut schema);
@@ -123,7 +124,7 @@ fn schema_of<T: JsonSchema>() -> Value {
     settings.into_generator().into_root_schema_for::<T>().to_value()
 }
 
-/// Says of one schema what holds for all: what is not named does not exist, what is optional is absent and not null.
+/// Closes one schema: it allows no unnamed properties, and optional properties are absent instead of null.
 fn strict(schema: &mut Schema) {
     if let Some(Value::String(description)) = schema.get_mut("description") {
         *description = plain_text(description);
@@ -134,7 +135,7 @@ fn strict(schema: &mut Schema) {
     let required = schema.get("required").and_then(Value::as_array).cloned().unwrap_or_default();
     if let Some(Value::Object(properties)) = schema.get_mut("properties") {
         for (name, property) in properties {
-            // What is read in place of an absent field is no part of what is written.
+            // A default stands for an absent field in reading; it is no part of what is written.
             property.as_object_mut().map(|property| property.remove("default"));
             if !required.iter().any(|required| required == name) {
                 without_null(property);
@@ -146,13 +147,13 @@ fn strict(schema: &mut Schema) {
     }
 }
 
-/// A description as rustdoc's markup has it, without its example and the marks that only rustdoc needs.
+/// Turns rustdoc markup into plain text: drops the example, the marks of links and the escapes.
 fn plain_text(description: &str) -> String {
     let text = description.split("```").next().unwrap_or_default().trim_end();
     text.replace("[`", "`").replace("`]", "`").replace("\\[", "[").replace("\\]", "]").replace('\n', " ")
 }
 
-/// Takes null out of what an optional property may be, unless it is marked.
+/// Removes null from the types of an optional property, unless the property is marked with [`MAY_BE_NULL`].
 fn without_null(property: &mut Value) {
     let Value::Object(property) = property else { return };
     if property.remove(MAY_BE_NULL).is_some() {
@@ -180,7 +181,7 @@ fn without_null(property: &mut Value) {
     }
 }
 
-/// The schema of one document, with the definitions that it refers to.
+/// Returns the schema of one document, with the definitions that it refers to.
 fn input(document: &str) -> Value {
     let all: Value = serde_json::from_str(FORMAT).unwrap_or_default();
     let (mut schema, mut definitions) = (all["$defs"][document].clone(), Map::new());
@@ -191,8 +192,8 @@ fn input(document: &str) -> Value {
     schema
 }
 
-/// Says of the objects of a schema that they are closed ones, puts shapes in place of the references to them, and takes
-/// over every definition that it refers to.
+/// Closes the objects of a schema, replaces references to shapes by the shapes, and copies every definition that the
+/// schema refers to into `definitions`.
 fn write_out(schema: &mut Value, all: &Value, definitions: &mut Map<String, Value>) {
     match schema {
         Value::Array(entries) => entries.iter_mut().for_each(|entry| write_out(entry, all, definitions)),
@@ -204,7 +205,7 @@ fn write_out(schema: &mut Value, all: &Value, definitions: &mut Map<String, Valu
             }
             if let Some(name) = reference.strip_prefix("#/$defs/").filter(|name| !definitions.contains_key(*name)) {
                 let mut definition = all["$defs"][name].clone();
-                // It may refer to itself.
+                // The entry exists before the recursion, because a definition may refer to itself.
                 definitions.insert(name.to_owned(), Value::Null);
                 write_out(&mut definition, all, definitions);
                 definitions.insert(name.to_owned(), definition);
@@ -219,7 +220,7 @@ fn write_out(schema: &mut Value, all: &Value, definitions: &mut Map<String, Valu
     }
 }
 
-/// Lets expressions stand for all numbers of a whole schema.
+/// Allows an expression in place of every number of a schema.
 fn allow_expressions(schema: &mut Value) {
     within(schema);
     let expression = json!({
@@ -240,7 +241,7 @@ fn within(schema: &mut Value) {
             object.extend(kept);
             object.insert("anyOf".into(), json!([number, {"$ref": "#/$defs/Expression"}]));
         }
-        // An id is never an expression, and neither are values that stand for themselves.
+        // An id is never an expression, and neither are the values of `enum` and `const`.
         Value::Object(object) => {
             for (key, field) in object.iter_mut().filter(|(key, _)| !matches!(key.as_str(), "enum" | "const")) {
                 match (key.as_str(), field) {

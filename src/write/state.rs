@@ -1,4 +1,4 @@
-//! A state in the format in which it is read, and whether a verdict holds on the box of its uncertainty.
+//! A state as JSON in the format from which it is read, and whether its outcomes hold on the box of its uncertainty.
 
 use crate::pipeline::robust::Robustness;
 use crate::state::{ByLink, Ground, LinkPoint, Named, SpringEnd, State, Uncertainty, VirtualSpring};
@@ -10,19 +10,20 @@ use serde_json::{Value, json};
 use std::borrow::Cow;
 
 impl State {
-    /// The state as the JSON object from which [`State::from_json`] reads it; without what follows from the rest.
+    /// Returns the state as the JSON object that [`State::from_json`] reads, without the fields that follow from
+    /// others.
     pub fn to_json(&self, robot: &Robot) -> String {
-        // A state has no keys that are not strings, so that this cannot fail.
+        // This cannot fail, because all keys of a state are strings.
         serde_json::to_string(&StateRecord { robot, state: self }).unwrap_or_default()
     }
 }
 
-/// The state as JSON, for a field of a result.
+/// Returns the state as JSON, for a field of a result.
 pub(super) fn raw_state(robot: &Robot, state: &State) -> Option<Box<RawValue>> {
     to_raw_value(&StateRecord { robot, state }).ok()
 }
 
-/// A state that is written with the names of its robot.
+/// A state that is written with the names of its robot's links and joints.
 struct StateRecord<'a> {
     robot: &'a Robot,
     state: &'a State,
@@ -31,7 +32,7 @@ struct StateRecord<'a> {
 impl StateRecord<'_> {
     fn coordinates(&self, values: &[f64]) -> Named<Named> {
         let mut named = self.robot.coordinates().map(str::to_owned).zip(values.iter().copied());
-        // With a stance the base's x and z follow from the rest.
+        // With a stance, x and z of the base follow from the rest.
         let follow = if self.state.scene.stance.is_some() { 2 } else { 0 };
         let base: Vec<_> = named.by_ref().take(self.robot.base_dofs()).skip(follow).collect();
         let base = (!base.is_empty()).then(|| ("base".to_owned(), base.into_iter().collect()));
@@ -52,7 +53,7 @@ impl StateRecord<'_> {
         &self.robot.links[link].name
     }
 
-    /// Values of all joints, and then of the mimic joints.
+    /// Names the values of all joints, followed by those of the mimic joints.
     fn by_joint(&self, values: &[f64]) -> Named {
         let mimic = self.robot.mimic_joints.iter().map(|mimic| &mimic.joint.name);
         let names = self.robot.joints.iter().map(|joint| &joint.name).chain(mimic);
@@ -192,7 +193,7 @@ pub struct CounterexampleRecord<'a> {
 }
 
 impl<'a> CounterexampleRecord<'a> {
-    /// The counterexample of what was found about a state of `robot`; `None` if there is none.
+    /// Returns the counterexample in what was found about a state of `robot`; `None` if there is none.
     pub fn of(robot: &'a Robot, holds: &'a Robustness) -> Option<Self> {
         let Robustness::Not(found) = holds else { return None };
         let state = raw_state(robot, &found.state)?;
@@ -200,7 +201,7 @@ impl<'a> CounterexampleRecord<'a> {
     }
 }
 
-/// Any object, of which there is a schema of its own.
+/// The schema of any object: states have a schema of their own.
 #[cfg(feature = "schema")]
 pub(super) fn any_object(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
     schemars::json_schema!({"type": "object"})

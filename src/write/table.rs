@@ -1,13 +1,12 @@
-//! Tables for people: columns of text to the left, columns of numbers with their points below each other.
+//! Tables for people: text is aligned to the left, and numbers are aligned by their decimal points.
 
 use crate::error::visible;
 use crate::planar::Pair;
 use std::fmt::Write;
 
-/// A pair of cells.
 type OptionalPair = Option<Pair<f64>>;
 
-/// Columns of equal length, each below its head.
+/// Columns of equal length, each with a head.
 #[derive(Debug, Default)]
 pub(crate) struct Table {
     columns: Vec<Column>,
@@ -15,13 +14,13 @@ pub(crate) struct Table {
 
 #[derive(Debug)]
 struct Column {
-    /// The head first.
+    /// The head, then the cells.
     cells: Vec<String>,
     to_the_right: bool,
 }
 
 impl Table {
-    /// Adds a column of text, all of it [`visible`].
+    /// Adds a column of text, all of which is made [`visible`].
     pub(crate) fn text<C: Into<String>>(mut self, head: &str, cells: impl IntoIterator<Item = C>) -> Self {
         let cells = std::iter::once(head.to_owned()).chain(cells.into_iter().map(Into::into));
         let cells = cells.map(|cell| visible(&cell).into_owned()).collect();
@@ -29,15 +28,15 @@ impl Table {
         self
     }
 
-    /// Adds a column of numbers with the decimals that its largest needs for six digits; `-` where there is none, `~0`
-    /// for what rounding left of a zero, next to numbers of the size `scale`.
+    /// Adds a column of numbers with the decimals that give its largest number six digits. `-` stands for a missing
+    /// number, and `~0` for a rounding residue of zero next to numbers of magnitude `scale`.
     pub(crate) fn numbers(self, head: &str, scale: f64, numbers: impl IntoIterator<Item: Into<Option<f64>>>) -> Self {
         let numbers: Vec<Option<f64>> = numbers.into_iter().map(Into::into).collect();
         let largest = self::scale(numbers.iter().flatten().copied().filter(|&number| !is_residue(number, scale)));
         self.column(head, scale, largest, numbers)
     }
 
-    /// Adds a column for each entry of pairs.
+    /// Adds a column for each of the two entries of pairs.
     pub(crate) fn pairs(
         self,
         heads: [&str; 2],
@@ -49,7 +48,7 @@ impl Table {
         self.numbers(heads[0], scale, entries(0)).numbers(heads[1], scale, entries(1))
     }
 
-    /// A table of numbers that have the same decimals in all columns, without heads.
+    /// Creates a table of numbers with the same decimals in all columns, without heads.
     pub(crate) fn matrix(rows: &[Vec<f64>]) -> Self {
         let largest = scale(rows.iter().flatten().copied());
         let columns = 0..rows.first().map_or(0, Vec::len);
@@ -70,7 +69,8 @@ impl Table {
         self
     }
 
-    /// Writes the table, every line indented and without blanks at its end; heads only if there are any.
+    /// Writes the table. Every line is indented and has no blanks at its end; the line of heads is left out if all are
+    /// empty.
     pub(crate) fn write(&self, out: &mut String) {
         let first = usize::from(self.columns.iter().all(|column| column.cells[0].is_empty()));
         let rows = self.columns.iter().map(|column| column.cells.len()).max().unwrap_or(0);
@@ -90,17 +90,17 @@ impl Table {
     }
 }
 
-/// The largest magnitude.
+/// Returns the largest magnitude.
 pub(crate) fn scale(numbers: impl IntoIterator<Item = f64>) -> f64 {
     numbers.into_iter().fold(0.0, |largest, number| largest.max(number.abs()))
 }
 
-/// Whether `value` is what rounding left of a zero, next to numbers of the size `scale`.
+/// Returns whether `value` is a rounding residue of zero, next to numbers of magnitude `scale`.
 pub(crate) fn is_residue(value: f64, scale: f64) -> bool {
     value != 0.0 && value.abs() < 1e-13 * scale
 }
 
-/// A number alone: six digits, without zeros at their end.
+/// Formats a single number with six digits, or four and an exponent, without trailing zeros.
 pub(crate) fn number(value: f64) -> String {
     let text = within(value, value.abs());
     match text.split_once('e') {
@@ -113,7 +113,7 @@ fn without_zeros(digits: &str) -> &str {
     if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { digits }
 }
 
-/// `value` with the decimals that give `largest` six digits; an exact zero is "0".
+/// Formats `value` with the decimals that give `largest` six digits; an exact zero is "0".
 fn within(value: f64, largest: f64) -> String {
     const DIGITS: i32 = 6;
     if value == 0.0 {
@@ -124,7 +124,7 @@ fn within(value: f64, largest: f64) -> String {
     }
     let magnitude = libm::log10(largest).floor() as i32;
     let decimals = DIGITS - 1 - magnitude;
-    // Too small next to the largest to be seen with its decimals.
+    // So small next to the largest number that these decimals would show at most two of its digits.
     let vanishes = value.abs() < 0.5 * 10f64.powi(2 - decimals);
     if !(-4..DIGITS).contains(&magnitude) || vanishes {
         return format!("{value:.3e}");

@@ -1,14 +1,14 @@
-//! Rows of results as the text of a table.
+//! Rows of results as text, for CSV and TSV.
 
 use super::csv::{Cell, Columns, Row, RowSink};
 use std::ops::Range;
 
-/// A row as text.
+/// A row of text that is being filled.
 pub struct TextRow {
     guarded: bool,
-    /// The text of all cells, as they were set.
+    /// The text of all cells, in the order in which they were set.
     text: Vec<u8>,
-    /// Where in it each column's is.
+    /// For each column, the range of its text.
     cells: Vec<Range<usize>>,
 }
 
@@ -30,7 +30,6 @@ impl Row for TextRow {
     }
 }
 
-/// Rows as text.
 impl RowSink for Vec<u8> {
     type Row = TextRow;
 
@@ -45,7 +44,7 @@ impl RowSink for Vec<u8> {
     }
 }
 
-/// The shortest digits that read back as the same number, as in JSON.
+/// Appends the shortest digits that read back as the same number, as JSON does.
 fn append_number(number: f64, out: &mut Vec<u8>) {
     if number.is_finite() {
         // Writing into memory cannot fail.
@@ -55,14 +54,14 @@ fn append_number(number: f64, out: &mut Vec<u8>) {
     }
 }
 
-/// The same as text.
+/// Returns the text of [`append_number`].
 pub(super) fn number_text(number: f64) -> String {
     let mut digits = Vec::new();
     append_number(number, &mut digits);
     String::from_utf8_lossy(&digits).into_owned()
 }
 
-/// Whether a spreadsheet would compute the text of a cell.
+/// Returns whether a spreadsheet would take the text of a cell for a formula.
 fn is_formula(text: &[u8]) -> bool {
     let is_number = || std::str::from_utf8(text).is_ok_and(|text| text.parse::<f64>().is_ok());
     matches!(text.first(), Some(b'=' | b'+' | b'-' | b'@' | b'\t' | b'\r')) && !is_number()

@@ -1,4 +1,4 @@
-//! Names, modes, verdicts and grades in words; all but [`id`] is [`visible`].
+//! Names, modes, verdicts and grades in words. Every function except [`id`] returns [`visible`] text.
 
 use super::table::number;
 use crate::error::visible;
@@ -11,32 +11,32 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 use std::hash::Hash;
 
-/// `ramone (k17)`.
+/// Returns the name with the id, as in `ramone (k17)`.
 pub fn titled(name: &str, id: &Option<Value>) -> String {
     let title = id.as_ref().map_or_else(|| name.to_owned(), |own| format!("{name} ({})", self::id(own)));
     visible(&title).into_owned()
 }
 
-/// An id without quotes.
+/// Returns the id without quotes.
 pub(crate) fn id(id: &Value) -> Cow<'_, str> {
     id.as_str().map_or_else(|| id.to_string().into(), Cow::Borrowed)
 }
 
-/// `margin 0.0130, index +1`, as far as there are any.
+/// Returns `margin 0.0130, index +1`, or the part that is known.
 pub(crate) fn grades(margin: Option<f64>, index: Option<i8>) -> String {
     let margin = margin.map(|margin| format!("margin {}", number(margin)));
     let index = index.map(|index| format!("index {index:+}"));
     margin.into_iter().chain(index).collect::<Vec<_>>().join(", ")
 }
 
-/// `left_foot lifts off, right_foot sticks`.
+/// Returns a clause per contact, as in `left_foot lifts off, right_foot sticks`.
 pub(crate) fn modes(names: impl IntoIterator<Item: AsRef<str>>, modes: &[Mode]) -> String {
     let clauses =
         names.into_iter().zip(modes).map(|(name, mode)| format!("{} {}", visible(name.as_ref()), verb(*mode)));
     clauses.collect::<Vec<_>>().join(", ")
 }
 
-/// What is zero on a border: `the normal impulse of left_foot reaches zero`.
+/// Returns what is zero on a border, as in `the normal impulse of left_foot reaches zero`.
 pub(crate) fn at_zero(border: &Border) -> String {
     let zeros = border.at_zero.iter().map(|zero| zero.inequality.reached_by(&visible(&zero.contact)));
     zeros.collect::<Vec<_>>().join(", ")
@@ -44,21 +44,21 @@ pub(crate) fn at_zero(border: &Border) -> String {
 
 const NUMBERS: [&str; 10] = ["No", "One", "Two", "Three", "Four", "Five", "Six", "Seven", "Eight", "Nine"];
 
-/// What the numbers of an impact are called, or those of forces.
+/// The names and units of the numbers of an impact, or of those of forces.
 #[derive(Debug)]
 pub(crate) struct Wording {
     pub energy: &'static str,
-    /// Contact velocities in a table.
+    /// Heads of the contact velocities before the impact (t, n).
     pub before: [&'static str; 2],
-    /// As in an outcome's table.
+    /// Heads of the impulses in an outcome's table (t, n).
     pub impulse: [&'static str; 2],
     pub after: [&'static str; 2],
     pub on_loops: [&'static str; 2],
-    /// All of v after it.
+    /// Head of the table of v after the impact.
     pub coordinates: &'static str,
     pub rates: &'static str,
     pub others: &'static str,
-    /// Of a region without an outcome.
+    /// The sentence for a region without an outcome.
     pub nothing: &'static str,
     pub drawn: DrawnNames,
 }
@@ -66,10 +66,10 @@ pub(crate) struct Wording {
 /// Names and units in pictures and pages.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub(crate) struct DrawnNames {
-    /// What the ground gives, and what a contact has then.
+    /// Impulse or force of the ground on a contact, and the contact's velocity or acceleration that results.
     pub given: (&'static str, &'static str),
     pub taken: (&'static str, &'static str),
-    /// How it moves before, and what is lost.
+    /// Velocity before the impact, and the unit of what is lost.
     pub moving: &'static str,
     pub lost: &'static str,
 }
@@ -110,7 +110,7 @@ const FORCES: Wording = Wording {
     },
 };
 
-/// What happens without finite forces.
+/// The verdict `none` of sustained contact.
 pub(crate) const NO_FORCES: &str = "No forces are consistent: velocities jump";
 
 impl Wording {
@@ -121,7 +121,7 @@ impl Wording {
         }
     }
 
-    /// The verdict as a sentence; `open` is how much is, if anything.
+    /// Returns the verdict as a sentence; `open` counts the open combinations, if there are any.
     pub fn verdict(&self, verdict: Verdict, outcomes: &[Outcome], open: Option<&OpenCombinations>) -> String {
         if let Some(&OpenCombinations { combinations, undecided, beyond_budget }) = open {
             let listed = outcomes.iter().filter(|outcome| !outcome.decided).count();
@@ -153,7 +153,7 @@ impl Wording {
                 return format!("{count} outcomes are equally valid{families}.");
             }
             Verdict::None if self.drawn.given == FORCES.drawn.given => NO_FORCES,
-            // Regular contacts always have an outcome.
+            // Contacts with a regular Delassus matrix always have an outcome.
             Verdict::None => {
                 "No outcome is consistent: contacts that depend on each other are asked for rebounds, or are held to the \
                  ground, as no impulses can do together; lower `restitution`, or name fewer `contacts`."
@@ -175,7 +175,7 @@ fn verb(mode: Mode) -> &'static str {
     }
 }
 
-/// `lifting off`.
+/// Returns the mode as in `lifting off`.
 pub(crate) fn gerund(mode: Mode) -> &'static str {
     match mode {
         Mode::Separate => "lifting off",
@@ -185,7 +185,7 @@ pub(crate) fn gerund(mode: Mode) -> &'static str {
     }
 }
 
-/// The names that there is `room` for, at least the first, and how many more there are.
+/// Lists the names that fit into `room` characters, at least the first, and says how many more there are.
 pub(crate) fn list(names: &[impl AsRef<str>], room: usize) -> String {
     let mut end = 0;
     let fits = |name: &&_| {
@@ -200,7 +200,7 @@ pub(crate) fn list(names: &[impl AsRef<str>], room: usize) -> String {
     text
 }
 
-/// Things by their key, in the order of the first of each.
+/// Groups things by their keys, in the order in which the keys first occur.
 pub(crate) fn grouped<K: Clone + Eq + Hash, T>(pairs: impl IntoIterator<Item = (K, T)>) -> Vec<(K, Vec<T>)> {
     let mut groups: Vec<(K, Vec<T>)> = Vec::new();
     let mut places: HashMap<K, usize> = HashMap::new();

@@ -1,9 +1,9 @@
-//! The record of error against run time.
+//! The results of the accuracy study: error against run time.
 //!
 //! ```text
 //!     CaseStudy, Comparison --> Accuracy --> JSON (its own fields), advice, text.rs, picture.rs
-//!     of each way to G:  time t = median over the cases,  digits d = the fewest of a case
-//!     f64: the quickest and the one with most digits; f32, double-double: the quickest; the proof: t with / t without
+//! for each way to compute G:  time t = median over the cases,  digits d = the fewest of any case
+//! f64: the fastest way and the most exact; f32, double-double: the fastest; the proof: t with it / t without it
 //! ```
 
 mod text;
@@ -36,7 +36,7 @@ pub struct Compliant {
 }
 
 impl Accuracy {
-    /// With the advice that follows.
+    /// Creates the record, with the advice that follows from it.
     pub fn new(studies: Vec<CaseStudy>, compliant: Option<Compliant>) -> Self {
         Self { advice: advice(&studies), studies, compliant }
     }
@@ -57,7 +57,7 @@ fn in_words(factorization: Factorization) -> &'static str {
     }
 }
 
-/// Ways in f64 whose digits differ by less count as equal: the last bits are chance.
+/// Ways in f64 whose digits differ by less count as equally exact, because the last bits are chance.
 const SAME_DIGITS: f64 = 0.5;
 
 #[derive(Debug, Clone, Copy)]
@@ -67,7 +67,7 @@ struct Way {
     digits: f64,
 }
 
-/// One sentence; `None` if no way to G in f64 was measured.
+/// Returns the advice in one sentence; `None` if no way to compute G in f64 was measured.
 fn advice(studies: &[CaseStudy]) -> Option<String> {
     let ways = ways(studies, "f64");
     let quickest = quickest(&ways)?;
@@ -95,8 +95,8 @@ fn quickest(ways: &[Way]) -> Option<Way> {
     ways.iter().copied().min_by(|a, b| a.time.total_cmp(&b.time))
 }
 
-/// Every way to G in numbers of one kind that failed in none of its cases with contacts; it keeps no more digits than the
-/// numbers have.
+/// Returns every way to compute G in one kind of number that failed in no case with contacts. A way keeps no more
+/// digits than the numbers have.
 fn ways(studies: &[CaseStudy], number: &str) -> Vec<Way> {
     let most = match number {
         "f32" => f64::from(f32::MANTISSA_DIGITS),
@@ -117,7 +117,7 @@ fn ways(studies: &[CaseStudy], number: &str) -> Vec<Way> {
     all.into_iter().filter_map(way).collect()
 }
 
-/// The cost of the proof, and how often it succeeds.
+/// Describes the cost of the proof, and how often it succeeds.
 fn of_the_proof(studies: &[CaseStudy]) -> Option<String> {
     let time = |study: &CaseStudy, number| {
         let mut methods = study.methods.iter();

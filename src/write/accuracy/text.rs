@@ -1,4 +1,4 @@
-//! Error against run time as text for people.
+//! The results of the accuracy study as text for people.
 
 use super::{Accuracy, Compliant, name_of};
 use crate::accuracy::compliant::{GREATEST_FRICTION, NEAR};
@@ -9,7 +9,7 @@ use crate::write::words::grouped;
 use std::fmt::Write;
 
 impl Accuracy {
-    /// As tables for people.
+    /// Returns the results as tables for people.
     pub fn text(&self, palette: &Palette) -> String {
         let mut out = String::new();
         match self.studies.as_slice() {
@@ -26,7 +26,7 @@ impl Accuracy {
     }
 }
 
-/// One case: a line for each method.
+/// Writes one case, with a line per method.
 fn one(out: &mut String, study: &CaseStudy, Palette { strong, plain, .. }: &Palette) {
     let _ = writeln!(out, "{strong}{}{plain}: {}", study.name, ending(study));
     let _ = writeln!(out, "Condition: {}.\n", conditions(study));
@@ -54,7 +54,7 @@ fn work(work: Work) -> &'static str {
     }
 }
 
-/// Many cases: a line for each, then one for each method.
+/// Writes many cases: a line per case, then a line per method.
 fn many(out: &mut String, studies: &[CaseStudy], Palette { strong, plain, .. }: &Palette) {
     let columns = [
         ("f32", Factorization::SparseLtl, "f32 LTL"),
@@ -150,7 +150,7 @@ fn power(condition: Option<f64>) -> String {
     condition.map_or("-".into(), |value| if value < 1e3 { format!("{value:.0}") } else { format!("{value:.0e}") })
 }
 
-/// Less than the error of any number except the reference: what is left is the reference's own uncertainty.
+/// Errors below this come from the uncertainty of the reference itself; every other kind of number has larger ones.
 const NO_ERROR: f64 = 1e-40;
 
 fn digits(error: f64) -> String {

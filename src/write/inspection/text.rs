@@ -1,5 +1,5 @@
-//! What was read of a robot, as text that fits a screen: first what a user needs to trust the model, long lists cut
-//! short.
+//! The reduced planar robot as text that fits a screen. What a user needs to trust the model comes first, and long
+//! lists are cut.
 
 use super::{Inspection, JointRecord, MimicRecord};
 use crate::error::visible;
@@ -10,24 +10,24 @@ use crate::write::{Palette, words, written};
 use std::collections::HashSet;
 use std::fmt::Write;
 
-/// The longest line of the head, in characters.
+/// The width of the head's lines, in characters.
 const WIDTH: usize = 118;
-/// Where the head's second column begins.
+/// The column at which the head's text begins, after the labels.
 const INDENT: usize = 15;
 /// The room for a list of names, in characters.
 const NAMES: usize = 300;
-/// The room for the feet of one shape, and for all of them, in characters.
+/// The room for the feet of one shape, and for the feet of all shapes, in characters.
 const FEET: usize = 200;
 const SHAPES: usize = 600;
-/// The lines that fit a screen.
+/// The number of lines that fit a screen.
 const SCREEN: usize = 40;
-/// The lines of a part that are always shown: a blank one, its title, the names of its columns, two rows.
+/// The number of lines of a section that are always shown: a blank line, the title, the heads of the columns, two rows.
 const LEAST: usize = 5;
 /// The room for the links of a body, in characters.
 const LINKS: usize = 50;
 
 impl Inspection<'_> {
-    /// The same as text, with a line break at its end: all of it, or what fits a screen.
+    /// Returns the description as text that ends with a line break: all of it, or what fits a screen.
     pub fn text(&self, palette: &Palette, all: bool) -> String {
         let head = written(|out| self.head(palette, all, out));
         let bodies = written(|out| self.bodies(palette, out));
@@ -75,7 +75,7 @@ impl Inspection<'_> {
         self.joints.iter().chain(self.followers.iter().map(|follower| &follower.joint))
     }
 
-    /// The size of the places in the tables \[m\].
+    /// The largest coordinate of a point in the tables \[m\].
     fn lengths(&self) -> f64 {
         let points = self.bodies.iter().map(|body| body.com).chain(self.hinges().map(|joint| joint.origin));
         scale(points.flat_map(Vector::components))
@@ -138,7 +138,7 @@ impl Inspection<'_> {
         format!("{forward}-{up}: {forward} forward, {up} up, pitch about {} (nose down)", self.normal)
     }
 
-    /// The motion of a joint; a turn about the axis of the file's root link.
+    /// Describes the motion of a joint; a revolute one turns about an axis of the file's root frame.
     fn motion(&self, joint: &JointRecord) -> String {
         let Some(sign) = joint.sign else {
             let Vector { x, z } = joint.direction.unwrap_or_default();
@@ -162,14 +162,14 @@ impl Inspection<'_> {
         parts.map(|(count, what)| format!("{count} {what}")).collect::<Vec<_>>().join(", ")
     }
 
-    /// The feet of one shape together, in the order of the first: all of them, or what fits.
+    /// Lists the feet grouped by shape, in the order in which the shapes first occur: all of them, or what fits.
     fn feet_in_words(&self, all: bool) -> String {
         if self.feet.is_empty() {
             return "none: name them by `feet`, or in each state by \"contacts\"".to_owned();
         }
         let feet = self.feet.iter().map(|foot| (foot.in_words(), foot.link));
         let groups = words::grouped(feet).into_iter().map(|(shape, links)| {
-            // Each link once, however many of its shapes are alike.
+            // Each link is listed once, with the number of its equal shapes.
             let links = words::grouped(links.into_iter().map(|link| (link, ()))).into_iter();
             let counted = |(link, shapes): (&str, Vec<()>)| match shapes.len() {
                 1 => link.to_owned(),
@@ -181,7 +181,8 @@ impl Inspection<'_> {
         if all { groups.join(", ") } else { words::list(&groups, SHAPES) }
     }
 
-    /// What was left out, that of one reason together; of joints without the bodies that they are welded into.
+    /// Returns what was left out, grouped by reason; joints are listed by name alone, without the body of their child
+    /// link.
     fn left_out_by_reason(&self) -> Vec<(String, Vec<String>)> {
         let held = self.held.iter().map(|held| (held.why.clone(), held.name.to_owned()));
         let names: HashSet<&str> = self.held.iter().map(|held| held.name).collect();
@@ -194,10 +195,10 @@ impl Inspection<'_> {
     }
 }
 
-/// A part of the text, cut to fit.
+/// A part of the text, cut to fit the screen.
 struct Section {
     lines: Vec<String>,
-    /// How many of its lines are not shown.
+    /// The number of lines that are not shown.
     left_out: usize,
 }
 
@@ -212,7 +213,7 @@ impl Section {
     }
 }
 
-/// A line of the head, broken between words.
+/// Writes a line of the head, broken between words.
 fn entry(label: &str, text: &str, out: &mut String) -> std::fmt::Result {
     wrapped(&format!("  {label:<12} "), INDENT, text, out)
 }

@@ -83,7 +83,7 @@ pub struct Brief<'a> {
 }
 
 impl Report<'_> {
-    /// The same in brief.
+    /// Returns the result in brief.
     pub fn brief(&self) -> Brief<'_> {
         let outcomes = self.outcomes.as_deref().unwrap_or_default().iter();
         let in_brief = outcomes.map(|&Outcome { ref modes, index, margin, decided, ref next, .. }| {

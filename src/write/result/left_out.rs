@@ -1,4 +1,4 @@
-//! What does not enter the analysis, in words.
+//! What does not enter the analysis of a state, in words.
 
 use crate::contact::Merged;
 use crate::pipeline::{Impact, LeftOut};
@@ -18,7 +18,7 @@ pub struct LeftOutRecord<'a> {
 }
 
 impl<'a> LeftOutRecord<'a> {
-    /// All that was left out of `robot`, and of every robot.
+    /// Returns what the analysis of an impact leaves out: parts of `robot`, and what no impact depends on.
     pub fn all(robot: &'a Robot) -> Vec<Self> {
         Self::of_robot(robot, ("gravity, Coriolis forces, joint limits", "do not enter an impact"))
     }
@@ -30,7 +30,7 @@ impl<'a> LeftOutRecord<'a> {
         of_robot.chain([never]).collect()
     }
 
-    /// All that was left out of this impact, and then of its `robot`.
+    /// Returns what the analysis of `impact` leaves out: first parts of the scene, then those of its `robot`.
     pub fn of_impact(robot: &'a Robot, impact: &Impact) -> Vec<Self> {
         let contacts = |of: &[usize]| of.iter().map(|&at| &*impact.contacts[at].name).collect::<Vec<_>>().join(", ");
         let shapes = |count: usize| if count == 1 { "1 shape".to_owned() } else { format!("{count} shapes") };

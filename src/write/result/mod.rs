@@ -1,4 +1,4 @@
-//! The JSON contract: these structs are what is written, field by field and in this order, and can be read back.
+//! The JSON contract: results are serialized from these structs, field by field in this order, and can be read back.
 //!
 //! Fields that do not apply are absent; fields that apply but have no value (the index on a border, the condition of a
 //! singular matrix) are null. Numbers are written with every digit.
@@ -219,7 +219,7 @@ pub struct Touchdown<'a> {
 }
 
 impl<'a> Touchdown<'a> {
-    /// The touchdown of a `state` that was found behind a `row` of a recording at `time` \[s\].
+    /// Creates the record of a touchdown: its `state` at `time` \[s\] was found at or after a `row` of a recording.
     pub fn of(robot: &Robot, state: &State, landing: &'a Landing, row: usize, time: f64) -> Option<Self> {
         Some(Self {
             row,
@@ -241,10 +241,10 @@ impl<'a> ContactRecord<'a> {
 }
 
 impl<'a> Report<'a> {
-    /// The result of a state. If the outcomes were refused it has an `error`, next to the matrices that were asked for.
+    /// Creates the result of a state. If the outcomes were refused, it has an `error` next to the requested matrices.
     ///
     /// # Errors
-    /// The refusal of the outcomes, if no matrices were asked for.
+    /// Returns the refusal of the outcomes as an error if no matrices were requested.
     pub fn of_state(robot: &'a Robot, state: &'a State, impact: &'a Impact, detail: Detail) -> crate::Result<Self> {
         let error = match impact.analyzed() {
             Err(error) if impact.matrices.is_none() => return Err(error),
@@ -263,7 +263,7 @@ impl<'a> Report<'a> {
         });
         let matrices = impact.matrices.as_ref();
         let whole = Self::of_analysis(contacts.collect(), impact.analysis.as_ref(), detail);
-        // No theorem is known of forces.
+        // These fields rest on theorems about impacts; none is known for forces.
         let whole = match impact.aspect() {
             Aspect::Impact => whole,
             Aspect::Forces => Self { no_slip_consistent: None, index_sum: None, explain: None, ..whole },
@@ -286,7 +286,7 @@ impl<'a> Report<'a> {
         })
     }
 
-    /// The result of a contact problem without a robot.
+    /// Creates the result of a contact problem without a robot.
     pub fn of_problem(problem: &'a Problem, analysis: &'a Analysis, detail: Detail) -> Self {
         let contacts = problem.names.iter().zip(problem.contact.velocity_before());
         let contacts = contacts.map(|(name, velocity)| ContactRecord::of_problem(name, *velocity)).collect();
@@ -298,7 +298,7 @@ impl<'a> Report<'a> {
         }
     }
 
-    /// What robots and matrices have in common.
+    /// Creates the fields that results of states and of contact problems share.
     fn of_analysis(contacts: Vec<ContactRecord<'a>>, known: Option<&'a Analysis>, detail: Detail) -> Self {
         let explained = known.filter(|_| detail.explain);
         let rejected = explained.map(|analysis| {
@@ -339,10 +339,10 @@ impl<'a> Report<'a> {
     }
 }
 
-/// The most characters of an id that are repeated.
+/// The number of characters of an id that [`short_id`] keeps.
 const ID_LIMIT: usize = 200;
 
-/// An id as it is repeated where it only has to be recognized; of a long text the beginning and `... (cut)`.
+/// Shortens an id that only has to be recognized: a long text is cut and ends with `... (cut)`.
 pub(crate) fn short_id(id: Value) -> Value {
     let end = id.as_str().and_then(|text| text.char_indices().nth(ID_LIMIT));
     match (&id, end) {
@@ -364,10 +364,10 @@ pub(super) enum Id {
     Number(f64),
 }
 
-/// Beyond this condition the last digits alone decide whether a matrix is regular.
+/// Condition number above which the last digits alone decide whether a matrix is regular.
 const ILL_CONDITIONED: f64 = 1e14;
 
-/// What a reader of the analysis should know, in whole sentences.
+/// Returns notes on the analysis, in whole sentences.
 fn notes(problem: &Problem, analysis: &Analysis) -> Cow<'static, [String]> {
     let keep = "give mass_matrix, contact_jacobian and velocity to keep what rounding loses";
     let repaired = || {
@@ -390,13 +390,13 @@ fn notes(problem: &Problem, analysis: &Analysis) -> Cow<'static, [String]> {
     notes.chain(condition.map(ill)).chain(analysis.notes(&problem.contact, || 0.0)).collect()
 }
 
-/// G, two rows and columns per contact.
+/// Returns the Delassus matrix G, two rows and columns per contact.
 fn delassus(problem: &Problem) -> Vec<Vec<f64>> {
     let rows = 0..2 * problem.contact.contacts();
     rows.clone().map(|row| rows.clone().map(|column| problem.contact.delassus(row, column)).collect()).collect()
 }
 
-/// Reads a field that may be null although it may also be absent.
+/// Reads a field that may be absent and may also be null: null gives `Some(None)`.
 fn present<'de, D: Deserializer<'de>, T: Deserialize<'de>>(field: D) -> Result<Option<T>, D::Error> {
     T::deserialize(field).map(Some)
 }

@@ -1,4 +1,4 @@
-//! Refusals.
+//! Records of refused inputs.
 
 #[cfg(feature = "schema")]
 use super::Id;
@@ -40,14 +40,14 @@ pub struct ErrorObject {
 }
 
 impl Refused {
-    /// The refusal of the input that begins on `line`.
+    /// Creates the refusal of the input that begins on `line`.
     pub fn new(id: Option<Value>, line: usize, error: &Error) -> Self {
         Self { id: id.map(short_id), line, error: ErrorObject::new(error) }
     }
 }
 
 impl ErrorObject {
-    /// The error without its file, line and column.
+    /// Creates the record of an error, without its file, line and column.
     pub fn new(error: &Error) -> Self {
         let [place, hint] = [error.place(), error.remedy()].map(|text| text.map(str::to_owned));
         let nearest = match error.reason() {
@@ -60,7 +60,7 @@ impl ErrorObject {
     }
 }
 
-/// In one line.
+/// Writes place, message and hint on one line.
 impl Display for ErrorObject {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         let place = self.place.as_ref().map_or(String::new(), |place| format!("{place}: "));

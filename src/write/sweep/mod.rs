@@ -1,4 +1,4 @@
-//! A study's regions, borders and samples, as JSON, CSV and text.
+//! The regions, borders and samples of a study, as JSON, tables and text.
 //!
 //! ```text
 //!     Survey --> Sweep {parameter, regions, borders, notes} --> head of the JSON, text
@@ -96,7 +96,7 @@ pub struct Happening<'a> {
     pub has_depth: bool,
 }
 
-/// A region as it lies beside a border.
+/// A region on one side of a border.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RegionSide<'r> {
     pub letter: &'r str,
@@ -116,7 +116,7 @@ impl MapRegion<'_> {
 }
 
 impl<'a> Regions<'a> {
-    /// The record of a `study`.
+    /// Creates the record of a `study`.
     pub fn new(study: &'a Study, findings: &'a Findings) -> Self {
         match findings {
             Findings::Along(survey) => Self::Along(Sweep::new(study, survey)),
@@ -124,7 +124,7 @@ impl<'a> Regions<'a> {
         }
     }
 
-    /// The object up to its samples, with commas between them, behind which `]}` ends it.
+    /// Appends the JSON object up to its samples. The caller appends them with commas between them, and then `]}`.
     pub fn append_head(&self, out: &mut Vec<u8>) {
         append_line(out, self);
         out.truncate(out.len().saturating_sub(b"}\n".len()));
@@ -133,7 +133,7 @@ impl<'a> Regions<'a> {
 }
 
 impl<'a> Sweep<'a> {
-    /// The record of a survey of the first parameter.
+    /// Creates the record of a survey of the first parameter.
     pub fn new(study: &'a Study, survey: &'a Survey) -> Self {
         let parameter = &study.parameters()[0];
         let region = |region: &'a Region| RegionRecord {
@@ -192,7 +192,7 @@ pub struct MapRegion<'a> {
 }
 
 impl<'a> MapSweep<'a> {
-    /// The record of the `map` of a study.
+    /// Creates the record of the `map` of a study.
     pub fn new(study: &'a Study, map: &'a Map) -> Self {
         let parameters = study.parameters();
         let whole: f64 = parameters.iter().map(Parameter::range).product();
@@ -222,14 +222,14 @@ impl<'a> MapSweep<'a> {
     }
 }
 
-/// The area of a loop; negative if it runs clockwise.
+/// Returns the area of a loop, negative if it runs clockwise.
 fn surface(points: &[[f64; 2]]) -> f64 {
     let next = points.iter().cycle().skip(1);
     points.iter().zip(next).map(|(a, b)| 0.5 * (a[0] * b[1] - a[1] * b[0])).sum()
 }
 
 impl<'a> Happening<'a> {
-    /// That of a regime, with the verdict in it, or why it is refused.
+    /// Describes a regime, with the verdict inside it, or with the reason why its states are refused.
     pub(crate) fn of(
         question: Aspect,
         regime: &'a Regime,
@@ -246,7 +246,8 @@ impl<'a> Happening<'a> {
     }
 }
 
-/// What a search of regions with so many contacts may have missed, also because contacts depend on each other.
+/// Returns notes on what a search of regions with this many contacts may have missed; if contacts are `dependent` on
+/// each other, it may have missed more.
 fn not_guaranteed(contacts: usize, dependent: bool) -> Vec<String> {
     if contacts == 0 {
         return Vec::new();

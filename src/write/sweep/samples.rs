@@ -1,4 +1,4 @@
-//! The samples of a study, each as an object or as rows of a table.
+//! The samples of a study, as JSON objects or as rows of a table.
 
 use crate::read::table::Carried;
 use crate::state::NamedContact;
@@ -9,14 +9,14 @@ use crate::{Impact, Result};
 use serde::Serialize;
 use serde_json::json;
 
-/// A sample: the parameters' values and the result there.
+/// A sample of a study, given by the values of the parameters.
 #[derive(Debug, Clone)]
 pub struct SampleRecord<'a> {
     /// The names of the parameters.
     pub names: Vec<&'a str>,
-    /// Their values.
+    /// The parameters' values.
     pub point: Vec<f64>,
-    /// Its number, from 0.
+    /// The sample's number, from 0.
     pub index: usize,
 }
 
@@ -29,7 +29,7 @@ pub(crate) struct RefusedSample {
 }
 
 impl<'a> SampleRecord<'a> {
-    /// Sample number `index` of a study; the last parameter changes fastest.
+    /// Creates sample number `index` of a study; the last parameter changes fastest.
     pub fn new(model: &RobotStudy<'a>, index: usize) -> Self {
         let mut rest = index;
         let parameters = model.study.parameters();
@@ -41,17 +41,17 @@ impl<'a> SampleRecord<'a> {
         Self { names: parameters.iter().map(|parameter| parameter.name.as_str()).collect(), point, index }
     }
 
-    /// How many samples a study has.
+    /// Returns the number of samples of a study.
     pub fn count(model: &RobotStudy) -> usize {
         model.study.parameters().iter().map(|parameter| parameter.steps).product()
     }
 
-    /// Whether it is answered.
+    /// Returns whether the sample has an answer, not a refusal.
     pub fn is_answered(&self, solver: &mut Solver) -> bool {
         solver.at(&self.point, |_, state, pipeline| pipeline.outcomes(&state)?.analyzed().map(drop)).is_ok()
     }
 
-    /// Appends `{"alpha": ..., "result": {...}}` without a line break; returns whether it was answered.
+    /// Appends `{"alpha": ..., "result": {...}}` without a line break; returns whether the sample was answered.
     pub fn append_json(&self, solver: &mut Solver, detail: Detail, out: &mut Vec<u8>) -> bool {
         let mut result = Vec::new();
         let answered = solver.at(&self.point, |robot, state, pipeline| -> Result<()> {
@@ -71,7 +71,7 @@ impl<'a> SampleRecord<'a> {
         refused.is_none()
     }
 
-    /// Appends its rows, with the letter that `letter` gives to its regime; returns whether it was answered.
+    /// Appends the sample's rows; `letter` gives the letter of its regime. Returns whether the sample was answered.
     pub fn append_rows(
         &self,
         solver: &mut Solver,
@@ -94,8 +94,8 @@ impl<'a> SampleRecord<'a> {
     }
 }
 
-/// The columns of a batch with these `contacts`, then the parameters and the letter of the region. What is asked is known
-/// from the study.
+/// Creates the columns of a batch with these `contacts`, then the parameters and the letter of the region. The study
+/// says whether impacts or forces are asked about.
 pub fn columns<'c>(
     model: &'c RobotStudy,
     feet: &[NamedContact],

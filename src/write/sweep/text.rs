@@ -1,4 +1,4 @@
-//! The regions of a study for people.
+//! The regions of a study as text for people.
 
 use super::{Happening, MapSweep, RegionSide, Regions, Sweep};
 use crate::error::visible;
@@ -8,7 +8,7 @@ use crate::{Mode, Verdict};
 use std::fmt::Write;
 
 impl Regions<'_> {
-    /// All regions and borders of `robot`'s study for people, with a line break at its end.
+    /// Returns all regions and borders of `robot`'s study as text that ends with a line break.
     pub fn text(&self, robot: &str, palette: &Palette) -> String {
         written(|out| self.write(robot, palette, out))
     }
@@ -54,7 +54,7 @@ impl Sweep<'_> {
         Ok(())
     }
 
-    /// A value of the parameter as a text: a border that may as well be at zero is `~0`.
+    /// Formats a value of the parameter; a value that the resolution of borders does not distinguish from zero is `~0`.
     pub(crate) fn place(&self, at: f64, text: impl Fn(f64) -> String) -> String {
         let range = self.regions.iter().map(|region| region.to - region.from).sum::<f64>();
         if at != 0.0 && at.abs() < RESOLUTION * range { "~0".to_owned() } else { text(at) }
@@ -85,7 +85,7 @@ impl MapSweep<'_> {
 }
 
 impl Happening<'_> {
-    /// Its outcomes, one a line.
+    /// Returns the outcomes, one per line.
     pub fn lines(&self) -> Vec<String> {
         if let Some(error) = &self.error {
             let example = if self.has_depth { ", for example" } else { "" };
@@ -105,7 +105,7 @@ impl Happening<'_> {
         lines
     }
 
-    /// The combinations that no precision excludes, one a line.
+    /// Returns the combinations that no precision excludes, one per line.
     pub fn not_excluded(&self) -> Vec<String> {
         let undecided = self.undecided.unwrap_or_default().iter();
         undecided.map(|modes| format!("not excluded: {}", self.in_words(modes))).collect()
@@ -117,7 +117,7 @@ impl Happening<'_> {
 }
 
 impl Transition {
-    /// What changes between these regions, as a sentence without its end.
+    /// Describes what changes between these regions, as a sentence without its period.
     pub(crate) fn in_words(&self, [below, above]: [RegionSide<'_>; 2]) -> String {
         match (&self.refused_below, &self.refused_above) {
             (Some(_), None) => return format!("from {} on states are answered", above.letter),
@@ -153,7 +153,7 @@ impl Transition {
     }
 }
 
-/// A number in as many digits as people read.
+/// Formats a number with at most nine decimals, or with an exponent if they show nothing of it.
 fn brief(value: f64) -> String {
     let rounded = format!("{value:.9}");
     match rounded.trim_end_matches('0').trim_end_matches('.') {

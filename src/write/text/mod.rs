@@ -1,4 +1,4 @@
-//! A result as text: what touched, what happens, why nothing else does.
+//! A result as text: the contacts, every outcome, and why nothing else happens.
 
 mod outcome;
 mod reasons;
@@ -18,13 +18,13 @@ use crate::read::Problem;
 use crate::{Friction, Impact, Mode, Robot, State};
 use std::fmt::Write;
 
-/// The room for what was left out, in characters.
+/// The room for the list of what was left out, in characters.
 const LEFT_OUT: usize = 200;
 
-/// What a text needs in addition to the report.
+/// What the text of a report needs in addition to the report.
 #[derive(Debug)]
 pub struct Subject<'a> {
-    /// What the report is about, as in `ramone`.
+    /// The title of the text, as in `ramone`.
     title: String,
     /// The robot's size \[m\]; 0 without one.
     size: f64,
@@ -37,7 +37,7 @@ pub struct Subject<'a> {
 }
 
 impl<'a> Subject<'a> {
-    /// A state of a robot.
+    /// Creates the subject of a report on a state of a robot.
     pub fn of_state(robot: &Robot, state: &State, impact: &'a Impact) -> Self {
         let unit = |(_, unit): (_, &'static str)| match (impact.aspect(), unit.starts_with('m')) {
             (Aspect::Impact, _) => unit,
@@ -54,7 +54,7 @@ impl<'a> Subject<'a> {
         }
     }
 
-    /// A contact problem given as matrices.
+    /// Creates the subject of a report on a contact problem given as matrices.
     pub fn of_problem(problem: &Problem, analysis: &'a Analysis) -> Self {
         Self {
             title: words::titled("contact problem", &problem.id),
@@ -67,7 +67,7 @@ impl<'a> Subject<'a> {
     }
 }
 
-/// The report as text, with a line break at its end.
+/// Returns the report as text that ends with a line break.
 pub fn text(report: &Report, subject: &Subject, detail: Detail, palette: &Palette) -> String {
     let mut writer = Writer { out: String::new(), report, subject, palette };
     // Writing into a string cannot fail.
@@ -125,7 +125,7 @@ impl<'w> Writer<'w> {
         self.report.contacts.iter().map(|contact| &*contact.name)
     }
 
-    /// The fastest contact velocity before or after; of forces the greatest acceleration.
+    /// The greatest contact velocity before or after the impact; with forces, the greatest contact acceleration.
     fn speeds(&self) -> f64 {
         let before = self.report.contacts.iter().map(|contact| contact.velocity_before);
         let before = before.filter(|_| self.report.sustained.is_none()).chain(self.free().copied());
@@ -133,7 +133,7 @@ impl<'w> Writer<'w> {
         scale(before.chain(outcomes.flat_map(|outcome| outcome.velocity_after.iter().copied())).flatten())
     }
 
-    /// Accelerations of contacts without forces; none of an impact.
+    /// The contacts' accelerations without contact forces; empty for an impact.
     fn free(&self) -> impl Iterator<Item = &'w Pair<f64>> + use<'w> {
         self.report.sustained.iter().flat_map(|(_, free)| *free)
     }
@@ -142,7 +142,8 @@ impl<'w> Writer<'w> {
         let contacts = &self.report.contacts;
         let mut table = Table::default().text("contact", self.names());
         let points = || contacts.iter().map(|contact| contact.point.map(Vector::components));
-        // A point may lie at the origin, up to rounding and what closing a loop leaves.
+        // The scale includes the robot's size: a point may lie at the origin, up to rounding and the residue of closed
+        // loops.
         let lengths = scale(points().flatten().flatten()).max(10.0 * self.subject.size);
         if points().all(|point| point.is_some()) {
             table = table.pairs(["x [m]", "z [m]"], lengths, points());
@@ -151,7 +152,7 @@ impl<'w> Writer<'w> {
         if gaps().flatten().any(|gap| gap != 0.0 && !is_residue(gap, lengths)) {
             table = table.numbers("gap [m]", lengths, gaps());
         }
-        // On a profile each contact may have axes of its own.
+        // On a profile the normals of the contacts may differ.
         let normals = || contacts.iter().map(|contact| contact.normal.map(Vector::components));
         if normals().any(|normal| Some(normal) != normals().next()) {
             table = table.pairs(["n: x", "z"], 1.0, normals());
@@ -187,7 +188,7 @@ impl<'w> Writer<'w> {
         self.holds()
     }
 
-    /// What happens without finite forces.
+    /// Returns the sentence for the verdict `none` of forces, with the outcomes of the impact by which velocities jump.
     fn no_forces(&self) -> String {
         let sentence = format!("{}, by an impact without approach", words::NO_FORCES);
         match self.report.sustained.and_then(|(own, _)| own.shock.as_deref()) {
@@ -214,7 +215,7 @@ impl<'w> Writer<'w> {
         writeln!(self.out, "Holds on the whole box of the uncertainty: {answer}.")
     }
 
-    /// The paper's section 4 for each contact.
+    /// Writes beta, gamma and region of each contact (paper section 4).
     fn regions(&mut self) {
         if let Some(Some(explained)) = &self.report.explain {
             self.out.push_str("\nWith infinite friction, while all other contacts stick:\n");
@@ -246,7 +247,7 @@ impl<'w> Writer<'w> {
         Ok(())
     }
 
-    /// What else a reader should know before trusting the answer.
+    /// Writes what else a reader should know before trusting the answer.
     fn closing(&mut self) -> std::fmt::Result {
         if (self.report.explain.is_some() || self.report.delassus.is_some()) && self.report.verdict.is_some() {
             self.out.push('\n');
@@ -279,7 +280,7 @@ impl<'w> Writer<'w> {
         if !struck && !self.report.notes.is_empty() {
             self.out.push('\n');
         }
-        // If nothing touches, a note gives the same numbers.
+        // If nothing touches, a note already gives these numbers.
         if let Some(NearestRecord { name, height, velocity: [_, normal] }) =
             self.report.nearest.as_ref().filter(|_| struck)
         {

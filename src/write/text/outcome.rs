@@ -1,4 +1,4 @@
-//! Each outcome, and the velocities after all of them.
+//! The text of each outcome, and the velocities after all of them.
 
 use super::Writer;
 use crate::impact::{Family, Next, Verdict};
@@ -45,7 +45,7 @@ impl Writer<'_> {
         self.next(outcome)
     }
 
-    /// What happens just after it.
+    /// Writes what happens just after the outcome.
     pub(super) fn next(&mut self, outcome: &Outcome) -> std::fmt::Result {
         let Some(Next { verdict, proven, modes }) = &outcome.next else { return Ok(()) };
         let clauses = |modes: &Vec<Option<Mode>>| {
@@ -64,7 +64,7 @@ impl Writer<'_> {
         writeln!(self.out, "  just after: {words}{grade}")
     }
 
-    /// One line per family: its modes and the numbers of the outcomes at its corners.
+    /// Writes one line per family: its modes and the numbers of the outcomes at its corners.
     pub(super) fn families(&mut self) -> std::fmt::Result {
         if !self.report.families.is_empty() {
             let rates = self.subject.wording.rates;
@@ -78,7 +78,7 @@ impl Writer<'_> {
         Ok(())
     }
 
-    /// What is exactly zero, and what lies beyond.
+    /// Writes which inequalities are exactly zero, and which modes lie beyond the border.
     fn border(&mut self, outcome: &Outcome) -> std::fmt::Result {
         let Some(border) = &outcome.border else { return Ok(()) };
         write!(self.out, "  exactly on a border: {}", words::at_zero(border))?;
@@ -111,7 +111,7 @@ impl Writer<'_> {
         }
     }
 
-    /// What the virtual springs ask for and what acts at the joints, of a state with such springs.
+    /// Writes what the virtual springs ask for and the joints' torques; nothing for a state without virtual springs.
     pub(super) fn torques(&mut self) {
         let Some((Sustained { driven: Driven { torque, springs, unrealized }, .. }, _)) = self.report.sustained else {
             return;
@@ -142,9 +142,9 @@ impl Writer<'_> {
         }
     }
 
-    /// v after the impact, one column per outcome.
+    /// Writes v after the impact, one column per outcome.
     pub(super) fn velocities(&mut self, outcomes: &[Outcome]) {
-        // Of what is not decided no number is known.
+        // An undecided outcome has no known numbers.
         let decided = || outcomes.iter().enumerate().filter(|(_, outcome)| outcome.decided);
         let Some(first) = decided().next().map(|(_, first)| coordinates(first)).filter(|names| !names.is_empty())
         else {
@@ -162,13 +162,13 @@ impl Writer<'_> {
     }
 }
 
-/// `   (margin 0.0130, index +1)`, as far as there are any.
+/// Returns `   (margin 0.0130, index +1)`, or the part that is known.
 pub(super) fn graded(outcome: &Outcome) -> String {
     let grades = words::grades(outcome.margin, outcome.index);
     if grades.is_empty() { grades } else { format!("   ({grades})") }
 }
 
-/// The names of the entries of v, base and joints.
+/// Returns the names of the entries of v, base first.
 fn coordinates(outcome: &Outcome) -> Vec<&str> {
     let parts = [&outcome.base_velocity_after, &outcome.joint_velocity_after];
     parts.into_iter().flatten().flat_map(|part| part.iter()).map(|(name, _)| name).collect()

@@ -1,4 +1,4 @@
-//! Why there is nothing else.
+//! The text that says why no other combination is an outcome.
 
 use super::Writer;
 use crate::impact::{Outcome, RejectionReason};
@@ -10,18 +10,19 @@ use crate::write::words;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-/// The most rejected combinations that are listed.
+/// The greatest number of rejected combinations that are listed.
 const LISTED: usize = 20;
 
 impl Writer<'_> {
-    /// One line: how many other combinations there are, and what is wrong with them.
+    /// Writes one line: how many other combinations there are, and why they fail.
     pub(super) fn why_nothing_else(&mut self, outcomes: &[Outcome]) -> std::fmt::Result {
         let Some(analysis) = self.subject.analysis.filter(|_| !self.report.contacts.is_empty()) else { return Ok(()) };
-        // Corners of families may have the same modes, and a family those of a corner.
+        // Corners of a family may share their modes, and a family may have those of a corner: each list of modes counts
+        // once.
         let families = self.report.families.iter().map(|family| &family.modes);
         let outcomes = outcomes.iter().map(|outcome| &outcome.modes).chain(families).collect::<BTreeSet<_>>().len();
         let others = analysis.effort.combinations().saturating_sub(outcomes as u64);
-        // What is open may be something else; the verdict says how much that is.
+        // An open combination may be an outcome; the verdict says how many are open.
         if analysis.open.is_some() {
             return Ok(());
         }
@@ -32,10 +33,10 @@ impl Writer<'_> {
             (_, 0) => write!(self.out, "\nAll {others} combinations of modes fail")?,
             _ => write!(self.out, "\nNothing else: the other {others} combinations of modes fail")?,
         }
-        // The reasons of a part say nothing of all.
+        // If some rejections are not listed, the reasons of the others do not describe all.
         let rejected = analysis.rejected.iter().filter(|_| analysis.unlisted == 0);
         let mut reasons = words::grouped(rejected.map(|rejection| (in_general(rejection.because), ())));
-        // The most frequent first.
+        // The most frequent reason comes first.
         reasons.sort_by_key(|(_, all)| std::cmp::Reverse(all.len()));
         match &reasons[..] {
             [] => writeln!(self.out, "."),
@@ -87,7 +88,7 @@ impl Writer<'_> {
     }
 }
 
-/// A reason without its contact, to stand after `because`.
+/// Returns the reason without the contact, as a clause to follow `because`.
 fn in_general(because: RejectionReason) -> &'static str {
     match because {
         RejectionReason::Violated { inequality, .. } => inequality.violation(),
