@@ -1,4 +1,4 @@
-//! A state's contact problem in any number, step by step, so that every step can be timed.
+//! A state's contact problem in any kind of number, step by step, so that every step can be timed.
 //!
 //! ```text
 //!     state --trigonometry--> configuration --> Assembly: kinematics, M, L^T D L | articulated bodies, J, G
@@ -25,21 +25,21 @@ pub enum Factorization {
     ArticulatedBodies,
 }
 
-/// A state compiled in numbers of kind `T`, and the memory of its computation.
+/// A state compiled in numbers of kind `T`, with the memory that its computation uses.
 pub(super) struct Computation<'a, T> {
     pub state: &'a ExactState<'a>,
     pub assembly: Assembly<T>,
-    /// v, by coordinate; such that the stance and the loops are kept.
+    /// v by coordinate, adjusted so that the stance and the loops hold.
     pub velocity: Vec<T>,
 }
 
 impl<'a, T: Trigonometry> Computation<'a, T> {
-    /// Compiles the robot; nothing that depends on the state is computed yet.
+    /// Compiles the robot; computes nothing that depends on the state.
     pub fn new(state: &'a ExactState<'a>) -> Self {
         Self { state, assembly: state.assembly(state.plan()), velocity: Vec::new() }
     }
 
-    /// Positions of all bodies, from the f64 state on.
+    /// Computes the positions of all bodies from the f64 state.
     pub fn place(&mut self) {
         let Self { state, assembly, velocity } = self;
         assembly.configuration.set(&assembly.plan, state.position);
@@ -48,7 +48,8 @@ impl<'a, T: Trigonometry> Computation<'a, T> {
         velocity.extend(state.velocity.iter().map(|&entry| T::from_f64(entry)));
     }
 
-    /// G by the sparse factorization of M, or without M; with loops J and c, too, since they are eliminated from both.
+    /// Computes G by the sparse factorization of M, or without M. The factorization also computes J and c, because
+    /// loops are eliminated from them and from G.
     pub fn delassus(&mut self, by: Elimination) {
         self.assembly.elimination = by;
         self.assembly.factorize();
@@ -58,15 +59,15 @@ impl<'a, T: Trigonometry> Computation<'a, T> {
         self.assembly.delassus();
     }
 
-    /// J, and the contact velocities c = J v.
+    /// Computes J and the contact velocities c = J v.
     pub fn velocities(&mut self) {
         self.state.contact_velocities(&mut self.assembly, &mut self.velocity);
     }
 
-    /// G, which leaves the memory, and c with and without the applied impulses.
+    /// Returns G, which is moved out of the workspace, and c with and without the applied impulses.
     pub fn collect(&mut self) -> Contacts<T> {
         if !self.state.scene.impulses.is_empty() {
-            // Not every way to G leaves a factor behind.
+            // The change by applied impulses needs a factor, which not every way to compute G leaves behind.
             self.assembly.factorize();
         }
         self.state.collect(&mut self.assembly)
@@ -74,14 +75,14 @@ impl<'a, T: Trigonometry> Computation<'a, T> {
 }
 
 impl Computation<'_, f64> {
-    /// G by a dense Cholesky factorization of M; false if M is not positive definite to it.
+    /// Computes G by a dense Cholesky factorization of M; returns false if M is not numerically positive definite.
     pub fn delassus_by_cholesky(&mut self) -> bool {
         mass_matrix(&self.assembly.plan, &mut self.assembly.workspace);
         self.velocities();
         let nv = self.assembly.plan.columns();
         let rows = 2 * self.assembly.points.len();
         let workspace = &mut self.assembly.workspace;
-        // Only the lower triangle is read.
+        // nalgebra reads only the lower triangle.
         let Some(factor) = DMatrix::from_row_slice(nv, nv, &workspace.mass_matrix).cholesky() else { return false };
         let mut half = DMatrix::from_iterator(nv, rows, (0..rows).flat_map(|row| workspace.jacobian_row(row)));
         if !factor.l_dirty().solve_lower_triangular_mut(&mut half) {

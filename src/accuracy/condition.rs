@@ -1,19 +1,20 @@
-//! The condition number of the mass matrix, scaled to a unit diagonal so that no unit enters it.
+//! The condition number of the mass matrix M, scaled to a unit diagonal to make it independent of units.
 //!
 //! ```text
 //!     K = S M S,  S = diag(M_ii^-1/2),  condition = |K| |K^-1|
 //! ```
 //!
-//! Both norms are found by power iteration, by the sparse factor where it is inverted: an estimate from below, at O(nv
-//! depth) a step also for chains of a thousand links. Source: Golub and Van Loan, *Matrix Computations*, section 8.2.
+//! Both norms are found by power iteration, |K^-1| with the sparse factor of M. They are estimates from below. A step
+//! takes O(nv depth), also for chains of a thousand links. Source: Golub and Van Loan, *Matrix Computations*, section
+//! 8.2.
 
 use crate::dynamics::Workspace;
 use crate::dynamics::plan::Plan;
 
-/// Enough for two digits, unless the two largest eigenvalues are closer than that.
+/// Power iterations; they give two digits, unless the two largest eigenvalues are closer than that.
 const STEPS: usize = 60;
 
-/// Condition number of the scaled mass matrix, after `mass_matrix` and `factorize`.
+/// Returns the condition number of the scaled mass matrix; requires the results of `mass_matrix` and `factorize`.
 pub fn mass_matrix_condition(plan: &Plan, workspace: &Workspace) -> f64 {
     let nv = plan.columns();
     let (mass, factor) = (&workspace.mass_matrix, &workspace.factor);
@@ -38,9 +39,9 @@ pub fn mass_matrix_condition(plan: &Plan, workspace: &Workspace) -> f64 {
     growth(nv, multiplied) * growth(nv, solved)
 }
 
-/// The norm of a symmetric map.
+/// Returns the norm of a symmetric linear map, by power iteration.
 fn growth(length: usize, map: impl Fn(&[f64]) -> Vec<f64>) -> f64 {
-    // No direction is left out, and none is preferred.
+    // The first vector neither misses a direction nor prefers one.
     let mut vector: Vec<f64> = (0..length).map(|index| libm::sin(1.0 + index as f64)).collect();
     let mut norm = 0.0;
     for _ in 0..STEPS {

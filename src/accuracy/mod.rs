@@ -2,11 +2,11 @@
 //!
 //! ```text
 //!     state --[computation]--> M, G, c in f32, f64, double-double, by each factorization --[study]--> errors, times
-//!     state --[reference]--> the same, enclosed by 320 bits and more --[study]
-//!     [suite]: stiff and extreme cases by name            [compliant]: springs and dampers in place of rigid contact
+//! state --[reference]--> the same, enclosed with 320 bits or more --[study]
+//! [suite]: named stiff and extreme cases              [compliant]: springs and dampers in place of rigid contact
 //! ```
 //!
-//! The rest of the crate does not use this module; it only compares.
+//! The rest of the crate does not use this module.
 
 mod number;
 mod computation;

@@ -1,14 +1,14 @@
-//! The numbers that are compared.
+//! The kinds of numbers that are compared.
 
 use crate::scalar::{Ball, DoubleDouble, Midpoint, Real, Trigonometry};
 
-/// A number that a state can be computed in, from its f64s on.
+/// A kind of number in which a state's contact problem can be computed from the state's f64s.
 pub trait Number: Trigonometry {
-    /// f64s whose sum is the number, the larger one first.
+    /// Returns two f64s whose sum is the number, the larger one first.
     fn parts(self) -> [f64; 2];
 }
 
-/// Half the digits of f64, for comparison only.
+/// f32 has about half the digits of f64; it serves for comparison only.
 impl Real for f32 {
     fn from_f64(value: f64) -> Self {
         value as f32

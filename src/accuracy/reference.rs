@@ -1,8 +1,9 @@
-//! M, G and c to 320 bits and more, and how far others are from them. They are found by the algorithms of f64, so that
-//! differences are rounding alone; tests compare the algorithms with sums over bodies and with kinetic energy.
+//! M, G and c with 320 bits or more, and the errors of other computations against them. The algorithms are those of
+//! f64, so that differences are due to rounding alone; tests compare the algorithms with sums over bodies and with
+//! kinetic energy.
 //!
-//! Errors are free of units: of M and G relative to the geometric mean of both diagonal entries, of contact velocities
-//! and impulses by the scale of margins, S = max |c_i| / sqrt(G_ii).
+//! Errors are free of units. Those of M and G are relative to the geometric mean of the two diagonal entries; those of
+//! contact velocities and impulses are relative to the scale of margins, S = max |c_i| / sqrt(G_ii).
 
 use super::computation::{Computation, Factorization};
 use super::number::Number;
@@ -13,20 +14,20 @@ use crate::planar::Rotation;
 use crate::robot::Robot;
 use crate::scalar::{Ball, DoubleDouble, Enclosure, Interval, Ordered, Real};
 
-/// Bits of the reference, and for each body: an articulated inertia is that much less sharp than its children's. The
-/// numbers are enclosures, so that their own uncertainty shows as an error.
+/// Bits of the reference, and further bits per body, because an articulated inertia loses about that many against those
+/// of its children. The numbers are enclosures, so that their own uncertainty counts as an error.
 pub const PRECISION: usize = 320;
 const PRECISION_PER_BODY: usize = 4;
 
-/// Errors of M from here on are seen by pairs of f64, whose own are some 1e-31.
+/// Errors of M from here on are resolved by pairs of f64, whose own errors are about 1e-31.
 const SHOWN_BY_PAIRS: f64 = 1e-24;
 
-/// Runs `work` on numbers with bits enough for `robot`.
+/// Runs `work` on numbers that have enough bits for `robot`.
 pub fn with_precision<R>(robot: &Robot, work: impl FnOnce() -> R) -> R {
     Interval::scope(PRECISION + PRECISION_PER_BODY * robot.bodies.len(), work)
 }
 
-/// G, c and the poses of a state in the reference's numbers; it must stay within one [`with_precision`].
+/// G, c and the poses of a state in the reference's numbers; valid only within one [`with_precision`].
 pub(super) struct Reference<'a> {
     computation: Computation<'a, Interval>,
     /// How G was found.
@@ -50,12 +51,12 @@ impl<'a> Reference<'a> {
         Self { factorization, contacts: computation.collect(), computation }
     }
 
-    /// How well G itself is known.
+    /// Returns the uncertainty of the reference's own G.
     pub fn own_error(&self) -> f64 {
         self.worst_of_delassus(|_, exact| exact.error())
     }
 
-    /// The largest error of a G; NaN where it holds no number.
+    /// Returns the largest error of G; NaN if an entry of `delassus` is not a number.
     pub fn delassus_error<T: Number>(&self, delassus: &[T]) -> f64 {
         self.worst_of_delassus(|at, exact| distance(delassus[at], exact))
     }
@@ -67,18 +68,18 @@ impl<'a> Reference<'a> {
         worst((0..exact.len()).map(|at| relative(error(at, exact[at]), size(at / rows) * size(at % rows))))
     }
 
-    /// The largest error of an M (nv x nv, columns of the plan, of which the lower triangle is read); NaN where it
-    /// holds no number.
+    /// Returns the largest error of M (nv x nv, columns of the plan; only the lower triangle is read); NaN if an entry
+    /// is not a number.
     pub fn mass_matrix_error<T: Number>(&self, mass: &[T]) -> f64 {
-        // Pairs of f64 are faster, and show all but the least errors.
+        // Pairs of f64 are faster, and resolve all but the smallest errors.
         let error = self.mass_matrix_error_by(mass, enclosed);
         let is_shown = (SHOWN_BY_PAIRS..f64::INFINITY).contains(&error);
-        // Poses need bits for each body, since errors grow with every turn; M adds up without turns.
+        // Poses need bits for each body, because errors grow with every rotation; M is then a sum without rotations.
         let exactly = || self.mass_matrix_error_by(mass, |exact| exact * Interval::one());
         if is_shown { error } else { Interval::scope(PRECISION, exactly) }
     }
 
-    /// The same by an M of poses that are `rounded`.
+    /// Returns the error of M against an M that is computed from the poses, converted to other numbers by `rounded`.
     fn mass_matrix_error_by<T: Number, R: Ordered>(&self, mass: &[T], rounded: fn(Interval) -> R) -> f64 {
         let (plan, poses) = (self.computation.state.plan::<R>(), &self.computation.assembly.workspace);
         let mut workspace = Workspace::default();
@@ -97,7 +98,7 @@ impl<'a> Reference<'a> {
     }
 }
 
-/// A ball around the pair of f64s next to a number.
+/// Returns a ball around the pair of f64s that is closest to `exact`; the ball contains `exact`.
 fn enclosed(exact: Interval) -> Ball<DoubleDouble> {
     let head = exact.to_f64();
     let rest = exact - Interval::from_f64(head);
@@ -107,14 +108,14 @@ fn enclosed(exact: Interval) -> Ball<DoubleDouble> {
     (Ball::from_f64(head) + Ball::from_f64(tail)).widened(rest)
 }
 
-/// At most how far `found` is from `exact`.
+/// Returns an upper bound of the distance between `found` and `exact`.
 pub fn distance<T: Number, R: Ordered>(found: T, exact: R) -> f64 {
     let [head, tail] = found.parts().map(R::from_f64);
     let difference = head + tail - exact;
     difference.to_f64().abs() + difference.error()
 }
 
-/// `error` in parts of `size`; zero if there is no error.
+/// Returns `error` as a part of `size`; zero if there is no error.
 pub fn relative(error: f64, size: f64) -> f64 {
     if error == 0.0 { 0.0 } else { error / size }
 }

@@ -1,4 +1,4 @@
-//! The robots of the suite, from this repository's URDFs or link by link.
+//! The robots of the suite, read from this repository's URDFs or built link by link.
 
 use crate::Result;
 use crate::planar::Vector;
@@ -24,7 +24,7 @@ pub fn walker(moment: f64) -> Result<Robot> {
     Ok(with_bodies(Robot::from_urdf(include_str!("../../urdf/pdw.urdf"))?, |body| body.moment = moment))
 }
 
-/// The minimalistic biped with feet that weigh nothing, each hinged to its leg's end.
+/// The minimalistic biped with massless feet, each hinged to the end of its leg.
 pub fn with_massless_feet() -> Result<Robot> {
     let mut robot = minimalistic()?;
     for leg in 0..2 {
@@ -39,7 +39,7 @@ pub fn with_massless_feet() -> Result<Robot> {
     Ok(robot)
 }
 
-/// Equal rods of 1 m and 1 kg, one hanging on the other, that touch the ground with both free ends.
+/// A chain of hinged rods of 1 m and 1 kg; its two free ends can touch the ground.
 pub fn chain(links: usize) -> Robot {
     let rod = |index: usize| Body {
         name: format!("rod {index}"),
@@ -66,7 +66,7 @@ pub fn chain(links: usize) -> Robot {
     }
 }
 
-/// `robot` with all masses times `mass` and all lengths times `length`.
+/// Returns `robot` with all masses multiplied by `mass` and all lengths by `length`.
 pub fn resized(robot: &Robot, mass: f64, length: f64) -> Robot {
     let mut robot = robot.clone();
     for body in &mut robot.bodies {
@@ -90,7 +90,7 @@ pub fn resized(robot: &Robot, mass: f64, length: f64) -> Robot {
     robot
 }
 
-/// `robot` with a change to every body.
+/// Returns `robot` with `change` applied to every body.
 pub fn with_bodies(mut robot: Robot, change: impl FnMut(&mut Body)) -> Robot {
     robot.bodies.iter_mut().for_each(change);
     robot
@@ -100,7 +100,7 @@ fn hinge(name: String, parent: usize, child: usize, origin: Vector<f64>) -> Join
     Joint { name, parent, child, origin, axis: Axis::Revolute { sign: -1.0 }, limits: None }
 }
 
-/// A link that is its body and touches the ground with a point.
+/// A link with the frame of its body, which can touch the ground at one point.
 fn point_foot(name: String, body: usize, center: Vector<f64>) -> Link {
     let pose = [[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
     Link { name, body, pose, shapes: vec![FootShape::disc(center, 0.0)], has_inertial: true, line: None }

@@ -1,4 +1,4 @@
-//! Runs every method on a case: error against the reference, and run time.
+//! Runs every method on a case: errors against the reference, and run times.
 
 use super::computation::{Computation, Factorization};
 use super::condition::mass_matrix_condition;
@@ -19,13 +19,13 @@ use crate::state::State;
 use serde::{Serialize, Serializer};
 use std::cell::RefCell;
 
-/// Why articulated bodies are not tried.
+/// Why articulated bodies are left out.
 const NOT_ARTICULATED: &str = "mimic joints and loops need M";
-/// Why a dense factorization is not tried.
+/// Why dense factorization is left out.
 const NOT_DENSE: &str = "loops are eliminated by the sparse factorization";
-/// With more coordinates double-doubles do not factorize M.
+/// The greatest number of coordinates for which double-doubles factorize M.
 const LONGEST_FACTORIZED: usize = 300;
-/// Why.
+/// Why double-doubles leave out the factorization.
 const TOO_LONG: &str = "with more than 300 coordinates it takes seconds";
 
 /// One case, computed by every method.
@@ -176,7 +176,7 @@ pub fn of_state(name: &str, robot: &Robot, state: &State, options: &Options, bud
     study
 }
 
-/// The ways to the whole answer, and whether they prove it.
+/// Returns the methods that give the whole answer, each with whether it proves the answer.
 fn answers(prove: bool) -> impl Iterator<Item = (&'static str, bool)> {
     [("f64", false), ("f64 with proof", true)].into_iter().filter(move |(_, proves)| prove || !proves)
 }
@@ -242,20 +242,20 @@ impl Method {
     }
 }
 
-/// A state on which one method after the other is run.
+/// A state on which the methods run one after the other, with their results.
 struct Bench<'a> {
     state: &'a ExactState<'a>,
     problem: &'a ContactProblem,
     reference: Reference<'a>,
     analysis: Option<&'a Analysis>,
     budget: Budget,
-    /// Of M.
+    /// Condition number of M.
     condition: Option<f64>,
     methods: Vec<Method>,
 }
 
 impl<'a> Bench<'a> {
-    /// Runs all; the reference's `time` is known.
+    /// Runs every method; `time` is the run time of the reference.
     fn every_method(&mut self, time: Spread) {
         use Factorization::{ArticulatedBodies, SparseLtl};
         self.method::<f32>("f32", SparseLtl);
@@ -282,7 +282,7 @@ impl<'a> Bench<'a> {
         self.methods.push(Method { left_out: Some(why), ..method });
     }
 
-    /// What was computed, unless the method was left out.
+    /// Runs one method and returns its computation; `None` if the method was left out.
     fn method<T: Number>(&mut self, number: &'static str, factorization: Factorization) -> Option<Computation<'a, T>> {
         let mut computation = Computation::<T>::new(self.state);
         let by = match factorization {
@@ -331,7 +331,7 @@ impl<'a> Bench<'a> {
             Factorization::SparseLtl => {
                 Some(self.reference.mass_matrix_error(&computation.assembly.workspace.mass_matrix))
             }
-            // The same M.
+            // Dense Cholesky factorizes the same M.
             Factorization::DenseCholesky => {
                 self.methods.iter().find(|method| method.number == number).and_then(|method| method.error?.mass_matrix)
             }
@@ -348,10 +348,10 @@ impl<'a> Bench<'a> {
     }
 }
 
-/// The problem `shape` with these numbers.
+/// Returns the problem `shape` with its numbers replaced by `contacts`.
 fn filled<T: Real>(shape: &ContactProblem, contacts: &Contacts<T>) -> ContactProblem<T> {
     let Contacts { delassus, before, free } = contacts;
-    // `map` takes G by rows, the velocities without and with applied impulses, and the normal parts that approach.
+    // `map` visits G by rows, c without and with applied impulses, and the normal velocities of approaching contacts.
     let approach = |(c, given): (&Pair<T>, &Pair<f64>)| if given[1] < 0.0 { c[1] } else { T::zero() };
     let approach: Vec<T> = before.iter().zip(shape.velocity_before()).map(approach).collect();
     let numbers =
@@ -359,7 +359,8 @@ fn filled<T: Real>(shape: &ContactProblem, contacts: &Contacts<T>) -> ContactPro
     shape.map(|zero| numbers.borrow_mut().next().copied().unwrap_or(T::from_f64(zero)))
 }
 
-/// The largest error of the unique outcomes' impulses and velocities by their modes, free of units.
+/// Returns the largest error of impulses and velocities that follow from the modes of outcomes with unique impulses,
+/// free of units; `None` if no outcome can be compared.
 fn outcome_error<T: Number>(
     analysis: &Analysis,
     problem: &ContactProblem<T>,

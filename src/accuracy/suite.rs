@@ -1,6 +1,6 @@
-//! Stiff and extreme cases by name: masses, lengths, poses, friction and speeds at the ends of what f64 can hold.
+//! Named stiff and extreme cases: masses, lengths, poses, friction and speeds at the ends of what f64 can hold.
 //!
-//! Every case must be answered with its condition, or refused with a reason; none may give NaN, panic, or drop a case.
+//! Every case must be answered with its condition, or refused with a reason; none may give NaN, panic or be dropped.
 
 use super::robots;
 use crate::Result;
@@ -15,39 +15,39 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, FRAC_PI_6, PI};
 /// A case of the suite.
 #[derive(Debug, Clone)]
 pub struct Case {
-    /// Its name, as in `chain of 100 links, folded`.
+    /// The name, as in `chain of 100 links, folded`.
     pub name: String,
-    /// What it is.
+    /// What is analyzed.
     pub subject: CaseSubject,
-    /// What it must come to.
+    /// How the analysis must end.
     pub end: Expected,
 }
 
-/// What is analyzed.
+/// What a case analyzes.
 #[derive(Debug, Clone)]
 pub enum CaseSubject {
     /// A robot's state.
     State(Box<(Robot, State)>),
-    /// Matrices without a robot.
+    /// A contact problem given as matrices, without a robot.
     Problem(ContactProblem),
 }
 
-/// What a case must come to.
+/// How the analysis of a case must end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Expected {
-    /// Every outcome and the condition.
+    /// With every outcome and the condition.
     Answered,
-    /// A refusal, because the mass matrix is singular to the rounding of f64.
+    /// With a refusal, because the mass matrix is singular to the rounding of f64.
     Singular,
 }
 
-/// RAMone's hip angle at which its foot is straight below the hip, its knee being bent by a right angle \[rad\].
+/// RAMone's hip angle that puts its foot straight below the hip while its knee is bent by a right angle \[rad\].
 const RAMONE_HIP: f64 = 0.8729729102424726;
 
-/// The whole suite.
+/// Returns all cases of the suite.
 ///
 /// # Errors
-/// None that a user could bring about: the robots are this crate's own.
+/// Returns an error only if one of this crate's own robots is invalid, which no user can bring about.
 pub fn cases() -> Result<Vec<Case>> {
     let mut suite = Suite::default();
     suite.masses()?;
@@ -95,7 +95,7 @@ impl Suite {
             let state = ramone(&robot, 0.5);
             self.state(format!("{name} inertias"), robot, state);
         }
-        // A needle whose CoG lies 1 nm off its hinge turns at a touch.
+        // A leg whose point mass lies 1 nm from its hinge turns at a touch.
         for (name, com, end) in [("1 nm off", -1e-9, Expected::Answered), ("at", 0.0, Expected::Singular)] {
             let mut robot = robots::minimalistic()?;
             robot.bodies[1].com = Vector::new(0.0, com);
@@ -159,8 +159,9 @@ impl Suite {
             let robot = robots::walker(0.04)?;
             let state = walker(&robot, alpha);
             self.state(name, robot, state);
-            // Point masses on flat legs let the hip rise freely. 1e-9 rad before that 1e-18 of the mass resists it,
-            // which is exactly zero in f64: M has a condition of 1e18, and no answer by f64 would have a digit.
+            // With the legs in a split, point masses do not resist a rise of the hip. At 1e-9 rad before the split,
+            // 1e-18 of the mass resists it, which is exactly zero in f64: M has a condition of 1e18, and an f64 answer
+            // would have no digit.
             let robot = robots::minimalistic()?;
             let state = walker(&robot, alpha);
             self.ending(format!("{name}, point masses"), robot, state, Expected::Singular);
@@ -210,7 +211,7 @@ impl Suite {
     }
 
     fn borders(&mut self) -> Result<()> {
-        // Between lift-off and sliding, sliding and stopping, one and three outcomes (paper, section 5).
+        // Borders between lift-off and sliding, sliding and stopping, one and three outcomes (paper, section 5).
         for (name, border) in [("lift-off", PI / 12.0), ("stop", FRAC_PI_6), ("three outcomes", 5.0 * PI / 12.0)] {
             for (side, angle) in [("before", border.next_down()), ("at", border), ("beyond", border.next_up())] {
                 let robot = robots::minimalistic()?;
@@ -237,13 +238,13 @@ impl Suite {
     }
 }
 
-/// At rest, coordinates zero, without friction's bound.
+/// A state at rest with all coordinates zero and infinite friction.
 fn blank(robot: &Robot) -> State {
     let scene = Scene { friction: ByLink::everywhere(Friction::Infinite), ..Scene::default() };
     State { scene, ..State::zero(robot) }
 }
 
-/// The scene of a robot that stands on `link`.
+/// The scene of a robot whose stance is `link`.
 fn standing(robot: &Robot, link: usize) -> Scene {
     Scene { stance: Some(link), ..blank(robot).scene }
 }
@@ -256,7 +257,7 @@ fn walker(robot: &Robot, alpha: f64) -> State {
     state
 }
 
-/// The walker at alpha = 1.4 with a foot at each leg's end.
+/// The walker at alpha = 1.4 with a foot at the end of each leg.
 fn with_feet(robot: &Robot) -> State {
     let mut state = walker(robot, 1.4);
     state.scene = standing(robot, 2);
@@ -273,14 +274,14 @@ fn ramone(robot: &Robot, alpha: f64) -> State {
     state
 }
 
-/// A problem of a given G, all contacts striking.
+/// A problem with the given G, in which all contacts strike.
 fn given(delassus: Vec<f64>) -> Result<ContactProblem> {
     let contacts = delassus.len().isqrt() / 2;
     let before = (0..contacts).map(|contact| [0.25 * contact as f64, -1.0]).collect();
     ContactProblem::new(delassus, before, vec![Friction::Finite(0.5); contacts], vec![0.0; contacts])
 }
 
-/// The matrix of the eigenvalues `values`, its eigenvectors those of the reflection I - 1/2 (1, 1, 1, 1)(1, 1, 1, 1)^T.
+/// The matrix with eigenvalues `values` and the eigenvectors of the reflection I - 1/2 (1, 1, 1, 1)(1, 1, 1, 1)^T.
 fn reflected(values: [f64; 4]) -> Vec<f64> {
     let vector = |k: usize, i: usize| if k == i { 0.5 } else { -0.5 };
     let entry = |i: usize, j: usize| (0..4).map(|k| vector(k, i) * vector(k, j) * values[k]).sum();

@@ -1,14 +1,14 @@
-//! Run times as medians with their spread.
+//! Run times as medians with quartiles.
 
 use serde::Serialize;
 use std::time::{Duration, Instant};
 
-/// How long one method may be run for its time.
+/// Limits for measuring the run time of one method.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Budget {
-    /// The time for all runs together, the first one aside: it counts only where it takes that long alone.
+    /// The time for all runs but the first together; a first run that alone takes this long is the only sample.
     pub time: Duration,
-    /// The most samples.
+    /// The greatest number of samples.
     pub samples: usize,
 }
 
@@ -33,27 +33,27 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// The quartiles of `samples` in ascending order; NaN of none.
+    /// Returns the quartiles of `samples`, which are in ascending order; NaN if there are none.
     pub fn of_sorted(samples: &[f64]) -> Self {
         let [lower_quartile, median, upper_quartile] = [0.25, 0.5, 0.75].map(|share| quantile(samples, share));
         Self { lower_quartile, median, upper_quartile, samples: samples.len() }
     }
 }
 
-/// The value that a `share` of all lies below, of values in ascending order; NaN of none. Between two values it is
-/// linear, so that the median of an even number is the mean of the middle two.
+/// Returns the value below which a `share` of the values lies, given in ascending order; NaN if there are none. Between
+/// two values it is linear, so that the median of an even number is the mean of the middle two.
 pub fn quantile(sorted: &[f64], share: f64) -> f64 {
     let place = share * sorted.len().saturating_sub(1) as f64;
     let at = |place: f64| sorted.get(place as usize).copied().unwrap_or(f64::NAN);
     let [below, above] = [place.floor(), place.ceil()].map(at);
-    // Two infinite values have no difference.
+    // The difference of two infinite values would be NaN.
     if below == above { below } else { below + (above - below) * place.fract() }
 }
 
-/// A sample takes at least so long, in as many runs as that needs: the clock's own steps are some 30 ns.
+/// The least time of a sample, which has as many runs as that needs: the clock's own steps are some 30 ns.
 const SAMPLE: Duration = Duration::from_micros(20);
 
-/// Runs `work` again and again.
+/// Measures the run time of `work` in repeated runs.
 pub fn time(budget: Budget, mut work: impl FnMut()) -> Spread {
     let once = |work: &mut dyn FnMut(), runs: u32| {
         let start = Instant::now();
@@ -76,7 +76,7 @@ pub fn time(budget: Budget, mut work: impl FnMut()) -> Spread {
     spread(&mut samples)
 }
 
-/// The quartiles of at least one sample.
+/// Returns the quartiles of at least one sample.
 fn spread(samples: &mut [f64]) -> Spread {
     samples.sort_by(f64::total_cmp);
     Spread::of_sorted(samples)

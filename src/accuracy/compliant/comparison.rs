@@ -1,4 +1,4 @@
-//! Compliant contact against the rigid outcomes: how near, to which, and depending on what.
+//! Distances of compliant contact from the rigid outcomes, and the parameters on which they depend.
 
 use super::frozen::{CompliantRun, TOLERANCE, run};
 use super::ground::SoftGround;
@@ -18,7 +18,7 @@ use crate::state::State;
 use crate::{Reason, Result};
 use serde::Serialize;
 
-/// A run that ends within this distance of an outcome is near it, in parts of the speed before.
+/// A run is near an outcome if it ends within this distance of it, as a part of the speed before the impact.
 pub const NEAR: f64 = 0.01;
 
 const DAMPING_RATIOS: [f64; 6] = [0.05, 0.3, 1.0, 3.0, 10.0, f64::INFINITY];
@@ -103,26 +103,27 @@ pub struct ByStiffness {
     pub distance: Option<f64>,
 }
 
-/// Where a run ends among the outcomes.
+/// The outcome that is nearest to the end of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NearestOutcome {
-    /// The nearest outcome.
+    /// The index of the outcome.
     pub outcome: usize,
     /// The distance to it.
     pub distance: f64,
 }
 
-/// Distance of two impulses' effects, in parts of the speed before, of kinetic energy `energy`.
+/// Returns the distance between the effects of two impulses in the energy norm, as a part of the speed before the
+/// impact, whose kinetic energy is `energy`.
 pub fn distance(problem: &ContactProblem, energy: f64, a: &[Pair<f64>], b: &[Pair<f64>]) -> f64 {
     let gap: Vec<f64> = a.iter().zip(b).flat_map(|(a, b)| [a[0] - b[0], a[1] - b[1]]).collect();
     let rows = gap.len();
     let entry = |at: usize| gap[at / rows] * problem.delassus(at / rows, at % rows) * gap[at % rows];
     let twice: f64 = (0..rows * rows).map(entry).sum();
-    // Rounding may leave a little less than nothing.
+    // Rounding may make the sum slightly negative.
     (0.5 * twice.max(0.0) / energy).sqrt()
 }
 
-/// The outcome that a run ends nearest to; `None` if there is no outcome.
+/// Returns the outcome that a run ends nearest to; `None` if there is no outcome.
 pub fn landing(
     problem: &ContactProblem,
     outcomes: &[Outcome],
@@ -134,11 +135,11 @@ pub fn landing(
     nearest.map(|(outcome, distance)| NearestOutcome { outcome, distance })
 }
 
-/// Runs a robot's state through every combination of the parameters; `None` if it has no outcome to be compared with.
+/// Runs a robot's state through every combination of the parameters; `None` if it has no outcome to compare with.
 ///
 /// # Errors
-/// As [`Pipeline::impact`], more contacts than a run takes, refusals of the runs of the finest tolerance, and
-/// [`BeyondBudget`](crate::Reason::BeyondBudget).
+/// Returns the errors of [`Pipeline::impact`]; an error for more contacts than a run takes, or if the integrator gives
+/// up on a run that the studies of tolerance and stiffness need; and [`BeyondBudget`](crate::Reason::BeyondBudget).
 pub fn compare(robot: &Robot, state: &State, options: &Options) -> Result<Option<Comparison>> {
     within(options.budget, || {
         let comparison = comparison(robot, state, options);
@@ -217,7 +218,7 @@ fn gather(parameter: Option<&'static str>, value: Option<f64>, landings: &[Neare
     }
 }
 
-/// The ground of the studies of tolerance and stiffness.
+/// The ground in the studies of tolerance and stiffness.
 const PLAIN: SoftGround = SoftGround { damping_ratio: 1.0, stiffness_ratio: 1.0, tangential_damping: 1.0 };
 
 fn by_tolerance(problem: &ContactProblem, outcomes: &[Outcome], energy: f64) -> Result<Vec<ByTolerance>> {
@@ -240,7 +241,7 @@ fn by_stiffness_of_moving(
 ) -> Result<Vec<ByStiffness>> {
     let mut computation = Computation::<f64>::new(state);
     if computation.assembly.is_constrained() {
-        // A loop is kept closed by impulses alone, which say nothing of the forces that do so in motion.
+        // Here impulses alone keep a loop closed; the forces that do so in motion are not known.
         return Ok(Vec::new());
     }
     computation.place();
@@ -277,5 +278,5 @@ fn by_stiffness_of_moving(
     Ok(rows)
 }
 
-/// Finer than what a stiffness of 1e12 N/m leaves of the difference.
+/// Finer than the difference that remains at a stiffness of 1e12 N/m.
 const MOVING_TOLERANCE: f64 = 1e-9;

@@ -1,11 +1,11 @@
 //! Compliant contact through an impact while the robot's configuration is frozen.
 //!
 //! ```text
-//!     L' = lambda     delta' = -c_n     s' by the ground     c = c- + G L
+//! L' = lambda     delta' = -c_n     s' as in ground.rs     c = c_free + G L
 //! ```
 //!
-//! With times and lengths in units of 1/sqrt(k_n) nothing of the result depends on k_n: stiffness alone changes
-//! nothing, damping and ratios do.
+//! With times and lengths in units of 1/sqrt(k_n), the result does not depend on k_n: stiffness alone changes nothing,
+//! but damping and ratios do.
 
 use super::ground::{SoftGround, Suspension, mean_mobility};
 use super::integrate::{Limits, StiffEquations, integrate};
@@ -14,33 +14,33 @@ use crate::planar::Pair;
 use crate::{Reason, Result};
 use nalgebra::DMatrix;
 
-/// Relative tolerance of the integration, unless another one is asked for.
+/// The relative tolerance of the integration, unless the caller gives another one.
 pub const TOLERANCE: f64 = 1e-10;
 
-/// Where a run ended.
+/// The end of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CompliantRun {
     /// Impulse of each contact, [tangential, normal] \[N s\].
     pub impulse: Vec<Pair<f64>>,
-    /// Contact velocities after it, [tangential, normal] \[m/s\].
+    /// Contact velocities after the impact, [tangential, normal] \[m/s\].
     pub velocity_after: Vec<Pair<f64>>,
     /// Steps of the integrator.
     pub steps: usize,
-    /// Whether all contacts came free or to rest; false for a run that was cut off before.
+    /// Whether all contacts opened or came to rest; false for a run that was cut off before.
     pub ended: bool,
 }
 
-/// The most contacts of a run.
+/// The greatest number of contacts of a run.
 const MOST_CONTACTS: usize = 10;
-/// The longest run, in the model's own time.
+/// The duration of the longest run, in the model's own time.
 const HORIZON: f64 = 1e9;
-/// Forces and approaches of less than this part of the first ones change nothing any more.
+/// Forces below this part of the first ones, and approach speeds below the root of this part, count as zero.
 const SETTLED: f64 = 1e-10;
 
-/// Integrates through the impact; the restitution of `problem` has no part in it.
+/// Integrates through the impact; the restitution of `problem` is not used.
 ///
 /// # Errors
-/// More than ten contacts, and [`Reason::Unsupported`] if the integrator gives up.
+/// Returns an error for more than ten contacts, and [`Reason::Unsupported`] if the integrator gives up.
 pub fn run(problem: &ContactProblem, ground: SoftGround, tolerance: f64) -> Result<CompliantRun> {
     let contacts = problem.contacts();
     if contacts > MOST_CONTACTS {
@@ -72,13 +72,13 @@ pub fn run(problem: &ContactProblem, ground: SoftGround, tolerance: f64) -> Resu
     })
 }
 
-/// The equations in units in which k_n (or d_n, without k_n), the mean mobility and the greatest speed are one. A state
-/// holds the impulses of all contacts, then their depths, then their stretches.
+/// The equations in units in which the mean mobility, the greatest speed, and k_n (or d_n if k_n is zero) are one. A
+/// state holds the impulses of all contacts, then their depths, then their stretches.
 #[derive(Debug)]
 struct Frozen {
-    /// G, 2n x 2n.
+    /// G (2n x 2n).
     mobility: Vec<f64>,
-    /// c-.
+    /// c_free.
     free: Vec<Pair<f64>>,
     suspension: Suspension,
 }
@@ -90,7 +90,7 @@ impl Frozen {
         self.free.iter().enumerate().map(|(i, c)| [c[0] + change(2 * i), c[1] + change(2 * i + 1)]).collect()
     }
 
-    /// Force and rate of the stretch of each contact.
+    /// Returns the force on each contact and the rate of its stretch.
     fn forces(&self, state: &[f64], velocity: &[Pair<f64>]) -> Vec<(Pair<f64>, f64)> {
         let (depths, stretches) = state[2 * velocity.len()..].split_at(velocity.len());
         let force = |(i, c): (usize, &Pair<f64>)| self.suspension.force(i, depths[i], stretches[i], *c);
@@ -128,13 +128,13 @@ impl StiffEquations for Frozen {
         jacobian
     }
 
-    /// Whether all contacts are free or at rest.
+    /// Returns whether all contacts are open or at rest.
     fn has_ended(&self, state: &[f64]) -> bool {
         let velocity = self.velocity(state);
         let settled = SETTLED * self.suspension.damping[1];
         let pushed =
             self.forces(state, &velocity).iter().any(|(force, _)| force.iter().any(|part| part.abs() > settled));
-        // A contact in the air that comes down strikes again.
+        // An open contact that approaches the ground strikes again.
         !pushed && velocity.iter().all(|c| c[1] >= -SETTLED.sqrt())
     }
 }

@@ -2,17 +2,17 @@
 //!
 //! ```text
 //!     lambda_n = max(0, k_n delta - d_n c_n) where delta >= 0, else 0         Kelvin-Voigt without tension
-//!     lambda_t = -k_t s - d_t c_t, kept within -+mu lambda_n                  spring and damper in a row with friction
+//! lambda_t = -k_t s - d_t c_t, clamped to -+mu lambda_n                   spring and damper in series with friction
 //!     delta' = -c_n     s' = -(lambda_t + k_t s) / d_t
 //! ```
 //!
-//! delta is the depth of a contact and s the stretch of its tangential spring; both start at zero.
+//! delta is the depth of a contact below the ground and s the stretch of its tangential spring; both start at zero.
 //! Source: Brogliato, *Nonsmooth Mechanics* (2016), section 2.1.
 
 use crate::law::Friction;
 use crate::planar::Pair;
 
-/// The ground's parameters that matter while the configuration is frozen, the same for all contacts.
+/// The ground's parameters that matter while the configuration is frozen; all contacts have the same.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SoftGround {
     /// d_n / (2 sqrt(k_n m)), m the inverse of the contacts' mean mobility; infinite for dampers without springs.
@@ -23,10 +23,10 @@ pub struct SoftGround {
     pub tangential_damping: f64,
 }
 
-/// The friction coefficient that stands for infinite friction: a spring and damper need a normal force to be held by.
+/// The friction coefficient that stands for infinite friction: without a normal force nothing holds spring and damper.
 pub const GREATEST_FRICTION: f64 = 1e6;
 
-/// Stiffness and damping in numbers.
+/// The coefficients of springs, dampers and friction.
 #[derive(Debug)]
 pub(super) struct Suspension {
     /// k, tangential and normal.
@@ -38,7 +38,7 @@ pub(super) struct Suspension {
 }
 
 impl Suspension {
-    /// Normal springs of `stiffness` and dampers of `damping`, and tangential ones by the ratios of `ground`.
+    /// Creates normal springs of `stiffness` and dampers of `damping`, and tangential ones by the ratios of `ground`.
     pub fn new(ground: SoftGround, stiffness: f64, damping: f64, friction: impl Iterator<Item = Friction>) -> Self {
         let bounded = |friction: Friction| match friction {
             Friction::Finite(mu) => mu.min(GREATEST_FRICTION),
@@ -51,19 +51,20 @@ impl Suspension {
         }
     }
 
-    /// The force on `contact`, and the rate of its stretch, by its depth, stretch and velocity.
+    /// Returns the force on `contact` and the rate of its stretch, from its depth, stretch and velocity.
     pub fn force(&self, contact: usize, depth: f64, stretch: f64, velocity: Pair<f64>) -> (Pair<f64>, f64) {
         let push = self.stiffness[1] * depth - self.damping[1] * velocity[1];
         let normal = if depth < 0.0 { 0.0 } else { push.max(0.0) };
         let bound = self.friction[contact] * normal;
         let spring = self.stiffness[0] * stretch;
         let tangential = (-spring - self.damping[0] * velocity[0]).clamp(-bound, bound);
-        // What the damper in the row with friction carries moves the spring; the rest is slip.
+        // Spring and damper carry the force that friction allows, which gives the rate of the stretch; the rest is
+        // slip.
         ([tangential, normal], -(tangential + spring) / self.damping[0])
     }
 
-    /// The derivatives of [`Self::force`]'s tangential and normal force by depth, stretch, and tangential and normal
-    /// velocity.
+    /// Returns the derivatives of the tangential and the normal force of [`Self::force`] by depth, stretch, and
+    /// tangential and normal velocity.
     pub fn force_derivatives(&self, contact: usize, depth: f64, stretch: f64, velocity: Pair<f64>) -> [[f64; 4]; 2] {
         let ([tangential, normal], _) = self.force(contact, depth, stretch, velocity);
         if normal <= 0.0 {
@@ -79,14 +80,15 @@ impl Suspension {
         [along, push]
     }
 
-    /// The derivatives of the stretch's rate, from those of the tangential force.
+    /// Returns a derivative of the stretch's rate from that of the tangential force; `by_stretch` if it is by the
+    /// stretch.
     pub fn stretch_derivative(&self, tangential: f64, by_stretch: bool) -> f64 {
         let spring = if by_stretch { self.stiffness[0] } else { 0.0 };
         -(tangential + spring) / self.damping[0]
     }
 }
 
-/// Geometric mean of the contacts' G_nn \[1/kg\], from their logarithms.
+/// Returns the geometric mean of the contacts' G_nn \[1/kg\], computed from their logarithms.
 pub(super) fn mean_mobility(delassus: impl Fn(usize, usize) -> f64, contacts: usize) -> f64 {
     let logarithms = (0..contacts).map(|contact| libm::log(delassus(2 * contact + 1, 2 * contact + 1)));
     libm::exp(logarithms.sum::<f64>() / contacts.max(1) as f64)

@@ -1,7 +1,7 @@
-//! Integrates the stiff equations of a compliant impact, from its first moment until nothing more happens.
+//! Integrates the stiff equations of a compliant impact, from first contact until nothing more happens.
 //!
 //! ```text
-//!     y' = f(y)   from y(0)   until the model has ended, or the horizon
+//! y' = f(y)   from y(0)   until the model has ended, or to the horizon
 //! ```
 //!
 //! Source: Hairer and Wanner, *Solving ODEs II* (1996), section IV.8 (Radau IIA of order 5).
@@ -18,19 +18,19 @@ use differential_equations::solout::Solout;
 use differential_equations::solution::Solution;
 use nalgebra::DMatrix;
 
-/// The first step, in the model's own time: the damper's force is there at once.
+/// The first step, in the model's own time; it is short because the damper's force acts at once.
 const FIRST_STEP: f64 = 1e-6;
-/// Steps after which a run is given up.
+/// The number of steps after which the integrator gives up.
 const MOST_STEPS: usize = 5_000;
-/// Steps before which no run has ended: all begin without forces.
+/// A run cannot end within this many steps, because every run begins without forces.
 const FEWEST_STEPS: usize = 2;
 
-/// Equations of an impact in units in which times and states are of order one.
+/// Equations of an impact, in units in which times and states are of order one.
 pub(super) trait StiffEquations {
-    /// f(y).
+    /// Returns f(y), the rates of the state.
     fn rates(&self, state: &[f64]) -> Vec<f64>;
 
-    /// Their derivatives at a state and its rates; forward differences unless the model knows better.
+    /// Returns the derivatives of the rates by the state, by forward differences unless the model overrides it.
     fn jacobian(&self, state: &[f64], rates: &[f64]) -> DMatrix<f64> {
         let own = rates.len();
         let mut jacobian = DMatrix::zeros(own, own);
@@ -46,37 +46,37 @@ pub(super) trait StiffEquations {
         jacobian
     }
 
-    /// Whether nothing more happens from `state` on.
+    /// Returns whether nothing more happens from `state` on.
     fn has_ended(&self, state: &[f64]) -> bool;
 }
 
-/// Where a run came to.
+/// The end of a run.
 #[derive(Debug, Clone)]
 pub(super) struct RunEnd {
     /// The last state.
     pub state: Vec<f64>,
     /// Steps of the integrator, the start included.
     pub steps: usize,
-    /// Whether it ended before the horizon.
+    /// Whether the model had ended; false if the horizon or the budget came first.
     pub ended: bool,
 }
 
-/// How well and how long to integrate.
+/// Tolerances and duration of the integration.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Limits {
     /// Relative tolerance.
     pub relative: f64,
     /// Absolute tolerance of every entry.
     pub absolute: f64,
-    /// The longest run, in the model's own time.
+    /// The end of the longest run, in the model's own time.
     pub horizon: f64,
 }
 
-/// Integrates from `start`. The integrator takes arrays and is compiled for a few lengths: models see states with zeros
-/// behind them, and so does [`RunEnd::state`].
+/// Integrates from `start`. The integrator is compiled for a few lengths of arrays: states that models see, and
+/// [`RunEnd::state`], are padded with zeros.
 ///
 /// # Errors
-/// [`Reason::Unsupported`] if the integrator gives up, and for a start that is longer than the longest array.
+/// Returns [`Reason::Unsupported`] if the integrator gives up, or if the start is longer than the longest array.
 pub(super) fn integrate(model: &dyn StiffEquations, start: &[f64], limits: Limits) -> Result<RunEnd> {
     match start.len() {
         0..=4 => integrate_array::<4>(model, start, limits),
@@ -91,7 +91,7 @@ pub(super) fn integrate(model: &dyn StiffEquations, start: &[f64], limits: Limit
 
 fn integrate_array<const N: usize>(model: &dyn StiffEquations, start: &[f64], limits: Limits) -> Result<RunEnd> {
     let Limits { relative, absolute, horizon } = limits;
-    // One tolerance for each entry: of a single one version 0.7 takes the power 2/3 once per entry.
+    // Tolerances are given per entry: version 0.7 applies the power 2/3 to a single tolerance once per entry.
     let mut method =
         ImplicitRungeKutta::radau5().rtol([relative; N]).atol([absolute; N]).h0(FIRST_STEP).max_steps(MOST_STEPS);
     let mut first = [0.0; N];
@@ -111,7 +111,7 @@ fn gave_up<const N: usize>(error: &IntegrationError<f64, [f64; N]>) -> Error {
     Error::new(reason).hint("take another tolerance, or damping and friction that are less extreme")
 }
 
-/// A model as the integrator takes it.
+/// A model in the form that the integrator takes.
 struct System<'m>(&'m dyn StiffEquations);
 
 impl<const N: usize> ODE<f64, [f64; N]> for System<'_> {
@@ -128,7 +128,7 @@ impl<const N: usize> ODE<f64, [f64; N]> for System<'_> {
     }
 }
 
-/// Ends a run with its model, and keeps the last state.
+/// Ends a run when its model has ended, and keeps the last state.
 struct Run<'m> {
     model: &'m dyn StiffEquations,
     end: RunEnd,

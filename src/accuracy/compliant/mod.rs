@@ -1,8 +1,8 @@
 //! Compliant contact next to the rigid impact.
 //!
 //! Most simulators press a robot's feet into a ground of springs and dampers and integrate through the impact. In
-//! general that does not end at one of the rigid outcomes. The end depends on the damping and on the ratios of
-//! tangential to normal parameters, but, while the configuration is frozen, not on the stiffness.
+//! general the end of the integration is not a rigid outcome. It depends on the damping and on the ratios of tangential
+//! to normal parameters, but, while the configuration is frozen, not on the stiffness.
 
 mod integrate;
 mod ground;
@@ -27,7 +27,7 @@ mod tests {
 
     #[test]
     fn mass_on_spring_leaves_as_in_the_textbook() {
-        // m x'' + d x' + k x = 0 from x = 0 leaves, without tension, when its acceleration vanishes: at the speed
+        // m x'' + d x' + k x = 0 from x = 0 lifts off, without tension, when its acceleration vanishes, at the speed
         // exp(-zeta phi / sqrt(1 - zeta^2)), phi = acos(2 zeta^2 - 1) for zeta < 1 (Brogliato 2016, section 2.1.3).
         let problem =
             ContactProblem::new(vec![0.5, 0.0, 0.0, 0.5], vec![[0.0, -3.0]], vec![Friction::ZERO], vec![0.0]).unwrap();
@@ -38,7 +38,7 @@ mod tests {
             let phase = (2.0 * zeta * root).atan2(2.0 * zeta * zeta - 1.0);
             let expected = 3.0 * (-zeta * phase / root).exp();
             assert!(run.ended);
-            // The kink where it leaves costs some of the tolerance's ten digits.
+            // The kink at lift-off costs some of the tolerance's ten digits.
             assert!((run.velocity_after[0][1] - expected).abs() < 1e-6, "{zeta}: {run:?} {expected}");
         }
     }
@@ -79,11 +79,11 @@ mod tests {
         let changes: Vec<f64> = comparison.stiffnesses.iter().filter_map(|row| row.change).collect();
         assert_eq!(changes.len(), 5);
         for pair in changes.windows(2).skip(1) {
-            // A hundredfold stiffness leaves a tenth.
+            // A stiffness greater by a factor of 100 reduces the change to a tenth.
             assert!((pair[0] / pair[1] - 10.0).abs() < 0.5, "{changes:?}");
         }
-        // Every setting ends nearest to lift-off, and the more damping, the nearer: 0.5, 0.14, 0.04, 0.01 were measured
-        // beforehand over other ratios.
+        // Every setting ends nearest to lift-off, and the nearer, the more damping it has. The medians 0.5, 0.14, 0.04
+        // and 0.01 were measured beforehand over other ratios.
         let medians: Vec<f64> = comparison.groups[1..7].iter().map(|group| group.distance[1]).collect();
         for (found, expected) in medians.iter().zip([0.5, 0.4, 0.14, 0.04, 0.01, 0.0]) {
             assert!((found - expected).abs() < 0.05, "{medians:?}");

@@ -1,12 +1,13 @@
-//! Compliant contact through an impact while the robot moves: what of the frozen limit is left at a finite stiffness.
+//! Compliant contact through an impact while the robot moves: how much a finite stiffness differs from the frozen
+//! limit.
 //!
 //! ```text
 //!     M(q) v' + h(q, v) = J(q)^T lambda,   delta = depth of the contact point,   lambda and s as in the frozen model
 //! ```
 //!
-//! h holds Coriolis and centrifugal forces, and no gravity: it exerts no impulse, and would keep feet on the ground for as
-//! long as a run may take. The impact lasts some multiple of sqrt(m / k_n), so that the difference from the frozen model
-//! falls with 1 / sqrt(k_n).
+//! h contains Coriolis and centrifugal forces, but no gravity, which exerts no impulse and would keep feet on the
+//! ground until the longest run ends. The impact lasts some multiple of sqrt(m / k_n), so that the difference from the
+//! frozen model falls with 1 / sqrt(k_n).
 
 use super::ground::{SoftGround, Suspension, mean_mobility};
 use super::integrate::{Limits, StiffEquations, integrate};
@@ -19,17 +20,18 @@ use crate::robot::Robot;
 use crate::state::Scene;
 use std::cell::RefCell;
 
-/// The longest run, in units of sqrt(m / k_n) (1 + damping ratio); m is the inverse of the contacts' mean mobility.
+/// The duration of the longest run, in units of sqrt(m / k_n) (1 + damping ratio); m is the inverse of the contacts'
+/// mean mobility.
 const HORIZON: f64 = 1e2;
 
-/// So small a part of the force and the speed with which contacts close is none.
+/// Forces and speeds below this part of those at which contacts close count as zero.
 const NOTHING: f64 = 1e-8;
 
 /// A robot just before it strikes, ready to be integrated.
 #[derive(Debug)]
 pub(super) struct Moving<'a> {
     pub robot: &'a Robot,
-    /// Its dynamics, with the closed contacts and the factorized M.
+    /// The robot's dynamics, with the closed contacts and the factorized M.
     pub assembly: &'a Assembly,
     /// q \[m, rad\].
     pub position: &'a [f64],
@@ -40,11 +42,11 @@ pub(super) struct Moving<'a> {
 }
 
 impl Moving<'_> {
-    /// v when all contacts have come free, or after the longest run, on a ground of `stiffness` k_n \[N/m\].
+    /// Returns v when all contacts have opened, or after the longest run, on a ground of `stiffness` k_n \[N/m\].
     ///
     /// # Errors
-    /// [`Reason::Unsupported`](crate::Reason::Unsupported) if the integrator gives up, and for robots of more than 60
-    /// coordinates and contacts.
+    /// Returns [`Reason::Unsupported`](crate::Reason::Unsupported) if the integrator gives up, or if twice the number
+    /// of coordinates plus the number of contacts exceeds 128.
     pub fn run(&self, ground: SoftGround, stiffness: f64, tolerance: f64) -> Result<Vec<f64>> {
         let dofs = self.position.len();
         let model = Equation::new(self, ground, stiffness);
@@ -58,27 +60,27 @@ impl Moving<'_> {
     }
 }
 
-/// The equation of motion. A state holds what q has changed by, then v and the stretches, in units of `period` and
-/// `speed`, in which all of them are of order one.
+/// The equation of motion. A state holds the change of q since the start, then v, then the stretches of the tangential
+/// springs, in units of `period` and `speed`, in which all of them are of order one.
 #[derive(Debug)]
 struct Equation<'a> {
     moving: &'a Moving<'a>,
     suspension: Suspension,
-    /// The contact points at first.
+    /// The contact points at the start.
     start: Vec<Vector<f64>>,
     /// 1 / m \[1/kg\].
     mean_mobility: f64,
     /// sqrt(m / k_n) \[s\].
     period: f64,
-    /// The greatest rate.
+    /// The greatest magnitude in v at the start.
     speed: f64,
-    /// The greatest speed of a contact toward the ground at first \[m/s\].
+    /// The greatest speed at which a contact approaches the ground at the start \[m/s\].
     closing: f64,
-    /// Where the robot was last.
+    /// The dynamics, at the state that was evaluated last.
     assembly: RefCell<Assembly>,
 }
 
-/// Everything that the equation of motion needs at q and v.
+/// Computes everything that the equation of motion needs at q and v.
 fn move_to(assembly: &mut Assembly, position: &[f64], velocity: &[f64]) {
     assembly.configuration.set(&assembly.plan, position);
     assembly.place();
@@ -86,7 +88,7 @@ fn move_to(assembly: &mut Assembly, position: &[f64], velocity: &[f64]) {
     assembly.contact_jacobian(velocity, None);
 }
 
-/// The contact points, with the root's origin at `base`.
+/// Returns the contact points, with the root's origin at `base`.
 fn places(assembly: &Assembly, base: Vector<f64>) -> Vec<Vector<f64>> {
     let placement = Placement::new(&assembly.plan, &assembly.workspace, base);
     let place = |body| placement.world(body, Vector::zero());
@@ -114,7 +116,7 @@ impl<'a> Equation<'a> {
         }
     }
 
-    /// Rates of the state, and for each contact its normal force and speed.
+    /// Returns the rates of the state, and for each contact its normal force and normal velocity.
     fn evaluate(&self, state: &[f64]) -> (Vec<f64>, Vec<Pair<f64>>) {
         let Moving { robot, position, .. } = *self.moving;
         let dofs = position.len();
@@ -151,7 +153,7 @@ impl StiffEquations for Equation<'_> {
         self.evaluate(state).0
     }
 
-    /// Whether all contacts are free, or as good as at rest without a force.
+    /// Returns whether all contacts are open, or practically at rest without a force.
     fn has_ended(&self, state: &[f64]) -> bool {
         let force = self.closing / (self.mean_mobility * self.period);
         let touching = self.evaluate(state).1;
