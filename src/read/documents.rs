@@ -1,4 +1,4 @@
-//! Splits a text into JSON objects: one, several after each other, or a list of them.
+//! Splits a text into JSON objects: one object, several in a row, or a list of them.
 
 use crate::error::Location;
 use crate::read::json::line_and_column;
@@ -8,11 +8,11 @@ use serde::de::IgnoredAny;
 /// One object of a text that may hold several.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Document<'t> {
-    /// Its text, even if it is malformed.
+    /// The object's text, even if it is malformed.
     pub text: &'t str,
-    /// Where it begins, from 1.
+    /// The line on which it begins, from 1.
     pub line: usize,
-    /// In which column of that line, from 1.
+    /// The column of that line in which it begins, from 1.
     pub column: usize,
 }
 
@@ -27,8 +27,8 @@ impl Document<'_> {
     }
 }
 
-/// The objects of `text` in order: one, several with or without line breaks between them, or a list. A malformed object
-/// extends to the next line that begins with `{`, where the next object is assumed to begin.
+/// Returns the objects of `text` in order: one, several with or without line breaks between them, or a list. A
+/// malformed object extends to the next line that begins with `{`, where the next object is assumed to begin.
 pub fn documents(text: &str) -> impl Iterator<Item = Document<'_>> {
     let start = text.len() - text.trim_start().len();
     let within = if text[start..].starts_with('[') { Within::FreshList } else { Within::Stream };
@@ -38,7 +38,7 @@ pub fn documents(text: &str) -> impl Iterator<Item = Document<'_>> {
 
 const UTF_16: &str = "save it as UTF-8, or turn it by iconv -f UTF-16 -t UTF-8";
 
-/// First bytes of other formats, the reason and the hint.
+/// First bytes of other formats, each with the reason and the hint of its refusal.
 const FOREIGN: [(&[u8], &str, &str); 10] = [
     (b"\xFF\xFE", "the text is UTF-16", UTF_16),
     (b"\xFE\xFF", "the text is UTF-16", UTF_16),
@@ -56,11 +56,11 @@ const FOREIGN: [(&[u8], &str, &str); 10] = [
     ),
 ];
 
-/// Refuses an input whose first bytes show that it is compressed, a spreadsheet or the like.
+/// Refuses an input whose first bytes show that it is not plain UTF-8 text, but compressed or a spreadsheet, say.
 pub(crate) fn refuse_foreign(beginning: &[u8]) -> Result<()> {
     let known =
         FOREIGN.iter().find(|(magic, ..)| beginning.starts_with(magic)).map(|&(_, what, remedy)| (what, remedy));
-    // Without a byte order mark: one of the first two bytes of ASCII is zero.
+    // UTF-16 without a byte order mark has a zero in one of the first two bytes, if the text begins with ASCII.
     let utf_16 = || {
         beginning.get(..2).is_some_and(|two| (two[0] == 0) != (two[1] == 0)).then_some(("the text is UTF-16", UTF_16))
     };
@@ -70,7 +70,7 @@ pub(crate) fn refuse_foreign(beginning: &[u8]) -> Result<()> {
     }
 }
 
-/// The bytes as text, without a byte order mark; an error has the place of the first byte that is not UTF-8.
+/// Returns the bytes as text without a byte order mark; an error has the location of the first byte that is not UTF-8.
 pub fn utf8(bytes: &[u8]) -> Result<&str> {
     refuse_foreign(bytes)?;
     match std::str::from_utf8(bytes) {
@@ -85,7 +85,7 @@ pub fn utf8(bytes: &[u8]) -> Result<&str> {
     }
 }
 
-/// The surroundings of the next object.
+/// What the next object is part of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Within {
     Stream,
@@ -98,7 +98,7 @@ struct Documents<'t> {
     text: &'t str,
     at: usize,
     within: Within,
-    /// The byte whose place is `line` and `column`.
+    /// The byte whose location is `line` and `column`.
     counted: usize,
     line: usize,
     column: usize,
@@ -118,7 +118,7 @@ impl<'t> Iterator for Documents<'t> {
             self.at += 1;
             self.skip_blanks();
         } else if self.within == Within::List {
-            // Neither a comma nor the list's end: the rest cannot be split.
+            // Neither a comma nor the end of the list follows: the rest cannot be split.
             self.within = Within::Stream;
             return Some(self.take(self.text.len()));
         }
@@ -148,7 +148,7 @@ impl<'t> Documents<'t> {
     }
 
     fn take(&mut self, end: usize) -> Document<'t> {
-        // Counting goes on from the last document, so that many in one line take linear time.
+        // Counting continues from the last document, so that many documents on one line take linear time.
         let (lines, column) = line_and_column(&self.text.as_bytes()[self.counted..], self.at - self.counted);
         self.line += lines - 1;
         self.column = if lines == 1 { self.column + column - 1 } else { column };

@@ -1,4 +1,4 @@
-//! Evaluates numbers written as expressions of names (the only user of nanoexpr).
+//! Evaluates numbers that are written as expressions of names (the only user of nanoexpr).
 //!
 //! ```text
 //!     "-(alpha + off)^2 / 2"  --names, pi, e, sin, cos, tan, atan2, sqrt, ...-->  f64
@@ -9,7 +9,7 @@
 
 use nanoexpr::{Context, ErrorKind, Math, Variables};
 
-/// Names and their values; they hide pi, e and functions of the same name.
+/// Names and their values. They hide pi and e; a function of the same name can still be called.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Names(Vec<(String, f64)>);
 
@@ -17,7 +17,7 @@ pub struct Names(Vec<(String, f64)>);
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Fault {
     pub what: String,
-    /// How many characters of the expression precede it.
+    /// The number of characters of the expression before the fault.
     pub before: usize,
     /// The unknown name, if there is one.
     pub unknown: Option<String>,
@@ -32,7 +32,7 @@ impl Names {
         }
     }
 
-    /// The names, in the order in which they were set.
+    /// Returns the names, in the order in which they were set.
     pub fn iter(&self) -> impl Iterator<Item = &str> {
         self.0.iter().map(|(name, _)| name.as_str())
     }
@@ -41,7 +41,7 @@ impl Names {
         self.0.iter().find(|(known, _)| known == name).map(|(_, value)| *value)
     }
 
-    /// The value of an expression, which is finite.
+    /// Returns the value of an expression, which is finite.
     pub(crate) fn evaluate(&self, text: &str) -> Result<f64, Fault> {
         let variables = Variables(|name: &str| self.value(name));
         nanoexpr::evaluate_with(text, &(variables, Offered)).map_err(|error| {
@@ -59,17 +59,17 @@ impl Names {
     }
 }
 
-/// The functions that an expression can call. `log` is not among them: it is natural to some and decimal to others.
+/// The functions that an expression can call. `log` is left out, because it is natural to some and decimal to others.
 pub(crate) const FUNCTIONS: [&str; 31] = [
     "sqrt", "cbrt", "abs", "sign", "exp", "ln", "log2", "log10", "sin", "cos", "tan", "asin", "acos", "atan", "atan2",
     "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "floor", "ceil", "round", "trunc", "pow", "hypot", "min", "max",
     "clamp", "fact",
 ];
 
-/// The constants of nanoexpr that an expression can use; its tau is 2 pi, and a torque to roboticists.
+/// The constants that an expression can use. nanoexpr's tau is left out: it is 2 pi there, and a torque to roboticists.
 pub(crate) const CONSTANTS: [&str; 2] = ["pi", "e"];
 
-/// Its functions and constants as far as they are offered.
+/// The functions and constants of nanoexpr that expressions can use.
 struct Offered;
 
 impl Context<f64> for Offered {
@@ -82,13 +82,13 @@ impl Context<f64> for Offered {
     }
 }
 
-/// Whether an expression can use the name: letters, digits and underscores, no digit first.
+/// Returns whether an expression can use the name: ASCII letters, digits and underscores, no digit first.
 pub(crate) fn is_name(text: &str) -> bool {
     let letter = |c: char| c.is_ascii_alphabetic() || c == '_';
     text.starts_with(letter) && text.chars().all(|c| letter(c) || c.is_ascii_digit())
 }
 
-/// The names in an expression, including functions.
+/// Returns the names in an expression, including those of functions.
 pub(crate) fn names_in(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).filter(|piece| is_name(piece))
 }
@@ -142,7 +142,7 @@ mod tests {
             let fault = fault(text);
             assert_eq!((fault.before, fault.unknown.as_deref()), (before, unknown), "{text}");
         }
-        // A torque to roboticists, and 2 pi to others.
+        // The last but one, tau, is a torque to roboticists, and 2 pi to others.
         for text in ["a +", "inf", "1e999", "10^400", "a; b", "tau", "PI"] {
             fault(text);
         }

@@ -1,12 +1,12 @@
-//! Lines of states, most of which differ from the line before in a few values alone.
+//! Lines of states, most of which differ from the line before in a few values only.
 //!
 //! ```text
 //!     {"id": "k17", "position": {"base": {"z": 0.41}}, "friction": 0.8}
-//!            -----                             ----                 ---      the values of a line: id, q, v, friction
+//! -----                             ----                 ---      values of a line: id, q, v, friction
 //! ```
 //!
-//! A line whose other bytes are those of the line that was last read as a whole means the same but for its values: only
-//! these are read. Every other line is read as a whole, and so is one with a value in an unusual form.
+//! If all bytes but the values equal those of the line that was last read as a whole, only the values are read. Every
+//! other line is read as a whole, and so is a line with a value in an unusual form.
 
 use super::documents::utf8;
 use super::json::{Node, Value, value_of};
@@ -16,39 +16,39 @@ use crate::state::{Defaults, State};
 use crate::{Result, Robot};
 use std::ops::Range;
 
-/// Reads states line by line, in memory that it reuses.
+/// Reads states line by line, and reuses memory.
 #[derive(Debug, Clone)]
 pub struct StateLines<'r> {
     robot: &'r Robot,
     defaults: &'r Defaults,
     /// The line that was last read as a whole.
     text: Option<String>,
-    /// Where its values are, in their order; if one is unusual none, so that only the same line repeats it.
+    /// Where its values are, in order; empty if a value is unusual, so that only an identical line repeats it.
     values: Vec<(Range<usize>, Entry)>,
     /// The state of the last line.
     state: State,
 }
 
-/// What a value is in a state.
+/// The meaning of a value in a state.
 #[derive(Debug, Clone, Copy)]
 enum Entry {
     Id,
     Position(usize),
     Velocity(usize),
-    /// That of all links, if it is a number.
+    /// The friction of all links, given as a number.
     Friction,
 }
 
 impl<'r> StateLines<'r> {
-    /// Lines of states of `robot`; what they omit is as `defaults` have it.
+    /// Creates a reader of states of `robot`; `defaults` supply what lines omit.
     pub fn new(robot: &'r Robot, defaults: &'r Defaults) -> Self {
         Self { robot, defaults, text: None, values: Vec::new(), state: State::default() }
     }
 
-    /// The state of a line.
+    /// Reads the state of a line.
     ///
     /// # Errors
-    /// As [`State::from_json`], and bytes that are not UTF-8.
+    /// Returns the errors of [`State::from_json`], and an error for bytes that are not UTF-8.
     pub fn read(&mut self, line: &[u8]) -> Result<&State> {
         if self.repeat(line).is_none() {
             let line = utf8(line)?;
@@ -63,9 +63,9 @@ impl<'r> StateLines<'r> {
         Ok(&self.state)
     }
 
-    /// Reads the values of a line that is otherwise the last one; `None` if it is not, or if a value is unusual.
+    /// Reads the values of a line that otherwise equals the last one; `None` if it does not, or if a value is unusual.
     ///
-    /// Values that were read until then remain, and those of the next line replace them.
+    /// The values that were read before a failure remain, and those of the next line replace them.
     fn repeat(&mut self, line: &[u8]) -> Option<()> {
         let Self { text, values, state, .. } = self;
         let text = text.as_deref()?.as_bytes();
@@ -123,26 +123,26 @@ impl<'r> StateLines<'r> {
     }
 }
 
-/// Where the value of a key is, with its `length` in the text that begins with it.
+/// Returns the range of a key's value; `length` measures the value at the beginning of a text.
 fn place_of(line: &str, key: &str, length: impl Fn(&[u8]) -> Option<usize>) -> Option<Range<usize>> {
     let value = value_of(line, key)?;
     let start = line.len() - value.len();
     Some(start..start + length(value.as_bytes())?)
 }
 
-/// The length of an id of plain characters or digits.
+/// Returns the length of an id of plain characters or digits; `None` for any other id.
 fn id_length(text: &[u8]) -> Option<usize> {
     if let Some(inner) = text.strip_prefix(b"\"") {
         let end = inner.iter().position(|byte| matches!(byte, b'"' | b'\\' | ..b' '))?;
         return (inner[end] == b'"').then_some(end + 2);
     }
     let digits = text.iter().take_while(|byte| byte.is_ascii_digit()).count();
-    // Nothing that the digits may go on with as a number, and no zero before others.
+    // Nothing may follow that would continue the number, and no zero may precede other digits.
     let is_plain = !matches!(text.get(digits), Some(b'.' | b'e' | b'E'));
     (is_plain && digits > 0 && (digits == 1 || text[0] != b'0')).then_some(digits)
 }
 
-/// Takes an id, in the memory of the one before; `None` for digits beyond those of 64 bits.
+/// Stores an id in the memory of the one before; `None` if it is an integer of more than 64 bits.
 fn take_id(id: &str, into: &mut Option<serde_json::Value>) -> Option<()> {
     match (id.strip_prefix('"').and_then(|text| text.strip_suffix('"')), into) {
         (Some(text), Some(serde_json::Value::String(known))) => text.clone_into(known),
@@ -152,8 +152,8 @@ fn take_id(id: &str, into: &mut Option<serde_json::Value>) -> Option<()> {
     Some(())
 }
 
-/// The nearest f64 of the number at the beginning of a text, and its length; `None` beyond the range of f64, and for what
-/// is no number of JSON (RFC 8259, section 6) although others write so: `.5`, `5.`, `05`, `+5`, `inf`.
+/// Returns the nearest f64 of the number at the beginning of a text, and its length; `None` if it is beyond the range
+/// of f64, or no JSON number (RFC 8259, section 6) although other formats allow it: `.5`, `5.`, `05`, `+5`, `inf`.
 fn number(text: &[u8]) -> Option<(f64, usize)> {
     let (value, length): (f64, usize) = fast_float2::parse_partial(text).ok()?;
     let digits = text[..length].strip_prefix(b"-").unwrap_or(&text[..length]);

@@ -1,4 +1,4 @@
-//! Reads states, problems and studies from JSON, with expressions, and from CSV.
+//! Reads states, problems and studies from JSON, with expressions in studies, and states from tables.
 
 pub mod expression;
 pub(crate) mod json;

@@ -19,11 +19,11 @@ pub struct Problem {
     pub contact: ContactProblem,
 }
 
-/// Fields that other names may be meant as: long ones, since short ones resemble each other.
+/// Fields that another name may be meant for: only long ones, because short names resemble each other.
 const LONG: [&str; 7] =
     ["friction", "restitution", "delassus", "velocity_before", "mass_matrix", "contact_jacobian", "velocity"];
 
-/// What other programs and the formulas call some of them.
+/// Names that other programs and formulas use for some of these fields.
 const SYNONYMS: [(&str, &str); 6] = [
     ("mu", "friction"),
     ("friction_coefficient", "friction"),
@@ -35,11 +35,12 @@ const SYNONYMS: [(&str, &str); 6] = [
 
 impl Problem {
     /// Reads a problem from one JSON object: `delassus` and `velocity_before`, or `mass_matrix`, `contact_jacobian` and
-    /// `velocity`; `friction`, `restitution`, `id` and `names`. Other fields are ignored,
-    /// unless they resemble or mean a long one of these that is missing.
+    /// `velocity`; `friction`, `restitution`, `id` and `names`. Other fields are ignored, unless their name resembles
+    /// or means a long one of these that is missing.
     ///
     /// # Errors
-    /// Broken JSON, a misspelt field, values of the wrong kind, shape or range, a matrix that is no Delassus matrix.
+    /// Returns an error for broken JSON, a misspelt field, an `uncertainty`, values of the wrong kind, shape or range,
+    /// or a matrix that is no Delassus matrix.
     pub fn from_json(text: &str, defaults: &Defaults) -> Result<Self> {
         let tree = Value::parse(text)?;
         let root = Node::root(&tree, text, None);
@@ -110,7 +111,7 @@ impl Problem {
                 return Err(root.missing("delassus").hint(if field("position").is_some() { state } else { hint }));
             }
         };
-        // An error of a matrix has the field's name as its place.
+        // The place of an error about a matrix is the name of its field.
         let located = |error: Error| match error.place().and_then(|place| field(place.split('[').next()?)) {
             Some(field) => field.locate(error),
             None => error,
@@ -119,7 +120,7 @@ impl Problem {
     }
 }
 
-/// The entries of a Delassus matrix, row by row, and the velocities of as many contacts.
+/// Reads the entries of a Delassus matrix, row by row, and the velocities of its contacts.
 fn delassus_matrix(delassus: &Node, velocity: &Node) -> Result<(Vec<f64>, Vec<[f64; 2]>)> {
     let pair = |entry: Node| entry.numbers("a list of 2 numbers, [tangential, normal]");
     let velocity: Vec<[f64; 2]> = velocity.entries()?.map(pair).collect::<Result<_>>()?;
@@ -155,7 +156,7 @@ impl Source for Problem {
     }
 }
 
-/// One value for all contacts, or a list with one for each.
+/// Reads one value for all contacts, or a list with one for each.
 fn per_contact<T: Clone>(field: &Node, contacts: usize, read: impl Fn(Node) -> Result<T>) -> Result<Vec<T>> {
     match field.entries() {
         Ok(_) => counted(field, contacts)?.map(read).collect(),
@@ -163,7 +164,7 @@ fn per_contact<T: Clone>(field: &Node, contacts: usize, read: impl Fn(Node) -> R
     }
 }
 
-/// Different names, one per contact.
+/// Reads different names, one per contact.
 fn names(field: &Node, contacts: usize) -> Result<Vec<String>> {
     let mut names: Vec<String> = Vec::with_capacity(contacts);
     for entry in counted(field, contacts)? {
@@ -176,7 +177,7 @@ fn names(field: &Node, contacts: usize) -> Result<Vec<String>> {
     Ok(names)
 }
 
-/// The entries of a list, one per contact.
+/// Returns the entries of a list, one per contact.
 fn counted<'n>(field: &'n Node<'n>, contacts: usize) -> Result<impl Iterator<Item = Node<'n>>> {
     let entries = field.entries()?;
     match entries.len() {

@@ -1,4 +1,4 @@
-//! The fields of a state, one function for each shape of value.
+//! Reads the fields of a state, with one function per shape of value.
 
 use super::json::{Node, Value, id_in};
 use crate::law::Friction;
@@ -14,27 +14,29 @@ use std::f64::consts::FRAC_PI_2;
 /// The entries of a floating base in the order of q.
 pub(super) const BASE: [&str; 3] = ["x", "z", "pitch"];
 
-/// The most loops of a state: each costs as much as a contact, and no robot has a tenth of these.
+/// The greatest number of loops of a state: each costs as much as a contact, and no robot has a tenth of this number.
 const LOOP_LIMIT: usize = 256;
 
-/// Reads loops of `robot` from a JSON list, as a state's field `loops` has it.
+/// Reads loops of `robot` from a JSON list in the format of a state's field `loops`.
 pub fn loops_from_json(text: &str, robot: &Robot) -> Result<Vec<NamedLoop>> {
     let tree = Value::parse(text)?;
     loops(Node::root(&tree, text, None), robot)
 }
 
 impl State {
-    /// Reads a state of `robot` from one JSON object; what it omits is 0, and its friction that of `defaults`.
+    /// Reads a state of `robot` from one JSON object. Numbers that it omits are 0; friction, loops and placement that
+    /// it omits are those of `defaults`.
     ///
     /// # Errors
-    /// Whatever is not a state of this robot: broken JSON, unknown or doubled fields and names, values of the wrong
-    /// kind or outside their range, a base that is both placed and given; with place, line and column in `text`.
+    /// Returns an error for text that is not a state of this robot: broken JSON, unknown or repeated fields and names,
+    /// values of the wrong kind or outside their range, a base that is both placed and given. It has place, line and
+    /// column.
     pub fn from_json(text: &str, robot: &Robot, defaults: &Defaults) -> Result<Self> {
         let tree = Value::parse(text)?;
         read(Node::root(&tree, text, None), robot, defaults)
     }
 
-    /// The `id` in the text of a state that may be refused; `None` if there is none.
+    /// Returns the `id` in the text of a state that may be refused; `None` if there is none.
     pub fn id_in(text: &str) -> Option<serde_json::Value> {
         id_in(text)
     }
@@ -87,7 +89,7 @@ pub(crate) fn read(root: Node, robot: &Robot, defaults: &Defaults) -> Result<Sta
     Ok(state)
 }
 
-/// `{"base": {"x", "z", "pitch"}, "joints": {name: number}}` into the order of q.
+/// Reads `{"base": {"x", "z", "pitch"}, "joints": {name: number}}` in the order of q.
 fn coordinates(field: Node, robot: &Robot, into: &mut [f64], number: impl Fn(Node) -> Result<f64>) -> Result<()> {
     let (base, joints) = into.split_at_mut(robot.base_dofs());
     for part in field.fields("field")? {
@@ -108,11 +110,11 @@ fn coordinates(field: Node, robot: &Robot, into: &mut [f64], number: impl Fn(Nod
     Ok(())
 }
 
-/// An object of numbers by joint.
+/// Reads an object of numbers by joint.
 fn by_joint(field: Node, robot: &Robot, into: &mut [f64], number: impl Fn(Node) -> Result<f64>) -> Result<()> {
     let mut next = 0;
     for entry in field.fields("joint")? {
-        // Most files have the joints in the robot's order, and a search for each takes the square of their number.
+        // Most files have the joints in the robot's order, and searching for each takes the square of their number.
         let is_next = robot.joints.get(next).is_some_and(|joint| joint.name == entry.key());
         let at = if is_next { next } else { joint(entry, entry.key(), robot)? };
         into[at] = number(entry)?;
@@ -121,7 +123,7 @@ fn by_joint(field: Node, robot: &Robot, into: &mut [f64], number: impl Fn(Node) 
     Ok(())
 }
 
-/// Refuses x and z of the base in `position` and `velocity`, or their half-widths: a stance gives them.
+/// Refuses x and z of the base in `position` and `velocity`, or their half-widths, because the stance gives them.
 fn refuse_base(object: Node, reason: impl Fn(&str) -> String, hint: &str) -> Result<()> {
     let given = |field: &Node| matches!(field.key(), "position" | "velocity") && field.is_object();
     for field in object.fields("field")?.filter(given) {
@@ -139,7 +141,7 @@ fn stance(field: Node, robot: &Robot) -> Result<usize> {
     Ok(link)
 }
 
-/// "lowest" if the base is moved, "given" if not.
+/// Reads whether the lowest foot is placed on the ground: "lowest" is true, "given" is false.
 fn lowest(field: Node, robot: &Robot) -> Result<bool> {
     match field.text()? {
         "given" => Ok(false),
@@ -162,7 +164,7 @@ fn refuse_bolted(field: Node, robot: &Robot, what: &str) -> Result<()> {
     Err(field.refuse(reason).hint("leave it out, or give `base: floating`"))
 }
 
-/// A value for all links, or an object of values by link with an optional `default`.
+/// Reads a value for all links, or an object of values by link with an optional `default`.
 fn by_link<T: Copy>(field: Node, robot: &Robot, read: impl Fn(Node) -> Result<T>) -> Result<ByLink<T>> {
     if !field.is_object() {
         return Ok(ByLink::everywhere(read(field)?));
@@ -178,7 +180,7 @@ fn by_link<T: Copy>(field: Node, robot: &Robot, read: impl Fn(Node) -> Result<T>
     Ok(values)
 }
 
-/// A number from 0 on, or "infinite".
+/// Reads a number that is 0 or more, or "infinite".
 pub(crate) fn friction(node: Node) -> Result<Friction> {
     match node.as_text() {
         Some("infinite") => Ok(Friction::Infinite),
@@ -193,7 +195,7 @@ pub(crate) fn friction(node: Node) -> Result<Friction> {
     }
 }
 
-/// A number from 0 to 1.
+/// Reads a number from 0 to 1.
 pub(crate) fn restitution(node: Node) -> Result<f64> {
     let value = node.number()?;
     if (0.0..=1.0).contains(&value) {
@@ -202,7 +204,7 @@ pub(crate) fn restitution(node: Node) -> Result<f64> {
     Err(node.refuse(Reason::OutOfRange { what: "restitution".into(), allowed: "between 0 and 1", value }))
 }
 
-/// `{"slope": radians}` or `{"profile": [[x, z], ...]}`.
+/// Reads `{"slope": radians}` or `{"profile": [[x, z], ...]}`.
 fn ground(field: Node) -> Result<Ground> {
     match field.object("Ground", ["slope", "profile"])? {
         [None, None] => Ok(Ground::default()),
@@ -224,13 +226,13 @@ fn slope(entry: Node) -> Result<f64> {
     Err(error.hint("it is in radians: 10 degrees are 0.1745"))
 }
 
-/// A list of `[x, z]`.
+/// Reads a list of `[x, z]`.
 fn profile(entry: Node) -> Result<Profile> {
     let points = entry.entries()?.map(|point| point.numbers("a list of 2 numbers, [x, z]").map(Vector::from));
     Profile::new(points.collect::<Result<_>>()?).map_err(|error| entry.refuse_inside(error))
 }
 
-/// A list of different joints.
+/// Reads a list of joints without repetition.
 fn braked(field: Node, robot: &Robot) -> Result<Vec<usize>> {
     let mut braked = Vec::new();
     for entry in field.entries()? {
@@ -244,7 +246,7 @@ fn braked(field: Node, robot: &Robot) -> Result<Vec<usize>> {
     Ok(braked)
 }
 
-/// An object of inertias by joint, for every joint and then every mimic joint of the robot.
+/// Reads an object of inertias by joint; the result has every joint, then every mimic joint of the robot.
 fn rotor_inertia(field: Node, robot: &Robot) -> Result<Vec<f64>> {
     let mut inertia = vec![0.0; robot.joints.len() + robot.mimic_joints.len()];
     for entry in field.fields("joint")? {
@@ -258,14 +260,14 @@ fn rotor_inertia(field: Node, robot: &Robot) -> Result<Vec<f64>> {
     Ok(inertia)
 }
 
-/// An object of torques by joint.
+/// Reads an object of torques by joint.
 fn torque(field: Node, robot: &Robot) -> Result<Vec<f64>> {
     let mut torque = vec![0.0; robot.joints.len()];
     by_joint(field, robot, &mut torque, |entry| entry.number())?;
     Ok(torque)
 }
 
-/// A list of `{"link", "offset", "radius"}`.
+/// Reads a list of `{"link", "offset", "radius"}`.
 fn contacts(field: Node, robot: &Robot) -> Result<Vec<NamedContact>> {
     let contact = |entry: Node| {
         let [link, offset, radius] = entry.object("Contact", ["link", "offset", "radius"])?;
@@ -276,7 +278,7 @@ fn contacts(field: Node, robot: &Robot) -> Result<Vec<NamedContact>> {
     field.entries()?.map(contact).collect()
 }
 
-/// A list of `{"a": {"link", "offset"}, "b": {"link", "offset"}}`.
+/// Reads a list of `{"a": {"link", "offset"}, "b": {"link", "offset"}}`.
 fn loops(field: Node, robot: &Robot) -> Result<Vec<NamedLoop>> {
     let entries = field.entries()?;
     if entries.len() > LOOP_LIMIT {
@@ -294,7 +296,7 @@ fn loops(field: Node, robot: &Robot) -> Result<Vec<NamedLoop>> {
     entries.map(pair).collect()
 }
 
-/// A list of `{"link", "offset", "vector"}`.
+/// Reads a list of `{"link", "offset", "vector"}`.
 fn impulses(field: Node, robot: &Robot) -> Result<Vec<AppliedImpulse>> {
     let impulse = |entry: Node| {
         let [link, offset, vector] = entry.object("AppliedImpulse", ["link", "offset", "vector"])?;
@@ -305,7 +307,7 @@ fn impulses(field: Node, robot: &Robot) -> Result<Vec<AppliedImpulse>> {
     field.entries()?.map(impulse).collect()
 }
 
-/// A list of `{"a", "b", "stiffness", "damping", "target", "force", "pitch", "moment"}`.
+/// Reads a list of `{"a", "b", "stiffness", "damping", "target", "force", "pitch", "moment"}`.
 fn springs(field: Node, robot: &Robot) -> Result<Vec<VirtualSpring>> {
     let of_axes = |entry: Option<Node>| entry.map_or(Ok([0.0; 2]), axes);
     let number = |entry: Option<Node>| entry.map_or(Ok(0.0), |entry| entry.number());
@@ -346,7 +348,7 @@ fn springs(field: Node, robot: &Robot) -> Result<Vec<VirtualSpring>> {
     field.entries()?.map(spring).collect()
 }
 
-/// One number along x and one along z of the world.
+/// Reads one number along x and one along z of the world.
 fn axes(node: Node) -> Result<[f64; 2]> {
     let read = node.numbers("a list of 2 numbers, [x, z]");
     read.map_err(|error| match error.remedy() {
@@ -355,7 +357,7 @@ fn axes(node: Node) -> Result<[f64; 2]> {
     })
 }
 
-/// `{"link", "offset"}` or `{"world": [x, z]}`.
+/// Reads `{"link", "offset"}` or `{"world": [x, z]}`.
 fn spring_end(end: Node, robot: &Robot) -> Result<SpringEnd> {
     match end.object("SpringEnd", ["link", "offset", "world"])? {
         [None, None, Some(world)] => axes(world).map(|place| SpringEnd::World(place.into())),
@@ -368,25 +370,25 @@ fn spring_end(end: Node, robot: &Robot) -> Result<SpringEnd> {
     }
 }
 
-/// The point of `object` with these fields.
+/// Reads a point from these fields of `object`.
 fn link_point(object: Node, named: Option<Node>, offset: Option<Node>, robot: &Robot) -> Result<LinkPoint> {
     let link = link(named.ok_or_else(|| object.missing("link"))?, robot)?;
     let offset = offset.map_or(Ok([0.0; 3]), |offset| offset.numbers("a list of 3 numbers"))?;
     Ok(LinkPoint { link, offset })
 }
 
-/// The link that a string names.
+/// Finds the link that a string names.
 fn link(node: Node, robot: &Robot) -> Result<usize> {
     named_link(node, node.text()?, robot)
 }
 
-/// The link of that name, the node's value or key.
+/// Finds the link of that name, which is the node's value or key.
 fn named_link(node: Node, name: &str, robot: &Robot) -> Result<usize> {
     let known = || robot.links.iter().map(|link| link.name.as_str());
     robot.link(name).ok_or_else(|| node.refuse_name(name, robot.no_link(name)).did_you_mean(name, known()))
 }
 
-/// The joint of that name, the node's value or key.
+/// Finds the joint of that name, which is the node's value or key.
 fn joint(node: Node, name: &str, robot: &Robot) -> Result<usize> {
     robot.joint(name).ok_or_else(|| {
         let no_coordinate = |why: String| {
@@ -404,7 +406,7 @@ fn joint(node: Node, name: &str, robot: &Robot) -> Result<usize> {
     })
 }
 
-/// `{"position", "velocity", "friction", "rotor_inertia"}`, each one number or by name.
+/// Reads `{"position", "velocity", "friction", "rotor_inertia"}`, each one number or numbers by name.
 fn uncertainty(field: Node, robot: &Robot) -> Result<Uncertainty> {
     let (zero, rotor_inertia) = (vec![0.0; robot.dofs()], vec![0.0; robot.joints.len()]);
     let mut read = Uncertainty { position: zero.clone(), velocity: zero, friction: ByLink::default(), rotor_inertia };

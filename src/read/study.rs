@@ -11,13 +11,13 @@ use crate::state::{Defaults, State};
 use crate::{Error, Reason, Result, Robot};
 use std::borrow::Cow;
 
-/// The most samples of all parameters together.
+/// The greatest number of samples in all.
 const SAMPLE_LIMIT: usize = 1_000_000;
 
-/// What stands beside the parameters in the record and in the rows of a sample.
+/// Names that are taken in the record and the rows of a sample, which also have the parameters' names.
 const OF_SAMPLES: [&str; 2] = ["result", "region"];
 
-/// The most constants; a study has some ten.
+/// The greatest number of constants; a study has some ten.
 const CONSTANT_LIMIT: usize = 256;
 
 /// A study of one or two parameters.
@@ -44,18 +44,18 @@ pub struct Study<'t> {
 /// A parameter of a study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameter {
-    /// Its name in expressions.
+    /// The name in expressions.
     pub name: String,
-    /// Its least value.
+    /// The least value.
     pub from: f64,
-    /// Its greatest value.
+    /// The greatest value.
     pub to: f64,
-    /// How many samples are taken, both ends included; at least 2.
+    /// The number of samples, both ends included; at least 2.
     pub steps: usize,
 }
 
 impl Parameter {
-    /// The value of a sample, from 0 to `steps` - 1.
+    /// Returns the value of a sample; `index` is from 0 to `steps` - 1.
     pub fn sample(&self, index: usize) -> f64 {
         match index + 1 == self.steps {
             true => self.to,
@@ -63,19 +63,18 @@ impl Parameter {
         }
     }
 
-    /// The length of its range.
+    /// Returns the length of the parameter's range.
     pub fn range(&self) -> f64 {
         self.to - self.from
     }
 }
 
 impl<'t> Study<'t> {
-    /// Reads a study from one JSON object. Its state and robot are read, and refused, at each point.
+    /// Reads a study from one JSON object. Its state and robot are read, and may be refused, at each point.
     ///
     /// # Errors
-    /// Broken JSON, unknown or duplicate fields, no parameter or more than two, a range that is empty, fewer than two
-    /// samples or more than a million, names that expressions cannot use. The error gives place, line and column in
-    /// `text`.
+    /// Returns an error with place, line and column for broken JSON, unknown or repeated fields, no parameter or more
+    /// than two, an empty range, fewer than two samples or more than a million, and names that expressions cannot use.
     pub fn from_json(text: &'t str) -> Result<Self> {
         let tree = Value::parse(text)?;
         let root = Node::root(&tree, text, None);
@@ -104,23 +103,23 @@ impl<'t> Study<'t> {
         Ok(Self { text, question, parameters, constants, tree: tree.clone() })
     }
 
-    /// What is asked about each state.
+    /// Returns what is asked about each state.
     pub fn question(&self) -> Aspect {
         self.question
     }
 
-    /// One or two parameters.
+    /// Returns the one or two parameters.
     pub fn parameters(&self) -> &[Parameter] {
         &self.parameters
     }
 
-    /// The refusal of a study for which a budget of work was not enough, at the number of samples of the parameter with
-    /// the most.
+    /// Returns the refusal of a study that needs more than its budget of work, located at the number of samples of the
+    /// parameter with the most samples.
     pub fn beyond(&self, BudgetSpent(time): BudgetSpent) -> Error {
         let most = (0..self.parameters.len()).rev().max_by_key(|&at| self.parameters[at].steps).unwrap_or_default();
         let Parameter { name, from, to, steps } = &self.parameters[most];
         let seconds = time.as_secs_f64();
-        // Of a few samples it is not their number.
+        // If there are few samples, their number is not the reason.
         let fewer = if *steps > 16 { format!("fewer than {steps} samples of {name}, ") } else { String::new() };
         self.refuse_steps(most, Reason::BeyondBudget).hint(format!(
             "{seconds} s of processor time were not enough: take {fewer}a narrower range of {name} than {from:?} to \
@@ -141,7 +140,8 @@ impl<'t> Study<'t> {
         refused().unwrap_or_else(|| reason.clone().into())
     }
 
-    /// Parameters that no expression of the state or the robot uses, and constants that none at all uses.
+    /// Returns the parameters that no expression of the state or the robot uses, and the constants that no expression
+    /// uses.
     pub fn unused(&self) -> Vec<&str> {
         let unused = |name: &&str, parts: &[&str]| {
             !parts.iter().filter_map(|part| self.tree.get(part)).any(|part| uses(part, name))
@@ -154,12 +154,12 @@ impl<'t> Study<'t> {
             .collect()
     }
 
-    /// Whether the robot itself is varied.
+    /// Returns whether the study varies the robot itself.
     pub fn varies_the_robot(&self) -> bool {
         self.tree.get("robot").is_some()
     }
 
-    /// The values of parameters and constants at a point.
+    /// Returns the values of parameters and constants at a point.
     pub(crate) fn names(&self, point: &[f64]) -> Names {
         let mut names = self.constants.clone();
         for (parameter, &value) in self.parameters.iter().zip(point) {
@@ -168,14 +168,14 @@ impl<'t> Study<'t> {
         names
     }
 
-    /// The state at a point.
+    /// Returns the state at the point where parameters and constants have these values.
     pub(crate) fn state(&self, names: &Names, robot: &Robot, defaults: &Defaults) -> Result<State> {
         let root = Node::root(&self.tree, self.text, Some(names));
         let field = root.field("state")?.ok_or_else(|| root.missing("state").hint("as in `impact`"))?;
         read::read(field, robot, defaults)
     }
 
-    /// The robot's description at a point.
+    /// Returns the robot's description at the point where parameters and constants have these values.
     pub(crate) fn describe<'d>(&self, names: &Names, description: &'d Description) -> Result<Cow<'d, Description>> {
         match Node::root(&self.tree, self.text, Some(names)).field("robot")? {
             Some(field) => variation::applied(field, description).map(Cow::Owned),
@@ -184,7 +184,7 @@ impl<'t> Study<'t> {
     }
 }
 
-/// "impact" or "forces".
+/// Reads "impact" or "forces".
 fn aspect(field: Node) -> Result<Aspect> {
     match field.text()? {
         "impact" => Ok(Aspect::Impact),
@@ -193,7 +193,7 @@ fn aspect(field: Node) -> Result<Aspect> {
     }
 }
 
-/// Each constant may be an expression of the others, in any order, because many JSON writers sort names.
+/// Reads the constants. Each may be an expression of others, in any order, because many JSON writers sort names.
 fn constants(tree: &Value, text: &str) -> Result<Names> {
     let (mut constants, plain) = (Names::default(), Node::root(tree, text, None));
     let Some(field) = plain.field("constants")? else { return Ok(constants) };
@@ -224,7 +224,7 @@ fn constants(tree: &Value, text: &str) -> Result<Names> {
     Ok(constants)
 }
 
-/// Refuses an expression of a parameter, one named as pi or e are as well: what is expected does not vary.
+/// Refuses an expression that uses a parameter, even one named like pi or e, where values do not vary.
 fn refuse_parameters(root: Node, entry: Node, what: &str) -> Result<()> {
     let used = |name: &&str| names_in(entry.as_text().unwrap_or_default()).any(|used| used == *name);
     let parameters = root.field("parameters").ok().flatten();
@@ -234,7 +234,7 @@ fn refuse_parameters(root: Node, entry: Node, what: &str) -> Result<()> {
     Err(entry.refuse(reason).hint("write it into the state, or rename the parameter"))
 }
 
-/// `{"from", "to", "steps"}`.
+/// Reads `{"from", "to", "steps"}`.
 fn parameter(root: Node, entry: Node, constants: &Names) -> Result<Parameter> {
     let name = name(entry)?;
     if constants.iter().any(|constant| constant == name) {
@@ -281,7 +281,7 @@ fn name(entry: Node) -> Result<String> {
     Err(entry.refuse_name(name, Reason::Inconsistent(reason)).hint("take letters, digits and _, no digit first"))
 }
 
-/// Whether a string in a value that is no key has that name.
+/// Returns whether an expression in `value` uses the name; keys do not count.
 fn uses(value: &Value, name: &str) -> bool {
     match value {
         Value::Text(text) => names_in(text).any(|used| used == name),

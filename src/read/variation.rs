@@ -4,9 +4,10 @@ use crate::description::{Collision, Description, Geometry};
 use crate::read::json::Node;
 use crate::{Error, Reason, Result};
 
-/// `description` with the numbers of `{"links": {name: {"mass", "com", "inertia", "radius"}}, "joints": {name:
-/// {"origin"}}}`: mass \[kg\], CoG in the link's frame \[m\], moment about the CoG and the plane's normal \[kg m^2\],
-/// taken for every axis, radius of the link's round collision shapes \[m\], joint's frame in its parent's \[m\].
+/// Returns `description` with these numbers replaced: `{"links": {name: {"mass", "com", "inertia", "radius"}},
+/// "joints": {name: {"origin"}}}`. They are mass \[kg\], CoG in the link's frame \[m\], moment of inertia about every
+/// axis through the CoG \[kg m^2\], radius of the link's round collision shapes \[m\], joint's origin in its parent's
+/// frame \[m\].
 pub fn applied(field: Node, description: &Description) -> Result<Description> {
     let mut varied = description.clone();
     let [links, joints] = field.object("Variation", ["links", "joints"])?;

@@ -1,12 +1,12 @@
-//! Strict reading of JSON: every field once, every refusal with its place, line and column.
+//! Strict reading of JSON: every field may occur once, and every refusal has its place, line and column.
 //!
 //! ```text
-//!     text --serde_json--> Value (borrows the text) --Node (a value and its way from the root)--> State, Problem, Study
+//! text --serde_json--> Value (borrows the text) --Node (a value and its path from the root)--> State, Problem, Study
 //! ```
 //!
-//! A [`Value`] keeps objects as lists, so that a key given twice is seen, and borrows keys and strings, so that their
-//! place in the text is known without being stored. A [`Node`] lives on its reader's stack; its path to the root costs
-//! nothing until an [`Error`] needs it.
+//! A [`Value`] keeps objects as lists, so that a key that is given twice is noticed. It borrows keys and strings, so
+//! that their place in the text is known without being stored. A [`Node`] lives on its reader's stack, and its path to
+//! the root costs nothing until an [`Error`] needs it.
 
 mod value;
 
@@ -17,12 +17,12 @@ use crate::{Error, Reason, Result};
 use std::borrow::Cow;
 use std::collections::HashSet;
 
-/// The formats of states, problems and studies: a JSON Schema with a definition for each object. It is the one list of
-/// their fields: hints name them from it, and the schemas that are printed are parts of it. `tests/command/schema`
-/// compares schemas and readers value by value.
+/// The formats of states, problems and studies: a JSON Schema with a definition for each object. It is the only list of
+/// their fields: hints take the names from it, and the printed schemas are parts of it. `tests/command/schema` compares
+/// schemas and readers value by value.
 pub(crate) const FORMAT: &str = include_str!("../format.json");
 
-/// The way from a parent to a node.
+/// The last step of the path from the root to a node.
 #[derive(Debug, Clone, Copy)]
 enum PathStep<'n> {
     Root { text: &'n str, names: Option<&'n Names> },
@@ -30,7 +30,7 @@ enum PathStep<'n> {
     Entry { parent: &'n Node<'n>, index: usize },
 }
 
-/// A value and its way from the root.
+/// A value and its path from the root.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Node<'n> {
     value: &'n Value<'n>,
@@ -38,12 +38,12 @@ pub(crate) struct Node<'n> {
 }
 
 impl<'n> Node<'n> {
-    /// The root of the tree that was read from `text`; with `names` any number may be an expression of them.
+    /// Creates the root of the tree that was read from `text`; with `names`, any number may be an expression of them.
     pub(crate) fn root(value: &'n Value<'n>, text: &'n str, names: Option<&'n Names>) -> Self {
         Self { value, way: PathStep::Root { text, names } }
     }
 
-    /// The key under which the value stands; empty for the root and for entries of lists.
+    /// The key of the value; empty for the root and for entries of lists.
     pub(crate) fn key(&self) -> &'n str {
         match self.way {
             PathStep::Field { key, .. } => key,
@@ -51,7 +51,7 @@ impl<'n> Node<'n> {
         }
     }
 
-    /// The fields of an object in their order, no key twice; `what` names what the keys stand for.
+    /// Returns the fields of an object in order, or an error if a key is given twice; `what` says what the keys name.
     pub(crate) fn fields(&'n self, what: &'static str) -> Result<impl Iterator<Item = Node<'n>> + Clone> {
         let Value::Object(fields) = self.value else { return Err(self.expected("an object")) };
         let field = |key, value| Node { value, way: PathStep::Field { parent: self, key } };
@@ -62,7 +62,8 @@ impl<'n> Node<'n> {
         Ok(fields.iter().map(move |(key, value)| field(key, value)))
     }
 
-    /// The fields of these names, which are all that `object` of the format has.
+    /// Returns the fields with these names; other fields are refused, because `object` of the format does not have
+    /// them.
     pub(crate) fn object<const N: usize>(&'n self, object: &str, names: [&str; N]) -> Result<[Option<Node<'n>>; N]> {
         let mut found = [None; N];
         for field in self.fields("field")? {
@@ -74,19 +75,19 @@ impl<'n> Node<'n> {
         Ok(found)
     }
 
-    /// The field of that name, whatever the others are.
+    /// Returns the field of that name; other fields are not checked.
     pub(crate) fn field(&'n self, name: &str) -> Result<Option<Node<'n>>> {
         Ok(self.fields("field")?.find(|field| field.key() == name))
     }
 
-    /// The entries of a list.
+    /// Returns the entries of a list.
     pub(crate) fn entries(&'n self) -> Result<impl ExactSizeIterator<Item = Node<'n>>> {
         let Value::List(entries) = self.value else { return Err(self.expected("a list")) };
         let entries = entries.iter().enumerate();
         Ok(entries.map(move |(index, value)| Node { value, way: PathStep::Entry { parent: self, index } }))
     }
 
-    /// The list of exactly `N` numbers, described by `expected`.
+    /// Returns the numbers of a list of exactly `N`, described by `expected`.
     pub(crate) fn numbers<const N: usize>(&'n self, expected: &'static str) -> Result<[f64; N]> {
         let entries = self.entries().map_err(|_| self.expected(expected))?;
         if entries.len() != N {
@@ -100,12 +101,12 @@ impl<'n> Node<'n> {
         Ok(numbers)
     }
 
-    /// The list of numbers, of any length.
+    /// Returns the numbers of a list of any length.
     pub(crate) fn vector(&'n self) -> Result<Vec<f64>> {
         self.entries()?.map(|entry| entry.number()).collect()
     }
 
-    /// The list of lists of numbers, each as long as the first.
+    /// Returns the rows of a list of lists of numbers, all of the same length.
     pub(crate) fn matrix(&'n self) -> Result<Vec<Vec<f64>>> {
         let mut rows: Vec<Vec<f64>> = Vec::new();
         for entry in self.entries()? {
@@ -119,7 +120,8 @@ impl<'n> Node<'n> {
         Ok(rows)
     }
 
-    /// The number, or the value of an expression where they are allowed; it is finite, because JSON has no others.
+    /// Returns the number, or the value of an expression where these are allowed; finite, because JSON has no other
+    /// numbers.
     pub(crate) fn number(&self) -> Result<f64> {
         if let Value::Number(number) = self.value {
             return number.as_f64().ok_or_else(|| self.expected("a number"));
@@ -133,7 +135,7 @@ impl<'n> Node<'n> {
         }
     }
 
-    /// Refuses a value that is no number; of a number in quotes with the remedy.
+    /// Refuses a value that is no number; a number in quotes gets a remedy.
     pub(crate) fn expected_number(&self, expected: &'static str) -> Error {
         let error = self.expected(expected);
         match self.as_text().filter(|text| text.trim().parse::<f64>().is_ok_and(f64::is_finite)) {
@@ -142,7 +144,7 @@ impl<'n> Node<'n> {
         }
     }
 
-    /// A number from 0 on; `what` it is.
+    /// Returns a number that is 0 or more; `what` names it in errors.
     pub(crate) fn number_from_zero(&self, what: &str) -> Result<f64> {
         let value = self.number()?;
         if value >= 0.0 {
@@ -151,7 +153,7 @@ impl<'n> Node<'n> {
         Err(self.refuse(Reason::OutOfRange { what: what.to_owned(), allowed: "0 or more", value }))
     }
 
-    /// What expressions are made of, where a string may be one.
+    /// The names that expressions may use; `None` if strings are not expressions.
     pub(crate) fn names(&self) -> Option<&'n Names> {
         match self.way {
             PathStep::Root { names, .. } => names,
@@ -159,11 +161,11 @@ impl<'n> Node<'n> {
         }
     }
 
-    /// Refuses an expression at the character that is wrong with it.
+    /// Refuses an expression, with the location of the character at fault.
     fn refuse_expression(&self, names: &Names, fault: Fault) -> Error {
         let error = self.refuse(Reason::Syntax(format!("the expression has no value: {}", fault.what)));
         let error = match error.location() {
-            // Behind the quotation mark.
+            // The text begins after the quotation mark.
             Some(at) => error.on(at.line, at.column + 1 + fault.before),
             None => error,
         };
@@ -182,12 +184,12 @@ impl<'n> Node<'n> {
         error.did_you_mean(&unknown, names.iter().chain(FUNCTIONS))
     }
 
-    /// The string.
+    /// Returns the string.
     pub(crate) fn text(&self) -> Result<&'n str> {
         self.as_text().ok_or_else(|| self.expected("a string"))
     }
 
-    /// The string, if it is one.
+    /// Returns the string; `None` if the value is none.
     pub(crate) fn as_text(&self) -> Option<&'n str> {
         match self.value {
             Value::Text(text) => Some(text),
@@ -199,7 +201,7 @@ impl<'n> Node<'n> {
         matches!(self.value, Value::Object(_))
     }
 
-    /// An `id`: a string or a number; an integer of more than 64 bits is kept as the string of its digits.
+    /// Returns an `id`: a string or a number; an integer of more than 64 bits is kept as the string of its digits.
     pub(crate) fn id(&self) -> Result<serde_json::Value> {
         match self.value {
             Value::Number(number) if number.is_f64() => Ok(self.raw().and_then(id_of).unwrap_or(number.clone().into())),
@@ -209,7 +211,7 @@ impl<'n> Node<'n> {
         }
     }
 
-    /// The text of a field's value and what follows it.
+    /// Returns the text from this value on, if it is a field of the root.
     fn raw(&self) -> Option<&'n str> {
         let PathStep::Field { parent: Node { way: PathStep::Root { text, .. }, .. }, key } = self.way else {
             return None;
@@ -235,7 +237,7 @@ impl<'n> Node<'n> {
         self.refuse(Reason::Missing(format!("\"{name}\"")))
     }
 
-    /// Refuses a field that `object` of the format does not have, and offers the nearest of those it has.
+    /// Refuses a field that `object` of the format does not have, and suggests the nearest of the fields that it has.
     pub(crate) fn unknown_field(&self, object: &str) -> Error {
         let known = fields_of(object);
         let error = self.refuse_name(self.key(), Reason::UnknownField(self.key().to_owned()));
@@ -249,7 +251,7 @@ impl<'n> Node<'n> {
             return error.hint(format!("`{}` is set for all states, not in one; {fields}", self.key()));
         }
         let error = error.hint(if object == "Base" { format!("{fields}; {SPATIAL}") } else { fields });
-        // The symbol of the formulas.
+        // `mu` is the symbol in formulas.
         let key = if self.key() == "mu" { "friction" } else { self.key() };
         error.did_you_mean(key, known.iter().map(String::as_str))
     }
@@ -259,14 +261,14 @@ impl<'n> Node<'n> {
         self.refuse_name(self.as_text().unwrap_or_default(), reason)
     }
 
-    /// Puts an error about a part of this value at its line and column, the part's place behind the value's.
+    /// Gives an error about a part of this value the value's line and column; the part's place follows the value's.
     pub(crate) fn refuse_inside(&self, error: Error) -> Error {
         let part = error.place().unwrap_or_default();
         let place = self.place() + part;
         self.locate(error.at(place))
     }
 
-    /// Puts an error that was found later at this value's line and column.
+    /// Gives an error that was found later this value's line and column.
     pub(crate) fn locate(&self, error: Error) -> Error {
         let (line, column) = self.location("");
         error.on(line, column)
@@ -278,7 +280,7 @@ impl<'n> Node<'n> {
         Error::new(reason).at(self.place()).on(line, column)
     }
 
-    /// The keys and indices from the root on, as in `contacts[0].offset`.
+    /// Returns the keys and indices from the root, as in `contacts[0].offset`.
     fn place(&self) -> String {
         match self.way {
             PathStep::Root { .. } => String::new(),
@@ -290,7 +292,8 @@ impl<'n> Node<'n> {
         }
     }
 
-    /// Line and column of `name`, else of the nearest key on the way to the root, if it stands in the text as it is.
+    /// Returns line and column of `name`, or else of the nearest key on the path to the root, if either is a slice of
+    /// the text.
     fn location(&self, name: &str) -> (usize, usize) {
         let (mut key, mut way) = (None, self.way);
         let text = loop {
@@ -308,19 +311,19 @@ impl<'n> Node<'n> {
     }
 }
 
-/// The documents of [`FORMAT`], and what they are.
+/// The documents of [`FORMAT`], with descriptions.
 const DOCUMENTS: [(&str, &str); 3] = [
     ("State", "a state, which `heelstrike impact` and `batch` read"),
     ("Problem", "a contact problem, which `heelstrike solve` reads"),
     ("Study", "a study, which `heelstrike sweep` reads"),
 ];
 
-/// What is set for all states.
+/// Settings for all states, which are no fields of one state.
 const SETTINGS: [&str; 5] = ["contact_tolerance", "resting_speed", "strict_limits", "feet", "budget"];
 
 const SPATIAL: &str = "a table may give a base in three dimensions (q_base_y, q_base_qw and so on)";
 
-/// The names of an object's fields in [`FORMAT`], in the order in which hints list them.
+/// Returns the names of an object's fields in [`FORMAT`], in the order in which hints list them.
 pub(crate) fn fields_of(object: &str) -> Vec<String> {
     let Ok(format) = Value::parse(FORMAT) else { return Vec::new() };
     match ["$defs", object, "properties"].into_iter().try_fold(&format, |value, name| value.get(name)) {
@@ -329,21 +332,21 @@ pub(crate) fn fields_of(object: &str) -> Vec<String> {
     }
 }
 
-/// The text of an object from the value of a key on; `None` if the key is a copy, because it has escapes.
+/// Returns the text from the value of `key` on; `None` if the key is a copy, because it has escapes.
 pub(super) fn value_of<'t>(text: &'t str, key: &str) -> Option<&'t str> {
     // The offset is that of the quotation mark before the key.
     let behind = text.get(offset_in(text, key)? + key.len() + 2..)?;
     Some(behind.trim_ascii_start().strip_prefix(':')?.trim_ascii_start())
 }
 
-/// Where `part` begins in `text`, if it is a piece of it and not a copy; the quotation mark before it belongs to it.
+/// Returns the offset of the quotation mark before `part`; `None` if `part` is a copy and not a slice of `text`.
 fn offset_in(text: &str, part: &str) -> Option<usize> {
     let offset = (part.as_ptr() as usize).checked_sub(text.as_ptr() as usize)?;
-    // An empty piece has an address of no meaning.
+    // The address of an empty slice has no meaning.
     (!part.is_empty() && offset + part.len() <= text.len()).then(|| offset.saturating_sub(1))
 }
 
-/// Line and column in characters, counted from 1, of the byte `offset`.
+/// Returns line and column (in characters, both from 1) of the byte at `offset`.
 pub(crate) fn line_and_column(text: &[u8], offset: usize) -> (usize, usize) {
     let before = &text[..offset.min(text.len())];
     let line = before.iter().filter(|&&byte| byte == b'\n').count();
@@ -353,9 +356,9 @@ pub(crate) fn line_and_column(text: &[u8], offset: usize) -> (usize, usize) {
     (line + 1, column + 1)
 }
 
-/// The second of two equal keys.
+/// Returns the second of two equal keys; `None` if all differ.
 fn second_of_its_name<'v>(fields: &'v [(Cow<'_, str>, Value<'_>)]) -> Option<&'v str> {
-    /// Up to here every pair is compared, which needs no memory; beyond, the keys are hashed.
+    /// Up to this number of fields every pair is compared, which needs no memory; beyond it, the keys are hashed.
     const FEW: usize = 16;
     let mut keys = fields.iter().map(|(key, _)| key.as_ref()).enumerate();
     let mut seen = HashSet::new();

@@ -1,4 +1,4 @@
-//! From text to [`Value`] through serde_json, and its errors with place and hint.
+//! Reads a [`Value`] from text through serde_json, and converts its errors to ours, with place and hint.
 
 use super::line_and_column;
 use crate::state::Entries;
@@ -12,7 +12,7 @@ use serde_path_to_error::Segment;
 use std::borrow::Cow;
 use std::fmt;
 
-/// A JSON value that borrows its text.
+/// A JSON value that borrows from its text.
 #[derive(Debug, Clone)]
 pub(crate) enum Value<'t> {
     Null,
@@ -24,12 +24,12 @@ pub(crate) enum Value<'t> {
 }
 
 impl<'t> Value<'t> {
-    /// Reads the one value of `text`; numbers beyond f64's range such as 1e999 are refused, too.
+    /// Reads the only value of `text`; numbers beyond f64's range, such as 1e999, are refused.
     pub(crate) fn parse(text: &'t str) -> crate::Result<Self> {
         serde_json::from_str(text).map_err(|error| refusal(text, &error))
     }
 
-    /// The kind of value, as in `found a string`.
+    /// Returns the kind of value, as in `found a string`.
     pub(crate) fn kind(&self) -> &'static str {
         match self {
             Value::Null => "null",
@@ -41,7 +41,7 @@ impl<'t> Value<'t> {
         }
     }
 
-    /// Keys and values of an object; of another value none.
+    /// Returns the keys and values of an object; empty for other values.
     pub(crate) fn fields(&self) -> &[(Cow<'t, str>, Self)] {
         match self {
             Value::Object(fields) => fields,
@@ -49,13 +49,13 @@ impl<'t> Value<'t> {
         }
     }
 
-    /// The field of that name, if it is an object that has one.
+    /// Returns the field of that name; `None` if the value is no object or has no such field.
     pub(crate) fn get(&self, name: &str) -> Option<&Self> {
         self.fields().iter().find(|(key, _)| key == name).map(|(_, value)| value)
     }
 }
 
-/// A key, borrowed where it has no escapes.
+/// A key, borrowed unless it has escapes.
 #[derive(Deserialize)]
 #[serde(transparent)]
 struct Key<'t>(#[serde(borrow)] Cow<'t, str>);
@@ -107,7 +107,7 @@ impl<'de> Visitor<'de> for AnyValue {
     }
 }
 
-/// The fields of the one object of `text`, with their values as they are written.
+/// Returns the fields of the only object of `text`, with their values as they are written.
 pub(crate) fn raw_fields(text: &str) -> crate::Result<Vec<(Cow<'_, str>, &RawValue)>> {
     serde_json::from_str(text).map(fields).map_err(|error| refusal(text, &error))
 }
@@ -116,7 +116,7 @@ fn fields<'t, V>(Entries(entries): Entries<Key<'t>, V>) -> Vec<(Cow<'t, str>, V)
     entries.into_iter().map(|(Key(key), value)| (key, value)).collect()
 }
 
-/// The `id` of an object that may be malformed after it; `None` if none can be read.
+/// Returns the `id` of an object that may be malformed after it; `None` if none can be read.
 pub(crate) fn id_in(text: &str) -> Option<serde_json::Value> {
     struct IdVisitor<'a>(&'a mut Option<serde_json::Value>);
 
@@ -139,12 +139,12 @@ pub(crate) fn id_in(text: &str) -> Option<serde_json::Value> {
     }
 
     let mut id = None;
-    // Whether the rest can be read does not matter here.
+    // It does not matter here whether the rest can be read.
     let _ = serde_json::Deserializer::from_str(text).deserialize_map(IdVisitor(&mut id));
     id
 }
 
-/// The id at the beginning of `text`, a string or a number; an integer of more than 64 bits becomes a string.
+/// Returns the id at the beginning of `text`, a string or a number; an integer of more than 64 bits becomes a string.
 pub(crate) fn id_of(text: &str) -> Option<serde_json::Value> {
     let end = text.find(|c: char| !matches!(c, '-' | '+' | '.' | 'e' | 'E' | '0'..='9')).unwrap_or(text.len());
     let digits = &text[..end];
@@ -156,12 +156,12 @@ pub(crate) fn id_of(text: &str) -> Option<serde_json::Value> {
     }
 }
 
-/// serde_json's error in our words; the place is looked for only now, by reading once more.
+/// Converts an error of serde_json; its place is found only now, by a second reading.
 fn refusal(text: &str, error: &serde_json::Error) -> Error {
     let start: usize = text.split_inclusive('\n').take(error.line().max(1) - 1).map(str::len).sum();
     let found = start + error.column().saturating_sub(1);
     let whole = error.to_string();
-    // What begins with t, f or n is taken for true, false or null, and refused inside of the word.
+    // Text that begins with t, f or n is taken for true, false or null, and refused inside the word.
     let letters = text.as_bytes()[..found.min(text.len())].iter().rev().take_while(|byte| byte.is_ascii_alphabetic());
     let offset = if whole.starts_with("expected ident") { found - letters.count() } else { found };
     let location = line_and_column(text.as_bytes(), offset);
@@ -204,13 +204,13 @@ fn refusal(text: &str, error: &serde_json::Error) -> Error {
     }
 }
 
-/// Whether a text that is no JSON begins as YAML does: with `---` or a plain word and a colon.
+/// Returns whether a text that is not JSON begins as YAML does: with `---`, or with a plain word and a colon.
 fn is_yaml(text: &str) -> bool {
     let word = text.trim_start().split_once(':').map_or("", |(word, _)| word);
     text.starts_with("---") || !word.is_empty() && word.chars().all(|c| c.is_alphanumeric() || c == '_')
 }
 
-/// Whether a text that is no JSON begins as a table does: with names and commas between them.
+/// Returns whether a text that is not JSON begins as a table does: with names that are separated by commas.
 fn is_table(text: &str) -> bool {
     let first = text.lines().next().unwrap_or_default();
     first.starts_with(char::is_alphabetic)
@@ -218,7 +218,7 @@ fn is_table(text: &str) -> bool {
         && first.chars().all(|c| c.is_alphanumeric() || "_-.,/ ".contains(c))
 }
 
-/// The path as far as its keys were read.
+/// Returns the path up to the last key that was read.
 fn known_part(path: &serde_path_to_error::Path) -> String {
     let mut place = String::new();
     for segment in path {
