@@ -30,7 +30,7 @@ pub fn with_precision<R>(robot: &Robot, work: impl FnOnce() -> R) -> R {
 /// G, c and the poses of a state in the reference's numbers; valid only within one [`with_precision`].
 pub(super) struct Reference<'a> {
     computation: Computation<'a, Interval>,
-    /// How G was found.
+    /// The factorization by which G was computed.
     pub factorization: Factorization,
     pub contacts: Contacts<Interval>,
 }

@@ -1,4 +1,4 @@
-//! Reads tables whose columns have types: Parquet, and Arrow's file and stream.
+//! Reads tables with typed columns: Parquet, and Arrow's file and stream.
 //!
 //! ```text
 //!     file --[parquet, arrow-ipc]--> batches --cast once to f64, text, whole numbers--> Part --> Row
@@ -19,19 +19,19 @@ use std::io::{BufReader, Read, Seek};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
-/// The most rows of a part: they are answered together.
+/// The greatest number of rows of a part; they are answered together.
 const TOGETHER: usize = 512;
 
 type Batches = Box<dyn Iterator<Item = std::result::Result<RecordBatch, ArrowError>> + Send>;
 
-/// A table whose columns have types, read part by part.
+/// A table with typed columns, read part by part.
 pub struct Parts {
     batches: Batches,
     schema: SchemaRef,
-    /// The columns of the header, and how many coordinates a state has, once they are known.
+    /// The columns of the header, and the number of coordinates of a state; empty until the header is read.
     columns: Arc<[TableColumn]>,
     dofs: usize,
-    /// Columns that were read and not given yet, from this row of theirs on.
+    /// Columns that were read, and the first of their rows that was not returned yet.
     ready: Option<(Arc<Typed>, usize)>,
     /// The number of the next row, from 1.
     next: usize,
@@ -41,9 +41,9 @@ pub struct Parts {
 #[derive(Debug, Clone)]
 pub struct Part {
     columns: Arc<Typed>,
-    /// [`Typed::states`].
+    /// The result of [`Typed::states`].
     states: Vec<f64>,
-    /// The first row in these columns, and how many there are.
+    /// The first row in `columns`, and the number of rows.
     start: usize,
     count: usize,
     /// The number of the first row in the table, from 1.
@@ -51,10 +51,10 @@ pub struct Part {
 }
 
 impl Parts {
-    /// A file of Parquet or Arrow.
+    /// Opens a file of Parquet or Arrow.
     ///
     /// # Errors
-    /// A file that is none, or that is compressed as is not read here.
+    /// Returns an error if the file is neither, or has a compression that is not supported.
     pub fn open(file: File, form: Form) -> Result<Self> {
         if form == Form::Parquet { Self::parquet(file) } else { Self::arrow(file) }
     }
@@ -66,7 +66,7 @@ impl Parts {
         Ok(Self::new(Box::new(batches), schema))
     }
 
-    /// Arrow's file or stream, whichever it is.
+    /// Reads Arrow's file or stream, by the first bytes.
     fn arrow(mut file: File) -> Result<Self> {
         let mut magic = Vec::new();
         (&mut file).take(6).read_to_end(&mut magic).and_then(|_| file.rewind()).map_err(unreadable)?;
@@ -78,17 +78,17 @@ impl Parts {
         Ok(Self::new(Box::new(reader), schema))
     }
 
-    /// Arrow's stream; what follows its end is not read.
+    /// Reads Arrow's stream; what follows its end is not read.
     ///
     /// # Errors
-    /// As above.
+    /// Returns an error if the input is not such a stream.
     pub fn arrow_stream(input: impl Read + Send + 'static) -> Result<Self> {
         let reader = guarded(|| StreamReader::try_new(input, None))?.map_err(unreadable)?;
         let schema = reader.schema();
         Ok(Self::new(Box::new(reader), schema))
     }
 
-    /// A file that is a stream, and nothing else.
+    /// Reads a file that contains one stream and nothing else.
     fn arrow_stream_of(file: File) -> Result<Self> {
         let mut reader = guarded(|| StreamReader::try_new(BufReader::new(file), None))?.map_err(unreadable)?;
         let schema = reader.schema();
@@ -111,10 +111,10 @@ impl Parts {
         Self { batches, schema, columns: Arc::new([]), dofs: 0, ready: None, next: 1 }
     }
 
-    /// Reads the columns' names, as [`Header::read`] does, and their types.
+    /// Reads the columns' names, as [`Header::read`] does, and checks their types.
     ///
     /// # Errors
-    /// As there, and columns that do not hold what they are for; without a line.
+    /// Returns the errors of [`Header::read`], and an error for a column of the wrong type; they have no line.
     pub fn header(&mut self, robot: &Robot, rates: Rates, foreign: &[String]) -> Result<Header> {
         let names = self.schema.fields().iter().map(|field| field.name().trim().to_owned()).collect();
         let record = Record { bytes: b"", form: Form::Parquet };
@@ -146,10 +146,10 @@ impl Parts {
         Ok(header)
     }
 
-    /// Whether no row is left.
+    /// Returns whether no row is left.
     ///
     /// # Errors
-    /// Those of reading.
+    /// Returns an error if the next rows cannot be read.
     pub fn is_empty(&mut self) -> Result<bool> {
         while self.ready.is_none() {
             let Some(batch) = guarded(|| self.batches.next())? else { return Ok(true) };
@@ -161,10 +161,10 @@ impl Parts {
         Ok(false)
     }
 
-    /// The next rows; `None` at the end.
+    /// Returns the next rows; `None` at the end.
     ///
     /// # Errors
-    /// Those of reading.
+    /// Returns an error if the next rows cannot be read.
     pub fn part(&mut self) -> Result<Option<Part>> {
         if self.is_empty()? {
             return Ok(None);
@@ -181,19 +181,19 @@ impl Parts {
     }
 }
 
-/// What a reader gives; arrow's own panic on some damaged files.
+/// Returns what a reader returns; arrow's readers panic on some damaged files.
 fn guarded<R>(read: impl FnOnce() -> R) -> Result<R> {
-    // Nothing is asked of a reader again that has failed.
+    // A reader that has panicked is not used again.
     catch_unwind(AssertUnwindSafe(read)).map_err(|_| unreadable("the file is damaged"))
 }
 
 impl Part {
-    /// How many rows it has.
+    /// Returns the number of rows.
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// Its rows.
+    /// Returns the rows of the part.
     pub fn rows<'p>(&'p self, header: &'p Header) -> impl Iterator<Item = Row<'p>> {
         let width = self.states.len() / self.count.max(1);
         (0..self.count).map(move |at| {

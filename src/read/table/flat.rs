@@ -1,10 +1,10 @@
-//! States as flat lines of JSON, as data frames are written: the keys are the names that a table's columns have.
+//! States as flat lines of JSON, in the form in which data frames are written: the keys are the names of the columns.
 //!
 //! ```text
 //!     {"id":"k17","q_base_z":0.41,"v_base_z":-1.0,"phase":null}
 //! ```
 //!
-//! The first line that can be read names the columns. A key that a later line lacks, and null, are an empty cell.
+//! The first line that can be read names the columns. Null, and a key that a later line lacks, are empty cells.
 
 use crate::read::documents::utf8;
 use crate::read::json::{line_and_column, raw_fields};
@@ -13,7 +13,7 @@ use csv::ByteRecord;
 use serde_json::value::RawValue;
 use std::borrow::Cow;
 
-/// Whether a line of JSON is a flat state; `None` if it is blank or broken. A line of a list is none.
+/// Returns whether a line of JSON is a flat state; `None` if it is blank or broken. A line that begins a list is none.
 pub fn is_flat(line: &[u8]) -> Option<bool> {
     let is_coordinate = |name: &str| name.starts_with("q_") || name.starts_with("v_");
     if line.trim_ascii_start().starts_with(b"[") {
@@ -24,17 +24,17 @@ pub fn is_flat(line: &[u8]) -> Option<bool> {
     Some(any(&is_coordinate) && !any(&|key| matches!(key, "position" | "velocity")))
 }
 
-/// The keys of a line.
+/// Returns the keys of a line.
 pub(super) fn keys(line: &[u8]) -> Result<Vec<String>> {
     Ok(fields(line)?.into_iter().map(|(key, _)| key.into_owned()).collect())
 }
 
-/// Reads the values of a line into the cells of the columns, as they are written there; nothing for null.
+/// Reads the values of a line into the cells of the columns, as they are written; a null gives an empty cell.
 pub(super) fn read(line: &[u8], columns: &[String], cells: &mut ByteRecord) -> Result<()> {
     let fields = fields(line)?;
     let refuse = |key: &str, reason: Reason| Error::new(reason).at(key).on(1, column_of(line, key));
     let mut values = vec![None; columns.len()];
-    // Most lines have the keys in the order of the first.
+    // Most lines have the keys in the order of the first line.
     let mut next = 0;
     for (key, value) in &fields {
         let is_next = columns.get(next).is_some_and(|column| column == key);
@@ -53,7 +53,7 @@ pub(super) fn read(line: &[u8], columns: &[String], cells: &mut ByteRecord) -> R
     Ok(())
 }
 
-/// The column at which the value of a key begins; 1 if there is none.
+/// Returns the column at which the value of a key begins, in characters from 1; 1 if there is none.
 pub(super) fn column_of(line: &[u8], name: &str) -> usize {
     let place = |(_, value): &(_, &RawValue)| {
         let offset = (value.get().as_ptr() as usize).checked_sub(line.as_ptr() as usize)?;

@@ -11,7 +11,7 @@ use std::collections::HashSet;
 const BASE: [&str; 3] = ["base_x", "base_z", "base_pitch"];
 /// The orientation of a base in three dimensions, instead of the pitch.
 const QUATERNION: [&str; 4] = ["base_qw", "base_qx", "base_qy", "base_qz"];
-/// Its lateral position.
+/// The lateral position of a base in three dimensions.
 const SIDEWAYS: &str = "base_y";
 
 /// Where the velocities of a table come from.
@@ -20,11 +20,11 @@ pub enum Rates {
     /// From columns `v_...`; a table without one is refused.
     #[default]
     Columns,
-    /// From the positions of other rows by the `time` column; a table with columns `v_...` is refused.
+    /// From the positions over the `time` column; a table with columns `v_...` is refused.
     Time,
 }
 
-/// The names of columns that are no coordinates.
+/// The names of columns other than coordinates.
 const OTHERS: [(&str, TableColumn); 5] = [
     ("id", TableColumn::Id),
     ("friction", TableColumn::Friction),
@@ -33,7 +33,7 @@ const OTHERS: [(&str, TableColumn); 5] = [
     ("time", TableColumn::Carried),
 ];
 
-/// The most columns of a table: each name is compared with those of all coordinates.
+/// The greatest number of columns of a table: each name is compared with those of all coordinates.
 const COLUMN_LIMIT: usize = 100_000;
 
 /// The columns of a table of states.
@@ -44,12 +44,12 @@ pub struct Header {
     foreign: Vec<String>,
     missing: Vec<String>,
     pub(crate) form: Form,
-    /// The columns of ids, of stances and of the time.
+    /// The columns `id`, `stance` and `time`.
     pub(crate) id: Option<usize>,
     pub(crate) stance: Option<usize>,
     pub(crate) time: Option<usize>,
     pub(crate) spatial: Option<SpatialColumns>,
-    /// Of columns with types: the fields that are carried through, and whether ids are whole numbers.
+    /// For typed columns: the schema of the carried ones, and whether ids are whole numbers.
     #[cfg(feature = "columnar")]
     pub(crate) types: Option<(arrow_schema::SchemaRef, bool)>,
 }
@@ -57,9 +57,9 @@ pub struct Header {
 /// The columns of a base in three dimensions.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SpatialColumns {
-    /// Of the origin's x and y.
+    /// The columns of the origin's x and y.
     pub origin: [Option<usize>; 2],
-    /// Of w, x, y, z.
+    /// The columns of w, x, y and z.
     pub quaternion: [usize; 4],
     /// The robot's plane.
     pub plane: Plane,
@@ -71,11 +71,11 @@ pub(crate) enum TableColumn {
     Id,
     Position(usize),
     Velocity(usize),
-    /// y of a base in three dimensions.
+    /// y of the origin of a base in three dimensions.
     Sideways,
-    /// A component of its quaternion, of w, x, y, z.
+    /// A component of the quaternion of a base in three dimensions, of w, x, y, z.
     Quaternion(usize),
-    /// Of a joint that has no coordinate of its own.
+    /// q or v of a joint that has no coordinate of its own.
     Ignored,
     Friction,
     Restitution,
@@ -84,14 +84,14 @@ pub(crate) enum TableColumn {
 }
 
 impl Header {
-    /// Reads the first record of a table, or of lines of JSON their first line; the columns named in `foreign` are
+    /// Reads the first record of a table, or the first line of lines of JSON. The columns named in `foreign` are
     /// carried through, whatever they resemble.
     ///
     /// # Errors
-    /// A record that is not UTF-8 or names no coordinate, a column that stands twice, a column of a coordinate that the
-    /// robot does not have, a column that is not read but resembles one that is missing, a base in three dimensions
-    /// that is incomplete or has a pitch as well, velocities that are missing or superfluous (see [`Rates`]). The error
-    /// gives the column's place in `record`, on line 1.
+    /// Returns an error, with the column's place in `record` on line 1, for: a record that is not UTF-8 or names no
+    /// coordinate; a repeated column; a coordinate that the robot does not have; an unread column that resembles a
+    /// missing one; a base in three dimensions that is incomplete or also has a pitch; velocities that are missing or
+    /// superfluous (see [`Rates`]).
     pub fn read(record: &[u8], form: Form, robot: &Robot, rates: Rates, foreign: &[String]) -> Result<Self> {
         let bytes = record.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(record);
         let record = Record { bytes, form };
@@ -99,7 +99,7 @@ impl Header {
         Self::named(names, record, robot, rates, foreign)
     }
 
-    /// The same of names that are known already.
+    /// Resolves names that were already read.
     pub(super) fn named(
         names: Vec<String>,
         record: Record,
@@ -155,27 +155,27 @@ impl Header {
         Ok(header)
     }
 
-    /// Names of the columns of coordinates that the table does not have: these are 0 in all states. The base's x and z
-    /// are left out if stances may give them, velocities if they are computed.
+    /// Returns the names of the coordinates' columns that the table lacks: these are 0 in all states. The base's x and
+    /// z are not among them if stances may give them, nor are velocities that are computed.
     pub fn missing(&self) -> &[String] {
         &self.missing
     }
 
-    /// Names of all columns of coordinates that the table could have and has not.
+    /// Returns the names of all columns of coordinates that the table could have but lacks.
     fn absent(&self, robot: &Robot, rates: Rates) -> Vec<String> {
         let absent = |prefix: &'static str, moving: fn(usize) -> TableColumn| {
             let absent = in_columns(robot).enumerate().filter(move |&(at, _)| self.place(moving(at)).is_none());
             absent.map(move |(at, name)| (at, format!("{prefix}{name}")))
         };
-        // The quaternion has the pitch.
+        // The quaternion gives the pitch.
         let positions = absent("q_", TableColumn::Position).filter(|(at, _)| self.spatial.is_none() || *at != 2);
         let velocities = absent("v_", TableColumn::Velocity).filter(|_| rates == Rates::Columns);
         let sideways = self.spatial.filter(|spatial| spatial.origin[1].is_none()).map(|_| format!("q_{SIDEWAYS}"));
         positions.chain(velocities).map(|(_, name)| name).chain(sideways).collect()
     }
 
-    /// Refuses a column that is carried through and is named like a field of a state or resembles one that is missing,
-    /// unless it is said to be foreign.
+    /// Refuses a carried column that is named like a field of a state or resembles a missing column, unless it is named
+    /// as foreign.
     fn check_foreign(&self, record: Record, robot: &Robot) -> Result<()> {
         let without_columns = fields_without_columns();
         if let Some(at) = self.unread().find(|&at| is_of_states(&self.names[at], &without_columns, robot)) {
@@ -202,12 +202,12 @@ impl Header {
         Err(self.in_column(error, record, *at))
     }
 
-    /// The columns that are copied without having been named as foreign.
+    /// The columns that are copied without being named as foreign.
     fn unread(&self) -> impl Iterator<Item = usize> {
         self.places(TableColumn::Carried).filter(|&at| !self.is_foreign(&self.names[at]))
     }
 
-    /// The same, refused if it has a column of a joint's torque, which forces depend on; without a line.
+    /// Returns the header, or an error without a line if a column is a joint's torque, on which forces depend.
     pub fn without_torques(self, robot: &Robot) -> Result<Self> {
         let is_torque = |&at: &usize| is_of_coordinate(&self.names[at], &["torque", "tau", "effort"], robot);
         let torques: Vec<usize> = self.unread().filter(is_torque).collect();
@@ -219,12 +219,12 @@ impl Header {
         Err(Error::new(Reason::Inconsistent(reason)).hint(hint).at(format!("column {}", first + 1)))
     }
 
-    /// How many columns there are.
+    /// Returns the number of columns.
     pub fn count(&self) -> usize {
         self.columns.len()
     }
 
-    /// The same, refused if there is no column `time`; without a line.
+    /// Returns the header, or an error without a line if there is no column `time`.
     pub fn with_time(self) -> Result<Self> {
         let hint = "touchdowns and velocities over time need that of each row: name its column time, in seconds";
         let missing = || Error::new(Reason::Missing("a column \"time\"".into())).hint(hint);
@@ -238,7 +238,8 @@ impl Header {
         Ok(self)
     }
 
-    /// The same, refused if the base floats and no column says how high it is, as touchdowns need; without a line.
+    /// Returns the header, or an error without a line if the base floats and no column gives its height: touchdowns
+    /// need it.
     pub fn with_base(self) -> Result<Self> {
         if self.missing.iter().any(|name| name == "q_base_z") {
             let missing = Error::new(Reason::Missing("the base's height, q_base_z,".into()));
@@ -250,39 +251,39 @@ impl Header {
         Ok(self)
     }
 
-    /// Whether the base is given in three dimensions, so that the motion has to be projected clip by clip
+    /// Returns whether the base is given in three dimensions; its motion must then be projected clip by clip
     /// ([`crate::gait::sagittal`]).
     pub fn is_spatial(&self) -> bool {
         self.spatial.is_some()
     }
 
-    /// Names of the columns that are not read, because their joints have no coordinate: they are frozen, fixed or mimic
-    /// joints.
+    /// Returns the names of the columns that are not read because their joints are frozen, fixed or mimic joints, which
+    /// have no coordinate.
     pub fn ignored(&self) -> impl Iterator<Item = &str> {
         self.places(TableColumn::Ignored).map(|at| self.names[at].as_str())
     }
 
-    /// Names of the columns that are copied to the results.
+    /// Returns the names of the columns that are copied to the results.
     pub fn carried(&self) -> impl Iterator<Item = &str> {
         self.places(TableColumn::Carried).map(|at| self.names[at].as_str())
     }
 
-    /// Whether a column is copied to all results because it was named as foreign.
+    /// Returns whether a column is copied to all results because it was named as foreign.
     pub fn is_foreign(&self, name: &str) -> bool {
         self.foreign.iter().any(|foreign| foreign == name)
     }
 
-    /// The columns of a kind.
+    /// Returns the columns of a kind.
     pub(super) fn places(&self, wanted: TableColumn) -> impl Iterator<Item = usize> {
         (0..self.columns.len()).filter(move |&at| self.columns[at] == wanted)
     }
 
-    /// The first one.
+    /// Returns the first column of a kind.
     pub(super) fn place(&self, wanted: TableColumn) -> Option<usize> {
         self.places(wanted).next()
     }
 
-    /// The columns of a base in three dimensions, if it is given so.
+    /// Returns the columns of a base in three dimensions; `None` if the table has none.
     fn spatial(&self, record: Record, robot: &Robot) -> Result<Option<SpatialColumns>> {
         let components = [0, 1, 2, 3].map(|component| self.place(TableColumn::Quaternion(component)));
         let sideways = self.place(TableColumn::Sideways);
@@ -306,7 +307,7 @@ impl Header {
         in_column(error, record, at, &self.names[at])
     }
 
-    /// Refuses a table that lacks what a state needs.
+    /// Refuses a table without what every state needs.
     fn check(&self, record: Record, robot: &Robot, rates: Rates) -> Result<()> {
         let first = |wanted: fn(&TableColumn) -> bool| self.columns.iter().position(wanted);
         let velocity = first(|column| matches!(column, TableColumn::Velocity(_)));
@@ -347,32 +348,33 @@ impl Header {
     }
 }
 
-/// The refusal of a column for which only states have a field.
+/// Returns the refusal of a column for which only states have a field.
 fn of_states(name: &str) -> Error {
     let reason = format!("\"{}\" is a field of states, and tables have no column for it", short(name));
     let hint = format!("give the states as lines of JSON, or `foreign: {}` to copy the column", quoted(name));
     Error::new(Reason::Inconsistent(reason)).hint(hint)
 }
 
-/// Puts an error where column `at` of this name begins in the first record.
+/// Locates an error where column `at`, which has this name, begins in the first record.
 fn in_column(error: Error, record: Record, at: usize, name: &str) -> Error {
     let (lines, column) = record.place_of(at, name);
     error.at(format!("column {}", at + 1)).on(1 + lines, column)
 }
 
-/// An error about the whole table.
+/// Returns an error about the whole table.
 fn in_table(reason: Reason, hint: &str) -> Error {
     Error::new(reason).on(1, 1).hint(hint)
 }
 
-/// The refusal of velocities of a base in three dimensions: engines give them in the world's axes or the body's.
+/// Returns the refusal of velocities of a base in three dimensions: engines give them in the world's axes or the
+/// body's.
 fn spatial_velocity() -> Error {
     let reason = "velocities of a robot whose base is in three dimensions are not read".to_owned();
     let hint = "leave out the columns v_..., and give `velocity: central` to take velocities from the time";
     Error::new(Reason::Unsupported(reason)).hint(hint)
 }
 
-/// The names in the first record, without the space around them.
+/// Returns the names in the first record, without surrounding space.
 fn names(record: Record) -> Result<Vec<String>> {
     let Record { bytes, form } = record;
     if let Some((at, fault)) = record.quoting_fault() {
@@ -416,7 +418,7 @@ fn names(record: Record) -> Result<Vec<String>> {
     }
 }
 
-/// The meaning of the column `name`.
+/// Returns the meaning of the column `name`.
 fn column(name: &str, robot: &Robot) -> Result<TableColumn> {
     if let Some(coordinate) = name.strip_prefix("q_") {
         return self::coordinate("q_", coordinate, robot, TableColumn::Position);
@@ -427,19 +429,20 @@ fn column(name: &str, robot: &Robot) -> Result<TableColumn> {
     Ok(OTHERS.iter().find(|(other, _)| *other == name).map_or(TableColumn::Carried, |&(_, column)| column))
 }
 
-/// A name in lower case, without a unit in brackets and what else is no letter or digit at its ends; `_` for it within.
+/// Returns the name in lower case, without a unit in brackets; each other character than a letter or digit is `_`, and
+/// dropped at the ends.
 fn plain(name: &str) -> String {
     let letter = |c: char| if c.is_alphanumeric() { c.to_ascii_lowercase() } else { '_' };
     let without_unit = name.split(['[', '(']).next().unwrap_or(name);
     without_unit.chars().map(letter).collect::<String>().trim_matches('_').to_owned()
 }
 
-/// Fields of a state for which a table has no columns.
+/// Returns the fields of a state for which a table has no columns.
 fn fields_without_columns() -> Vec<String> {
     fields_of("State").into_iter().filter(|field| OTHERS.iter().all(|(other, _)| other != field)).collect()
 }
 
-/// Whether a column is named like one of these fields of a state, or like an entry of one.
+/// Returns whether a column is named like one of these fields of a state, or like an entry of one.
 fn is_of_states(name: &str, fields: &[String], robot: &Robot) -> bool {
     let name = plain(name);
     let entry = |field: &str| name.strip_prefix(field)?.strip_prefix('_');
@@ -450,33 +453,33 @@ fn is_of_states(name: &str, fields: &[String], robot: &Robot) -> bool {
         || ["held", "rotor_inertia"].iter().any(of_joint)
 }
 
-/// What is left of a name without one of its parts that is such a word, as `base_z` is of `base_vel_z`.
+/// Returns what remains of a name if a part that is one of the `words` is removed, as in `base_z` from `base_vel_z`.
 fn without_one_of(name: &str, words: &[&str]) -> Vec<String> {
     let parts: Vec<&str> = name.split('_').collect();
     let places = (0..parts.len()).filter(|&at| words.contains(&parts[at]));
     places.map(|at| [&parts[..at], &parts[at + 1..]].concat().join("_")).collect()
 }
 
-/// Whether a name is that of a coordinate and such a word.
+/// Returns whether a name consists of that of a coordinate and one of the `words`.
 fn is_of_coordinate(name: &str, words: &[&str], robot: &Robot) -> bool {
     let name = plain(name);
-    // What is much longer is none, and comparing it takes time.
+    // A much longer name cannot match, and comparing it takes time.
     let longest = in_columns(robot).map(|own| own.len()).max().unwrap_or_default();
     let is_coordinate = |rest: String| in_columns(robot).any(|own| plain(&own) == rest);
     name.len() <= longest + 16 && without_one_of(&name, words).into_iter().any(is_coordinate)
 }
 
-/// A name as an option takes it.
+/// Returns a name as it is written in an option.
 fn quoted(name: &str) -> String {
     let is_word = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-' | '.' | '/');
     if name.chars().all(is_word) { name.to_owned() } else { format!("\"{name}\"") }
 }
 
-/// Whether a column `name` may be meant as the one that is called `known`: it is the same but for case and punctuation,
-/// names the coordinate alone or with another word for position or velocity, or has a letter or two wrong.
+/// Returns whether a column `name` may be meant as the column `known`: it is equal except for case and punctuation,
+/// names the coordinate alone or with another word for position or velocity, or has one or two wrong letters.
 fn resembles(name: &str, known: &str) -> bool {
     let (name, known) = (plain(name), plain(known));
-    // "restitution_coefficient", "friction of the left foot", and not what friction does or needs.
+    // Matches "restitution_coefficient" and "friction of the left foot", but not what friction causes or needs.
     const OTHER_QUANTITIES: [&str; 7] = ["needed", "force", "torque", "loss", "power", "margin", "joint"];
     let mut parts = name.split('_');
     let is_mu = known == "friction" && (name.starts_with("mu_") || name.ends_with("_mu") || name == "mu");
@@ -486,7 +489,7 @@ fn resembles(name: &str, known: &str) -> bool {
     {
         return true;
     }
-    // Comparing takes the product of the lengths.
+    // Comparison takes the product of the lengths.
     if name.len() > known.len() + 16 {
         return false;
     }
@@ -498,7 +501,7 @@ fn resembles(name: &str, known: &str) -> bool {
     if let (Some((_, coordinate)), false) = (known.split_once('_'), words.is_empty()) {
         let alone = |name: &str| name == coordinate || Some(name) == coordinate.strip_prefix("base_");
         let with_word = without_one_of(&name, words).iter().any(|rest| alone(rest));
-        // Another quantity of this coordinate, such as a torque, is none of its state.
+        // Another quantity of this coordinate, such as a torque, is no part of a state.
         let other = name.strip_suffix(coordinate).is_some_and(|rest| rest.ends_with('_'));
         if alone(&name) || with_word || other {
             return alone(&name) || with_word;
@@ -512,7 +515,7 @@ fn resembles(name: &str, known: &str) -> bool {
     name.len().abs_diff(known.len()) <= wrong && strsim::osa_distance(&name, &known) <= wrong
 }
 
-/// The meaning of a coordinate's column: `moving` of its index in q if the robot has it.
+/// Returns the meaning of a coordinate's column: `moving` of the coordinate's index in q if the robot has it.
 fn coordinate(prefix: &str, name: &str, robot: &Robot, moving: fn(usize) -> TableColumn) -> Result<TableColumn> {
     if let Some(joint) = robot.joint(name).filter(|_| robot.base == Base::Fixed || !BASE.contains(&name)) {
         return Ok(moving(robot.base_dofs() + joint));
@@ -555,13 +558,13 @@ fn coordinate(prefix: &str, name: &str, robot: &Robot, moving: fn(usize) -> Tabl
     Err(unknown.did_you_mean(&format!("{prefix}{}", short(name)), known.iter().map(String::as_str)))
 }
 
-/// The coordinates' names in columns, after `q_` and `v_`.
+/// Returns the coordinates' names as they follow `q_` and `v_` in columns.
 pub(crate) fn in_columns(robot: &Robot) -> impl Iterator<Item = String> {
     let of_base = |at| if at < robot.base_dofs() { "base_" } else { "" };
     robot.coordinates().enumerate().map(move |(at, name)| format!("{}{name}", of_base(at)))
 }
 
-/// A list of names that may be long, for messages.
+/// Joins names, of which there may be many, for a message.
 fn few(mut names: Vec<String>) -> String {
     const MOST: usize = 200;
     let mut length = 0;
@@ -577,7 +580,7 @@ fn few(mut names: Vec<String>) -> String {
     names.join(", ")
 }
 
-/// The beginning of a text that may be long, for messages.
+/// Returns the beginning of a text that may be long, for a message.
 pub(crate) fn short(text: &str) -> String {
     const MOST: usize = 60;
     match text.char_indices().nth(MOST) {

@@ -1,20 +1,20 @@
-//! Reads states from tables: CSV, TSV, and lines of JSON that are flat.
+//! Reads states from tables: CSV, TSV, and flat lines of JSON; with the feature `columnar` also Parquet and Arrow.
 //!
 //! ```text
-//!     first record + Robot --[header]--> Header: what each column is, resolved once
+//! first record + Robot --[header]--> Header: the meaning of each column, resolved once
 //!     record by record ----[rows]-----> Row --> State, id, time, carried columns
 //! ```
 //!
 //! The first record names the columns: `id`, `q_base_x`, `q_base_z`, `q_base_pitch`, `q_<joint>`, the same with `v_`,
 //! `friction` (a number or `infinite`), `restitution`, `stance` (a link) and `time`; a joint without a column is 0. All
-//! others, and `time`, are copied to the results; one that resembles a missing column is refused. An empty cell is
-//! refused where a number belongs, because some programs write NaN so. It means "not given" in `id`, `friction`,
-//! `restitution` and `stance`. In a row with a stance the cells of `q_base_x`, `q_base_z`, `v_base_x` and `v_base_z`
-//! must be empty. A base in three dimensions has also
-//! `q_base_y`, and a quaternion instead of the pitch ([`crate::gait::spatial`]); its velocities come from the time.
+//! other columns, and `time`, are copied to the results; a column that resembles a missing one is refused. An empty
+//! cell is refused where a number belongs, because some programs write NaN as an empty cell. It means "not given" in
+//! `id`, `friction`, `restitution` and `stance`. In a row with a stance the cells of `q_base_x`, `q_base_z`, `v_base_x`
+//! and `v_base_z` must be empty. A base in three dimensions also has `q_base_y`, and a quaternion instead of the pitch
+//! ([`crate::gait::spatial`]); its velocities are computed from the time.
 //!
-//! A quote that is not closed, is closed and followed by text, or has whole rows before its end refuses the row of its
-//! line, and the next line begins the next row.
+//! The row of a line is refused if it has a quote that is not closed, that closes before further text, or that contains
+//! whole rows. The next line then begins the next row.
 
 mod flat;
 mod records;

@@ -1,8 +1,8 @@
-//! Finds the ends of fields and records in the bytes of a table, by the rules of the csv crate, and the quotes that it
-//! would take for characters: rows would be lost between them.
+//! Finds the ends of fields and records in the bytes of a table, by the rules of the csv crate, and the quotes that the
+//! crate would take for plain characters, so that the rows between them would be lost.
 //!
 //! ```text
-//!     Start --"--> Quoted --"--> Closing --"--> Quoted (two quotes are one)
+//! Start --"--> Quoted --"--> Closing --"--> Quoted (a doubled quote stands for one)
 //!       └--any other--> Plain      └--blank--> Closed --any other--> Misplaced
 //! ```
 
@@ -33,14 +33,14 @@ pub enum Form {
     Arrows,
 }
 
-/// What is in a cell.
+/// The content of a cell.
 pub(super) enum Cell<'r> {
     Empty,
     Text(Cow<'r, str>),
     Number(f64),
 }
 
-/// The bytes of a record, and how it is written.
+/// The bytes of a record, and the form in which it is written.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Record<'r> {
     pub bytes: &'r [u8],
@@ -59,15 +59,15 @@ enum Inside {
     /// At the start of a field.
     #[default]
     Start,
-    /// In a field without quotes, where a quote is a character like others.
+    /// In a field without quotes, where a quote is an ordinary character.
     Plain,
-    /// Behind an opening quote.
+    /// After an opening quote.
     Quoted,
-    /// Behind a quote that closes the field unless another follows.
+    /// After a quote that closes the field unless another quote follows.
     Closing,
-    /// Behind the closed field, before the next delimiter.
+    /// After a closed field, before the next delimiter.
     Closed,
-    /// Behind text that follows a closing quote.
+    /// After text that follows a closing quote.
     Misplaced,
 }
 
@@ -83,41 +83,41 @@ pub enum Quoting {
 }
 
 impl Form {
-    /// Whether it is text; else its columns have types.
+    /// Returns whether the form is text; all others have typed columns.
     pub fn is_text(self) -> bool {
         matches!(self, Self::Ndjson | Self::Csv | Self::Tsv)
     }
 
-    /// What separates the fields of a record of text.
+    /// Returns what separates the fields of a record of text.
     pub fn delimiter(self) -> u8 {
         if self == Self::Tsv { b'\t' } else { b',' }
     }
 
-    /// A reader of fields, as many as each record has.
+    /// Creates a reader of records, which may have different numbers of fields.
     pub(super) fn csv(self) -> csv::ReaderBuilder {
         let mut builder = csv::ReaderBuilder::new();
         builder.has_headers(false).flexible(true).delimiter(self.delimiter());
         builder
     }
 
-    /// The quotes at the beginning of a table.
+    /// Returns the state of quotes at the beginning of a table.
     pub fn quotes(self) -> Quotes {
         Quotes { inside: Inside::Start, delimiter: self.delimiter() }
     }
 }
 
 impl Quotes {
-    /// Those at the beginning of a record of the same table.
+    /// Returns the state of quotes at the beginning of a record of the same table.
     pub fn fresh(self) -> Self {
         Self { inside: Inside::Start, ..self }
     }
 
-    /// Whether a byte alone on a line is no record: a tab may separate empty fields.
+    /// Returns whether a line of this byte alone is no record: a tab may separate empty fields.
     pub fn is_blank(self, byte: u8) -> bool {
         byte.is_ascii_whitespace() && byte != self.delimiter
     }
 
-    /// Consumes `line`, the next line of the table together with its line break.
+    /// Consumes `line`, the next line of the table with its line break, and returns how the quotes stand at its end.
     pub fn after(&mut self, line: &[u8]) -> Quoting {
         // Most tables have no quotes at all.
         if self.inside != Inside::Quoted && !line.contains(&b'"') {
@@ -136,7 +136,7 @@ impl Quotes {
         quoting
     }
 
-    /// Consumes one byte; true if it separates two fields.
+    /// Consumes one byte; returns whether it separates two fields.
     fn step(&mut self, byte: u8) -> bool {
         let open = matches!(self.inside, Inside::Quoted | Inside::Misplaced);
         self.inside = match (self.inside, byte) {
@@ -152,16 +152,16 @@ impl Quotes {
         !open && byte == self.delimiter
     }
 
-    /// Whether the quotes of a record of several lines hold other rows: it has not as many fields as the header has
-    /// `columns`, or each of its further lines would have.
+    /// Returns whether the quotes of a record with several lines contain other rows: the record has not `columns`
+    /// fields, as the header has, or each of its lines would have.
     pub(crate) fn swallow_rows(self, record: &[u8], columns: usize) -> bool {
-        /// Text in quotes may have a delimiter by chance.
+        /// With fewer columns, text in quotes may have the right number of delimiters by chance.
         const FEWEST: usize = 3;
         let fields = |bytes: &[u8]| {
             let mut quotes = self.fresh();
             1 + bytes.iter().filter(|&&byte| quotes.step(byte)).count()
         };
-        // Those of a line if its last quote that stays open were none.
+        // The fields of a line, and the delimiters that would separate further ones if its last open quote were none.
         let without_quote = |line: &[u8]| {
             let mut quotes = self.fresh();
             line.iter().fold((1, 0), |(fields, open), &byte| match quotes.step(byte) {
@@ -178,7 +178,7 @@ impl Quotes {
 }
 
 impl Record<'_> {
-    /// What is wrong with its quotes, and in which field.
+    /// Returns the index of a field with misplaced quotes, and what is wrong with them; `None` if there is none.
     pub fn quoting_fault(self) -> Option<(usize, &'static str)> {
         if self.form == Form::Ndjson || !self.bytes.contains(&b'"') {
             return None;
@@ -193,8 +193,8 @@ impl Record<'_> {
         (quotes.inside == Inside::Quoted).then_some((field, "a quote is not closed"))
     }
 
-    /// Lines above, and the column counted from 1 in characters, at which the field begins that has this index and
-    /// `name`.
+    /// Returns where the field with this index and `name` begins: the number of lines above, and the column in
+    /// characters from 1.
     pub fn place_of(self, index: usize, name: &str) -> (usize, usize) {
         if self.form == Form::Ndjson {
             return (0, flat::column_of(self.bytes, name));
@@ -224,7 +224,7 @@ mod tests {
         };
         assert_eq!(after(&["a,b\n", "\"a\n", "b\",c\n", "d\n"]), [Closed, Open, Closed, Closed]);
         assert_eq!(after(&["\"say \"\"hi\"\"\"\r\n", "\"\"\"\n", "\"\n"]), [Closed, Open, Closed]);
-        // A quote inside a plain field is a character; blanks may follow a closing one.
+        // A quote inside a plain field is an ordinary character; blanks may follow a closing quote.
         assert_eq!(after(&["5\" pipe,1\n", "\"a\" ,\"b\"\t\n", "2\n"]), [Closed; 3]);
         assert_eq!(
             after(&["\"a\"b,\"c\n", "\"a\n", "b,\"c\"\n", "\"d\" \"e\"\n"]),

@@ -27,16 +27,16 @@ use std::io::Cursor;
 #[cfg(feature = "columnar")]
 use std::sync::Arc;
 
-/// Reads the rows of a table one record at a time, in memory that is reused.
+/// Reads the rows of a table record by record, and reuses memory.
 #[derive(Debug)]
 pub struct Rows<'h> {
     header: &'h Header,
-    /// Of the bytes of one record after the other, so that one reader with its tables serves them all.
+    /// Reads the bytes of one record after the other, so that its tables are built only once.
     reader: csv::Reader<Cursor<Vec<u8>>>,
     record: ByteRecord,
 }
 
-/// One record and its header.
+/// One record, with its header.
 #[derive(Debug, Clone, Copy)]
 pub struct Row<'r> {
     header: &'r Header,
@@ -46,32 +46,32 @@ pub struct Row<'r> {
 
 #[derive(Debug, Clone, Copy)]
 enum Source<'r> {
-    /// Cells, and the bytes that they were read from.
+    /// Cells, and the bytes from which they were read.
     Text(&'r ByteRecord, &'r [u8]),
-    /// Columns, a row of theirs, and its part of [`Typed::states`].
+    /// Columns, the row in them, and its part of [`Typed::states`].
     #[cfg(feature = "columnar")]
     Columns(&'r Typed, usize, &'r [f64]),
 }
 
-/// The cells of a row to copy to the result, kept longer than their chunk.
+/// The cells of a row that are copied to the result; they outlive the chunk of input.
 #[derive(Debug, Clone)]
 pub enum Carried {
-    /// Fields of text.
+    /// Cells of text.
     Text(ByteRecord),
-    /// Values of JSON; an empty one is null.
+    /// JSON values; an empty cell is null.
     Json(ByteRecord),
-    /// A row of columns with types.
+    /// Columns with types, and the row in them.
     #[cfg(feature = "columnar")]
     Columns(Arc<RecordBatch>, usize),
 }
 
 impl Carried {
-    /// Fields of text.
+    /// Creates cells of text.
     pub fn new(fields: impl Iterator<Item = String>) -> Self {
         Self::Text(fields.collect::<Vec<_>>().into())
     }
 
-    /// How many there are, in the order of [`Header::carried`].
+    /// Returns the number of cells, which are in the order of [`Header::carried`].
     pub fn len(&self) -> usize {
         match self {
             Self::Text(cells) | Self::Json(cells) => cells.len(),
@@ -80,12 +80,12 @@ impl Carried {
         }
     }
 
-    /// Whether there are none.
+    /// Returns whether there are no cells.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// A cell as text.
+    /// Returns a cell as text.
     pub fn text(&self, which: usize) -> Cow<'_, [u8]> {
         match self {
             Self::Text(cells) => cells.get(which).unwrap_or_default().into(),
@@ -102,11 +102,11 @@ impl Carried {
         }
     }
 
-    /// A cell as a value.
+    /// Returns a cell as a JSON value.
     fn value(&self, which: usize) -> CarriedValue {
         let own = |cell: &[u8]| String::from_utf8_lossy(cell).into_owned();
         let text = |cell: &[u8]| to_raw_value(&own(cell)).unwrap_or_default();
-        // Carriage returns between values end lines for some readers.
+        // For some readers, carriage returns between values end lines.
         let json = |cell: &[u8]| RawValue::from_string(own(cell).replace('\r', " ")).unwrap_or_default();
         CarriedValue(match self {
             Self::Text(cells) => text(cells.get(which).unwrap_or_default()),
@@ -120,19 +120,20 @@ impl Carried {
         })
     }
 
-    /// The cells by column: text as text, with a replacement for bytes that are no UTF-8, other values as they are.
+    /// Returns the cells by column: text as text, with a replacement for bytes that are not UTF-8; other values
+    /// unchanged.
     pub fn by_name<'c>(&'c self, header: &'c Header) -> impl Iterator<Item = (&'c str, CarriedValue)> {
         header.carried().zip((0..self.len()).map(|which| self.value(which)))
     }
 }
 
-/// A value that is copied to the result: JSON as it stood in the input, or a cell of text as a string.
+/// A value that is copied to the result: JSON as it was in the input, or a cell of text as a string.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct CarriedValue(Box<RawValue>);
 
 impl CarriedValue {
-    /// The number that it is or that stands in its text.
+    /// Returns the number that the value is, or that its text contains.
     pub fn number(&self) -> Option<f64> {
         let text: Option<String> = serde_json::from_str(self.0.get()).ok();
         text.as_deref().unwrap_or(self.0.get()).trim().parse().ok()
@@ -140,20 +141,20 @@ impl CarriedValue {
 }
 
 impl Header {
-    /// The id in a record that cannot be read as a row, if it is JSON.
+    /// Returns the id in a record that cannot be read as a row, if the record is JSON.
     pub fn id_in(&self, record: &[u8]) -> Option<Value> {
         str::from_utf8(record).ok().filter(|_| self.form == Form::Ndjson).and_then(id_in)
     }
 
-    /// A reader of the table's rows.
+    /// Creates a reader of the table's rows.
     pub fn rows(&self) -> Rows<'_> {
         Rows { header: self, reader: reader(self.form), record: ByteRecord::new() }
     }
 }
 
 impl<'h> Rows<'h> {
-    /// The row in `record`, which begins on `line` of the table and may end with a line break; `None` if it is blank. A
-    /// quote that is not closed or followed by text is refused, and a line break outside of quotes.
+    /// Returns the row in `record`, which begins on `line` of the table and may end with a line break; `None` if it is
+    /// blank. Refuses a quote that is not closed, text after a closing quote, and a line break outside of quotes.
     pub fn row<'r>(&'r mut self, record: &'r [u8], line: usize) -> Result<Option<Row<'r>>> {
         let raw = record.strip_suffix(b"\n").unwrap_or(record);
         let raw = raw.strip_suffix(b"\r").unwrap_or(raw);
@@ -194,7 +195,7 @@ fn reader(form: Form) -> csv::Reader<Cursor<Vec<u8>>> {
 
 #[cfg(feature = "columnar")]
 impl<'r> Row<'r> {
-    /// A row of these columns, with its part of [`Typed::states`], which is number `line` of the table.
+    /// Creates the row with number `line` in the table from a row of these columns and its part of [`Typed::states`].
     pub(super) fn of_columns(
         header: &'r Header,
         (columns, row, state): (&'r Typed, usize, &'r [f64]),
@@ -204,7 +205,7 @@ impl<'r> Row<'r> {
     }
 }
 
-/// Whether values of this type are numbers or truth values in JSON.
+/// Returns whether values of this type are numbers or truth values in JSON.
 #[cfg(feature = "columnar")]
 fn is_json(own: &DataType) -> bool {
     match own {
@@ -214,19 +215,19 @@ fn is_json(own: &DataType) -> bool {
 }
 
 impl Row<'_> {
-    /// The line on which the row begins, counted from 1.
+    /// Returns the line on which the row begins, from 1.
     pub fn line(&self) -> usize {
         self.line
     }
 
-    /// Its id, if it can be read.
+    /// Returns the row's id; `None` if it has none that can be read.
     pub fn id(&self) -> Option<Value> {
         let mut id = None;
         self.read_id(&mut id);
         id
     }
 
-    /// The same into the id of another row.
+    /// Reads the id, in the memory of the id of another row.
     fn read_id(&self, id: &mut Option<Value>) {
         let Some(at) = self.header.id else { return *id = None };
         let text = match self.source {
@@ -249,7 +250,7 @@ impl Row<'_> {
         }
     }
 
-    /// The fields to copy to the result, if there are some and the row has as many as the header.
+    /// Returns the cells to copy to the result, if there are any and the row has as many fields as the header.
     pub fn carried(&self) -> Option<Carried> {
         let cells = match self.source {
             Source::Text(cells, _) if cells.len() == self.header.columns.len() => cells,
@@ -265,25 +266,26 @@ impl Row<'_> {
         Some(if self.header.form == Form::Ndjson { Carried::Json(cells) } else { Carried::Text(cells) })
     }
 
-    /// The time \[s\].
+    /// Returns the time \[s\].
     pub fn time(&self) -> Result<f64> {
         let missing = || Error::new(Reason::Missing("a column \"time\"".into())).on(1, 1);
         self.number(self.header.time.ok_or_else(missing)?)
     }
 
-    /// The state of `robot`; what the row and `defaults` leave open is 0, of the friction unknown. Its x is that of the
-    /// table also where the base is given in three dimensions; along the heading it is put by
-    /// [`crate::gait::sagittal`].
+    /// Returns the state of `robot`; what the row and `defaults` leave open is 0, except that friction stays unknown.
+    /// If the base is given in three dimensions, x is that of the table until [`crate::gait::sagittal`] puts it along
+    /// the heading.
     ///
     /// # Errors
-    /// A row with more or fewer fields than the header, a cell that does not hold what its column is for, a base that
-    /// is both placed by a stance and given, an invalid quaternion. The error gives column, line and place.
+    /// Returns an error with column, line and place for a row with more or fewer fields than the header, a cell that
+    /// does not hold what its column is for, a base that is both placed by a stance and given, or an invalid
+    /// quaternion.
     pub fn state(&self, robot: &Robot, defaults: &Defaults) -> Result<State> {
         let mut state = State::zero(robot);
         self.read(robot, defaults, &mut state).map(|()| state)
     }
 
-    /// The same into a state that only rows of this table were read into.
+    /// Reads the state into one that was only ever read from rows of this table.
     pub(crate) fn read(&self, robot: &Robot, defaults: &Defaults, state: &mut State) -> Result<()> {
         let columns = self.header.columns.len();
         if let Source::Text(cells, _) = self.source
@@ -322,7 +324,7 @@ impl Row<'_> {
         Ok(())
     }
 
-    /// Reads a cell for what its column is.
+    /// Reads a cell according to its column.
     fn read_cell(&self, at: usize, state: &mut State, friction: &mut Option<Friction>) -> Result<()> {
         match self.header.columns[at] {
             TableColumn::Position(to @ 0..2) | TableColumn::Velocity(to @ 0..2) if state.scene.stance.is_some() => {
@@ -348,15 +350,15 @@ impl Row<'_> {
         Ok(())
     }
 
-    /// The part of a base in three dimensions that is not in the plane.
+    /// Returns the part of a base in three dimensions that is not in the plane.
     pub fn spatial(&self) -> Result<Option<Spatial>> {
         Ok(self.projected()?.map(|(_, spatial)| spatial))
     }
 
-    /// The pitch of a base in three dimensions, and the rest.
+    /// Returns the pitch of a base in three dimensions, and its part outside of the plane.
     fn projected(&self) -> Result<Option<(f64, Spatial)>> {
         let Some(SpatialColumns { origin, quaternion, plane }) = self.header.spatial else { return Ok(None) };
-        // A stance leaves x and y open.
+        // With a stance, x and y may be empty.
         let length = |at: Option<usize>| match at {
             Some(at) if self.is_given(at)? => self.number(at),
             _ => Ok(0.0),
@@ -409,7 +411,7 @@ impl Row<'_> {
         };
         let what = || "friction".to_owned();
         match value {
-            // Columns of numbers have no other way to say it.
+            // Columns of numbers express infinite friction as an infinite number.
             0.0..=f64::INFINITY => Ok(Some(value.into())),
             _ if value.is_nan() => Err(self.refuse(at, Reason::NotFinite { what: what(), value })),
             _ => Err(self.refuse(at, Reason::OutOfRange { what: what(), allowed: "0 or more", value })),
@@ -424,7 +426,7 @@ impl Row<'_> {
         Err(self.refuse(at, Reason::OutOfRange { what: "restitution".into(), allowed: "between 0 and 1", value }))
     }
 
-    /// The number in a cell.
+    /// Returns the number in a cell, by a shortcut for numbers from typed columns.
     #[inline]
     fn number(&self, at: usize) -> Result<f64> {
         #[cfg(feature = "columnar")]
@@ -437,7 +439,7 @@ impl Row<'_> {
         self.checked_number(at)
     }
 
-    /// The number in any cell.
+    /// Returns the number in a cell, or the reason why it holds none.
     fn checked_number(&self, at: usize) -> Result<f64> {
         let value: f64 = match self.cell(at)? {
             Cell::Empty => {
@@ -469,7 +471,7 @@ impl Row<'_> {
         finite(value, || "a cell".into()).map_err(|error| self.place(error, at))
     }
 
-    /// Whether a cell is not empty.
+    /// Returns whether a cell is not empty.
     fn is_given(&self, at: usize) -> Result<bool> {
         Ok(!matches!(self.cell(at)?, Cell::Empty))
     }
@@ -499,7 +501,7 @@ impl Row<'_> {
         self.place(Error::new(reason), at)
     }
 
-    /// Puts an error where cell `at` begins.
+    /// Locates an error where cell `at` begins.
     fn place(&self, error: Error, at: usize) -> Error {
         let raw = match self.source {
             Source::Text(_, raw) => raw,
@@ -514,7 +516,7 @@ fn is_number(text: &str) -> bool {
     text.trim().parse::<f64>().is_ok()
 }
 
-/// Puts an error where cell `at` of the record `raw` begins, itself on `line`.
+/// Locates an error where cell `at` of the record `raw` begins; the record begins on `line`.
 fn place(error: Error, header: &Header, raw: &[u8], line: usize, at: usize) -> Error {
     let name = header.names.get(at).map_or("", String::as_str);
     let (lines, column) = Record { bytes: raw, form: header.form }.place_of(at, name);

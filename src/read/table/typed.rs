@@ -1,4 +1,4 @@
-//! Columns with types, cast once as they are needed.
+//! Typed columns of a batch, cast once to the types that states are read from.
 
 use super::header::TableColumn;
 use super::records::Cell;
@@ -11,16 +11,16 @@ use arrow_schema::DataType;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Columns as they are needed.
+/// The columns of a batch, cast to the types that states are read from.
 #[derive(Debug)]
 pub(super) struct Typed {
     columns: Vec<Column>,
-    /// The columns of positions and velocities in which every cell is a finite number, and their indices into q and,
-    /// behind it, v.
+    /// The columns of positions and velocities in which every cell is a finite number, each with its index into a list
+    /// of q and then v.
     whole: Vec<(usize, Float64Array)>,
-    /// All others.
+    /// The indices of all other columns.
     pub open: Vec<usize>,
-    /// Those that are carried through.
+    /// The columns that are carried through.
     pub carried: Arc<RecordBatch>,
 }
 
@@ -32,7 +32,7 @@ enum Column {
     Unread,
 }
 
-/// The refusal of a file that cannot be read.
+/// Returns the refusal of a file that cannot be read.
 pub(super) fn unreadable(error: impl std::fmt::Display) -> Error {
     let text = error.to_string();
     let refused = Error::new(Reason::Io(format!("cannot be read: {text}")));
@@ -42,7 +42,7 @@ pub(super) fn unreadable(error: impl std::fmt::Display) -> Error {
     }
 }
 
-/// What a column of this type is read as: f64, whole numbers, text, null, or as it is.
+/// Returns the type as which a column of type `own` is read: f64, whole numbers, text, or `own` itself.
 pub(super) fn kind(own: &DataType) -> DataType {
     match own {
         DataType::Dictionary(_, values) => kind(values),
@@ -54,7 +54,7 @@ pub(super) fn kind(own: &DataType) -> DataType {
 }
 
 impl Typed {
-    /// The columns of a batch, for a robot of so many coordinates.
+    /// Casts the columns of a batch, for a robot with `dofs` coordinates.
     pub fn new(batch: &RecordBatch, columns: &[TableColumn], dofs: usize) -> Result<Self> {
         let places = (0..columns.len()).filter(|&at| columns[at] == TableColumn::Carried).collect::<Vec<_>>();
         let carried = batch.project(&places).map_err(unreadable)?;
@@ -83,7 +83,7 @@ impl Typed {
                 })
             });
         let typed = typed.collect::<Result<Vec<_>>>()?;
-        // A stance leaves cells of the base's coordinates empty, or refuses them.
+        // With a stance, x and z of the base must be empty: these columns are checked cell by cell.
         let least = if columns.contains(&TableColumn::Stance) { 2 } else { 0 };
         let (mut whole, mut open) = (Vec::new(), Vec::new());
         for (at, (&column, typed)) in columns.iter().zip(&typed).enumerate() {
@@ -92,7 +92,7 @@ impl Typed {
                 TableColumn::Velocity(to) => Some((to, dofs + to)),
                 _ => None,
             };
-            // Without a branch for each value.
+            // The fold has no branch per value.
             let is_whole = |numbers: &Float64Array| {
                 let finite = || numbers.values().iter().fold(true, |finite, value| finite & value.is_finite());
                 numbers.null_count() == 0 && finite()
@@ -107,11 +107,11 @@ impl Typed {
         Ok(Self { columns: typed, whole, open, carried: Arc::new(carried) })
     }
 
-    /// Row by row q and v, of so many coordinates each, with 0 for what is not finite in every row: so a state lies in one
-    /// piece, and not in as many as the table has columns.
+    /// Returns q and v row by row, `dofs` coordinates each, with 0 for the columns that are not in `whole`. This puts a
+    /// state into one piece of memory, not into as many as the table has columns.
     pub fn states(&self, rows: Range<usize>, dofs: usize) -> Vec<f64> {
         let mut states = vec![0.0; rows.len() * 2 * dofs];
-        // A few rows at once stay in the fastest cache.
+        // A few rows at a time stay in the fastest cache.
         for (block, states) in states.chunks_mut(8 * 2 * dofs.max(1)).enumerate() {
             for (cell, numbers) in &self.whole {
                 let numbers = &numbers.values()[rows.start + 8 * block..];
@@ -138,7 +138,7 @@ impl Typed {
         }
     }
 
-    /// The number in a cell of a column of numbers.
+    /// Returns the number in a cell of a column of numbers.
     #[inline]
     pub fn number(&self, at: usize, row: usize) -> Option<f64> {
         match &self.columns[at] {
@@ -147,7 +147,7 @@ impl Typed {
         }
     }
 
-    /// The text in a cell of a column of text, as it is.
+    /// Returns the text in a cell of a column of text, as it is.
     pub fn text(&self, at: usize, row: usize) -> Option<&str> {
         match &self.columns[at] {
             Column::Texts(texts) if texts.is_valid(row) => Some(texts.value(row)),
@@ -155,7 +155,7 @@ impl Typed {
         }
     }
 
-    /// The number in a cell of a column of whole numbers.
+    /// Returns the number in a cell of a column of whole numbers.
     pub fn integer(&self, at: usize, row: usize) -> Option<i64> {
         match &self.columns[at] {
             Column::Integers(numbers) if numbers.is_valid(row) => Some(numbers.value(row)),

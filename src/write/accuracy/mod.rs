@@ -201,7 +201,7 @@ mod tests {
         let found = advice(&[study(true, vec![failing, method("f64", BODIES, 1e-6, 1e-14)])]).unwrap();
         assert_eq!(found, "For G take f64 by articulated bodies (14.0 digits).");
         assert_eq!(advice(&[study(true, Vec::new())]), None);
-        // Of whole numbers no digit is lost, in whatever way; without a contact there is no G.
+        // Whole numbers lose no digit, whatever the method; without a contact there is no G.
         let exact = || vec![method("f64", LTL, 1e-6, 1e-97), method("f64", BODIES, 3e-6, 1e-17)];
         let found = advice(&[study(true, exact())]).unwrap();
         assert!(found.starts_with("For G take f64 by sparse LTL (16.0 digits), the quickest way"), "{found}");
