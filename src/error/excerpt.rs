@@ -1,35 +1,35 @@
-//! The line that a refusal is about, to be shown with the place marked; of a long one what is near the place.
+//! The line that a refusal is about, with the place marked. A long line is cut to what is near the place.
 
 use crate::error::Location;
 use crate::error::visible::is_obeyed;
 use std::ops::Range;
 
-/// The most bytes of a line that is shown whole.
+/// The greatest length of a line that is shown whole \[bytes\].
 const WHOLE: usize = 160;
-/// The characters of a longer one that are kept before the place.
+/// The number of characters of a longer line that are kept before the place.
 const BEFORE: usize = 50;
-/// Those that are kept from the place on.
+/// The number of characters that are kept from the place on.
 const AFTER: usize = 70;
-/// The most bytes of one character.
+/// The greatest length of a character in UTF-8 \[bytes\].
 const WIDEST: usize = 4;
-/// What stands where a line is cut.
+/// Replaces what was cut from a line.
 const CUT: &str = "...";
 
-/// A line, or what is near a place in a long one.
+/// A line, or the part of a long line that is near a place.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Excerpt {
     /// The line, with `...` where it is cut.
     pub text: String,
-    /// The bytes of `text` that hold the word, string or tag at the place; empty at the line's end.
+    /// The bytes of `text` with the word, string or tag at the place; empty at the line's end.
     pub mark: Range<usize>,
-    /// Whether the line's beginning is cut away.
+    /// Whether the line's beginning was cut.
     pub starts_later: bool,
 }
 
 impl Excerpt {
-    /// The line of `text` that holds `place`, where `text` begins on line `first`; bytes that are no UTF-8 and
-    /// characters that a terminal would obey are replaced, one for one. `None` if there is no such line, or if it is
-    /// empty.
+    /// Returns the line of `text` that contains `place`; `text` begins on line `first`. Bytes that are not UTF-8 and
+    /// characters that a terminal would obey are each replaced by one character. `None` if there is no such line, or if
+    /// it is empty.
     pub fn around(text: &[u8], first: usize, place: Location) -> Option<Self> {
         let line = text.split(|&byte| byte == b'\n').nth(place.line.checked_sub(first)?)?;
         let line = line.strip_suffix(b"\r").unwrap_or(line);
@@ -49,12 +49,12 @@ impl Excerpt {
     }
 }
 
-/// Whether a character begins with the byte.
+/// Returns whether the byte begins a character.
 fn begins(byte: u8) -> bool {
     byte & 0xC0 != 0x80
 }
 
-/// The bytes of `line` around the character that has `ahead` others before it.
+/// Returns the range of bytes of `line` around the character that follows `ahead` others.
 fn near(line: &[u8], ahead: usize) -> Range<usize> {
     let mut beginnings = (0..line.len()).filter(|&at| begins(line[at]));
     let start = match ahead.checked_sub(BEFORE) {
@@ -65,7 +65,7 @@ fn near(line: &[u8], ahead: usize) -> Range<usize> {
     start..end.min(start + WIDEST * (BEFORE + AFTER))
 }
 
-/// The bytes of the word, string or tag that begins behind `ahead` characters.
+/// Returns the range of bytes of the word, string or tag that begins after `ahead` characters.
 fn token(line: &str, ahead: usize) -> Range<usize> {
     let start = line.char_indices().nth(ahead).map_or(line.len(), |(offset, _)| offset);
     let rest = &line[start..];
@@ -81,7 +81,7 @@ fn token(line: &str, ahead: usize) -> Range<usize> {
     start..start + length
 }
 
-/// The length of the JSON string at the beginning of `text`.
+/// Returns the length of the JSON string at the beginning of `text`.
 fn closing_quote(text: &str) -> usize {
     let mut escaped = false;
     let end = text.char_indices().skip(1).find(|&(_, c)| {

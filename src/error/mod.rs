@@ -1,7 +1,7 @@
 //! Errors: what was refused, where, and the remedy.
 //!
-//! Physics is a value, refusal is an error: "no outcome" or "on the border" are data, and an [`Error`] always means
-//! that an input was not accepted. Every error names its place and, where one is known, the remedy.
+//! Physical results are values, and only refusals are errors: "no outcome" and "on the border" are data, and an
+//! [`Error`] always means that an input was not accepted. It names its place and, where one is known, the remedy.
 
 mod visible;
 pub mod excerpt;
@@ -28,13 +28,13 @@ pub enum Reason {
     /// A link, joint or other thing that the robot does not have.
     #[error("the robot has no {what} named \"{}\"", short(.name))]
     UnknownName { what: &'static str, name: String },
-    /// A name or key that stands twice.
+    /// A name or key that occurs twice.
     #[error("{what} \"{}\" is given twice", short(.name))]
     Duplicate { what: &'static str, name: String },
     /// A value of the wrong kind, such as `a string` where `a number` is expected.
     #[error("expected {expected}, found {found}")]
     WrongKind { expected: &'static str, found: &'static str },
-    /// Something required is not there.
+    /// Something required that is absent.
     #[error("{} is missing", short(.0))]
     Missing(String),
     /// A number that is NaN or infinite.
@@ -55,8 +55,8 @@ pub enum Reason {
     /// A coordinate without inertia, so that the mass matrix is singular.
     #[error("the mass matrix is singular: nothing resists a motion of {}", short(.0))]
     Singular(String),
-    /// A shape of a URDF link that is deeper in the ground than the tolerance, both in m, and how its lowest point
-    /// moves, `[tangential, normal]` in m/s, if that is known.
+    /// A shape of a URDF link that is deeper in the ground than the tolerance, both in m; if known, the velocity of its
+    /// lowest point, `[tangential, normal]` in m/s.
     #[error(
         "link \"{}\" is {} m deep in the ground, more than the contact tolerance of {} m{}",
         short(.link),
@@ -65,19 +65,19 @@ pub enum Reason {
         velocity.map_or(String::new(), |velocity| format!(", and {}", along_normal(velocity)))
     )]
     Penetration { link: String, depth: f64, tolerance: f64, velocity: Option<[f64; 2]> },
-    /// More closed contacts than the enumeration of all modes serves.
+    /// More closed contacts than are accepted where all combinations of modes are enumerated.
     #[error("{contacts} contacts are closed, and every combination of modes is tried for {limit} at most")]
     TooManyContacts { contacts: usize, limit: usize },
-    /// More closed contacts than matrices are formed for.
+    /// More closed contacts than are accepted where matrices are formed.
     #[error("{contacts} contacts are closed, and matrices are formed for {limit} at most")]
     MatricesTooLarge { contacts: usize, limit: usize },
-    /// More of a thing, such as `links`, than is accepted.
+    /// More things of a kind, such as `links`, than are accepted.
     #[error("more than {limit} {what} are not accepted")]
     TooMany { what: &'static str, limit: usize },
-    /// Work that needs more memory than it may take \[MB\].
+    /// Work that needs more memory than is allowed \[MB\].
     #[error("this needs {needed} MB of memory, and {limit} MB are the most")]
     TooLarge { needed: usize, limit: usize },
-    /// Work that takes more time than its budget has.
+    /// Work that takes more time than its budget allows.
     #[error("the budget of work ended before the answer was known")]
     BeyondBudget,
     /// A file that could not be read or written.
@@ -90,7 +90,7 @@ pub enum Reason {
 pub struct Location {
     /// The line.
     pub line: usize,
-    /// The character in that line.
+    /// The column, in characters.
     pub column: usize,
 }
 
@@ -118,42 +118,43 @@ struct Refusal {
 }
 
 impl Error {
-    /// A refusal for `reason`, its place still unknown.
+    /// Creates an error for `reason`, without a place.
     pub fn new(reason: Reason) -> Self {
         Self(Box::new(Refusal { reason, file: None, location: None, place: None, hint: None }))
     }
 
-    /// Names the place inside the input, as in `position.joints.left_hip` or `link "shank"`; empty for the whole.
+    /// Sets the place inside the input, as in `position.joints.left_hip` or `link "shank"`; empty for the whole input.
     pub fn at(mut self, place: impl Into<String>) -> Self {
         self.0.place = Some(short(&place.into()).into_owned()).filter(|place| !place.is_empty());
         self
     }
 
-    /// Gives the line and column.
+    /// Sets the line and column.
     pub fn on(mut self, line: usize, column: usize) -> Self {
         self.0.location = Some(Location { line, column });
         self
     }
 
-    /// Leaves out line and column, of an input that has none.
+    /// Removes line and column, for an input that has none.
     pub fn nowhere(mut self) -> Self {
         self.0.location = None;
         self
     }
 
-    /// Names the file.
+    /// Sets the file.
     pub fn in_file(mut self, file: impl Into<String>) -> Self {
         self.0.file = Some(visible(&file.into()).into_owned());
         self
     }
 
-    /// Adds the remedy.
+    /// Sets the remedy.
     pub fn hint(mut self, hint: impl Into<String>) -> Self {
         self.0.hint = Some(short(&hint.into()).into_owned());
         self
     }
 
-    /// Hints at the known name nearest to `name`, or at all of a few, if none is near and there is no hint yet.
+    /// Suggests the known name that is nearest to `name`. If none is near and there is no hint yet, lists all known
+    /// names, if they are few.
     pub fn did_you_mean<'a>(self, name: &str, known: impl IntoIterator<Item = &'a str>) -> Self {
         let known: Vec<&str> = known.into_iter().collect();
         let few = (2..=FEW_NAMES).contains(&known.len()) && known.iter().all(|name| name.len() <= LONGEST_NAME / 10);
@@ -164,34 +165,34 @@ impl Error {
         }
     }
 
-    /// Why the input was refused.
+    /// Returns why the input was refused.
     pub fn reason(&self) -> &Reason {
         &self.0.reason
     }
 
-    /// The file, where known.
+    /// Returns the file, where known.
     pub fn file(&self) -> Option<&str> {
         self.0.file.as_deref()
     }
 
-    /// Line and column, where the format has them.
+    /// Returns line and column, where the format has them.
     pub fn location(&self) -> Option<Location> {
         self.0.location
     }
 
-    /// The place inside the input.
+    /// Returns the place inside the input.
     pub fn place(&self) -> Option<&str> {
         self.0.place.as_deref()
     }
 
-    /// The remedy.
+    /// Returns the remedy.
     pub fn remedy(&self) -> Option<&str> {
         self.0.hint.as_deref()
     }
 }
 
 impl fmt::Display for Refusal {
-    /// `file:line:column: place: reason`, as far as known, without the remedy.
+    /// Writes `file:line:column: place: reason`, as far as known, without the remedy.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { reason, file, location, place, .. } = self;
         match (file, location) {
@@ -213,13 +214,13 @@ impl From<Reason> for Error {
     }
 }
 
-/// The most characters of a name that is compared with others: the comparison takes the product of their lengths.
+/// The greatest length of names that are compared \[bytes\], because comparison takes the product of their lengths.
 const LONGEST_NAME: usize = 200;
 
-/// So many known names are listed where none is near.
+/// The greatest number of known names that are listed where none is near.
 const FEW_NAMES: usize = 12;
 
-/// The known name most like `name`, if any is like it at all.
+/// Returns the known name that is most similar to `name`; `None` if none is similar.
 fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let comparable = |candidate: &&str| name.len().max(candidate.len()) <= LONGEST_NAME;
     let likeness = |candidate: &'a str| (strsim::jaro_winkler(name, candidate), candidate);
@@ -227,8 +228,8 @@ fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&
     near.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, candidate)| candidate)
 }
 
-/// The text as people read it, without its middle if a hostile name makes it long: a refusal of a line of 1 MB stays
-/// short.
+/// Returns the text with control characters made visible. If a hostile name makes it long, its middle is left out: the
+/// refusal of a line of 1 MB stays short.
 fn short(text: &str) -> Cow<'_, str> {
     const LONGEST: usize = 400;
     const HEAD: usize = 80;
@@ -241,7 +242,7 @@ fn short(text: &str) -> Cow<'_, str> {
     Cow::Owned(visible(&format!("{head}...{tail}")).into_owned())
 }
 
-/// How what has the velocity `[tangential, normal]` \[m/s\] moves toward the ground or away from it.
+/// Describes how a point with velocity `[tangential, normal]` \[m/s\] moves toward the ground or away from it.
 pub(crate) fn along_normal([_, normal]: [f64; 2]) -> String {
     if normal == 0.0 {
         return "does not move toward it".to_owned();
@@ -249,25 +250,25 @@ pub(crate) fn along_normal([_, normal]: [f64; 2]) -> String {
     format!("moves {} it at {} m/s", if normal < 0.0 { "toward" } else { "away from" }, rounded(normal.abs()))
 }
 
-/// The number in four digits, as 0.87 and 9.6e-5: with an exponent below 1e-3 and from 1e4 on.
+/// Formats a number with four digits, as 0.87 and 9.6e-5: with an exponent below 1e-3 and from 1e4 on.
 pub(crate) fn rounded(value: f64) -> String {
     let rounded = format!("{value:.3e}").parse().unwrap_or(value);
     if rounded == 0.0 || (1e-3..1e4).contains(&rounded.abs()) { rounded.to_string() } else { format!("{rounded:e}") }
 }
 
-/// The number with the fewest digits that is within `tolerance` of `value`.
+/// Returns the number with the fewest digits that is within `tolerance` of `value`.
 pub(crate) fn shortest_within(value: f64, tolerance: f64) -> f64 {
     let with_digits = |digits| format!("{value:.digits$e}").parse().ok();
     (0..17).filter_map(with_digits).find(|short: &f64| (short - value).abs() <= tolerance).unwrap_or(value)
 }
 
-/// The number in the shorter of its two forms: 0.5 and 1e-300.
+/// Formats a number as 0.5 if that has at most 18 characters or is not the longer form, else as 1e-300.
 fn brief(value: f64) -> String {
     let (plain, scientific) = (value.to_string(), format!("{value:e}"));
     if plain.len() <= scientific.len().max(18) { plain } else { scientific }
 }
 
-/// `value`, unless it is NaN or infinite; `what` it is.
+/// Returns `value`, or an error that names it `what` if it is NaN or infinite.
 #[inline]
 pub(crate) fn finite(value: f64, what: impl FnOnce() -> String) -> Result<f64> {
     if value.is_finite() { Ok(value) } else { Err(Reason::NotFinite { what: what(), value }.into()) }

@@ -1,9 +1,9 @@
-//! Names, ids and texts of files, written for people: what a terminal obeys or hides becomes visible.
+//! Makes names, ids and texts of files safe to show to people: what a terminal would obey or hide becomes visible.
 
 use std::borrow::Cow;
 
-/// The text with every control character (C0, DEL, C1), line break and control of the writing direction as an escape,
-/// as in `\n` and `\u{1b}`. Every message, note and text for people writes by it what a file may contain.
+/// Returns the text with every control character (C0, DEL, C1), line break and control of the writing direction as an
+/// escape, as in `\n` and `\u{1b}`. Every message, note and text for people passes text from files through it.
 pub fn visible(text: &str) -> Cow<'_, str> {
     if !text.chars().any(is_obeyed) {
         return Cow::Borrowed(text);
@@ -16,7 +16,7 @@ pub fn visible(text: &str) -> Cow<'_, str> {
     Cow::Owned(text.chars().map(escaped).collect())
 }
 
-/// Whether a terminal acts on the character instead of showing it.
+/// Returns whether a terminal acts on the character instead of showing it.
 pub(super) fn is_obeyed(letter: char) -> bool {
     let turns_direction = matches!(
         letter,
