@@ -16,8 +16,7 @@ pub fn own_friction(count: u64, what: &str) -> Option<String> {
     Some(format!("`friction` is not used where a {what} has its own, as {some} here"))
 }
 
-/// Notes how little time remained for answers after others had used up the total budget; `None` if each had its full
-/// time.
+/// Notes the least time that an answer had after others exceeded their budget; `None` if each had its full time.
 pub fn beyond_budget(total: Option<&TotalBudget>) -> Option<String> {
     let least = total?.least()?.as_secs_f64();
     Some(format!("answers beyond `budget` took so long together that one had {least:.2e} s"))
