@@ -6,7 +6,7 @@ use std::time::Duration;
 use assert_cmd::Command;
 use serde_json::Value;
 
-/// What a run left behind.
+/// Exit status and output of a run.
 pub struct Run {
     arguments: Vec<std::ffi::OsString>,
     pub status: i32,
@@ -27,28 +27,28 @@ impl Run {
         serde_json::from_str(&self.stdout).expect("JSON")
     }
 
-    /// The run, which must have ended well.
+    /// Returns the run, which must have ended with status 0.
     #[track_caller]
     pub fn well(self) -> Self {
         assert_eq!(self.status, 0, "{:?}\n{}", self.arguments, self.stderr);
         self
     }
 
-    /// Standard output of the run, which must have ended well and without a note.
+    /// Returns standard output of the run, which must have ended with status 0 and nothing on standard error.
     #[track_caller]
     pub fn text(self) -> String {
         assert_eq!((self.status, self.stderr.as_str()), (0, ""), "{:?}", self.arguments);
         self.stdout
     }
 
-    /// Standard error of the run, which must have ended with this status and without a result.
+    /// Returns standard error of the run, which must have ended with this status and nothing on standard output.
     #[track_caller]
     pub fn refusal(self, status: i32) -> String {
         assert_eq!((self.status, self.stdout.as_str()), (status, ""), "{:?}\n{}", self.arguments, self.stderr);
         self.stderr
     }
 
-    /// Asserts such an end, with these words on standard error.
+    /// Like [`Self::refusal`], and asserts that standard error contains `words`.
     #[track_caller]
     pub fn refusal_with(self, status: i32, words: &str) {
         let arguments = self.arguments.clone();
@@ -89,7 +89,7 @@ pub fn read(path: &str) -> String {
     std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// A place for a file of the running test alone.
+/// A path for a file, in a folder that only the running test uses.
 pub fn place(name: &str) -> String {
     let test = std::thread::current().name().unwrap_or("several").replace("::", "-");
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
@@ -97,7 +97,7 @@ pub fn place(name: &str) -> String {
     folder.join(name).to_str().expect("UTF-8").to_owned()
 }
 
-/// The path of such a file with this content.
+/// Writes `content` to [`place`] and returns the path.
 pub fn file(name: &str, content: impl AsRef<[u8]>) -> String {
     let path = place(name);
     std::fs::write(&path, content).expect("a file");

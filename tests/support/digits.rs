@@ -1,14 +1,14 @@
-//! The digits that `docs/guarantees.md` promises of the numbers of a proven outcome.
+//! The accuracy that `docs/guarantees.md` promises for the numbers of a proven outcome.
 
 use heelstrike::impact::{Friction, Mode, Outcome};
 
-/// What is promised of each number, relative to its scale.
+/// The promised error of each number, relative to its scale.
 pub const PROMISED: f64 = 1e-10;
 
 /// The true numbers of an outcome, [tangential, normal] per contact.
 #[derive(Debug)]
 pub struct Truth {
-    /// Whether it is that of a robot, whose contacts may hardly feel a blow.
+    /// Whether the outcome is a robot's: the scales of a contact are then at least what the hardest blow can do there.
     pub of_robot: bool,
     /// sqrt(G_ii) of each row.
     pub mobility: Vec<[f64; 2]>,
@@ -17,11 +17,11 @@ pub struct Truth {
     pub impulse: Vec<[f64; 2]>,
     pub energy_loss: f64,
     pub friction_needed: Vec<Option<f64>>,
-    /// dq/dt after, and its scale, by coordinate; of a robot.
+    /// For robots: dq/dt after the impact and its scale, per coordinate.
     pub rates: Vec<[f64; 2]>,
 }
 
-/// Of what a tangential impulse is known, in parts of the normal one.
+/// The least scale of a tangential impulse, as a multiple of the scale of normal impulses: min(mu, 1).
 fn least(friction: Friction) -> f64 {
     match friction {
         Friction::Finite(mu) => mu.min(1.0),
@@ -29,13 +29,13 @@ fn least(friction: Friction) -> f64 {
     }
 }
 
-/// |L_t| / L_n of the sticking contacts that are pressed.
+/// |L_t| / L_n of each sticking contact with L_n > 0.
 pub fn needed(modes: &[Mode], impulse: &[[f64; 2]]) -> Vec<Option<f64>> {
     let of = |(&mode, l): (&Mode, &[f64; 2])| (mode == Mode::Stick && l[1] > 0.0).then(|| l[0].abs() / l[1]);
     modes.iter().zip(impulse).map(of).collect()
 }
 
-/// A number that is off by more than its scale allows.
+/// Returns an error if a number is off by more than `PROMISED` times its scale.
 pub fn check(what: &str, is: f64, should: f64, scale: f64) -> Result<(), String> {
     if (is - should).abs() <= PROMISED * scale.max(should.abs()) {
         return Ok(());
@@ -47,7 +47,7 @@ pub fn check(what: &str, is: f64, should: f64, scale: f64) -> Result<(), String>
 }
 
 impl Truth {
-    /// The first number of an outcome that lacks digits.
+    /// Returns an error that names the first number of an outcome with too few digits.
     pub fn check(&self, outcome: &Outcome, frictions: &[Friction]) -> Result<(), String> {
         let largest = |pairs: &[[f64; 2]]| pairs.concat().iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
         let fastest = largest(&self.before).max(largest(&self.after));
@@ -74,7 +74,7 @@ impl Truth {
             match (outcome.friction_needed[k], self.friction_needed[k]) {
                 (None, None) => {}
                 (Some(is), Some(should)) => {
-                    // As many digits as its quotient has.
+                    // The scale of the quotient |L_t| / L_n, whose two numbers have the scales above.
                     let size = should.max(least(friction)) * push / n;
                     check(&format!("friction of {k}"), is, should, size)?;
                     if let Friction::Finite(mu) = friction

@@ -1,4 +1,4 @@
-//! Impacts of robots and what their outcomes do, as lists with an entry per outcome.
+//! Impacts of robots, and their results as lists with one entry per outcome.
 
 use heelstrike::description::Description;
 use heelstrike::impact::Mode;
@@ -19,7 +19,7 @@ pub fn reduced(urdf: &str, reduction: &Reduction) -> Robot {
     Robot::reduce(&Description::from_urdf(urdf).expect("a description"), reduction).expect("a robot")
 }
 
-/// The answer to a state in JSON; friction is 0.5 unless it is given.
+/// Computes the impact of a state in JSON, with friction 0.5 unless the state gives another.
 pub fn try_impact(robot: &Robot, options: Options, state: impl Display) -> Result<Box<Impact>> {
     let defaults = Defaults { friction: Some(Friction::Finite(0.5)), ..Defaults::default() };
     Pipeline::new(robot, options).impact(&State::from_json(&state.to_string(), robot, &defaults)?)
@@ -41,7 +41,7 @@ pub fn modes(impact: &Impact) -> Vec<Vec<Mode>> {
     outcomes(impact).iter().map(|outcome| outcome.modes.clone()).collect()
 }
 
-/// v after each outcome, in the order of q.
+/// The velocity v after each outcome, in the order of q.
 pub fn velocities_after(impact: &Impact) -> Vec<Vec<f64>> {
     outcomes(impact).iter().map(|outcome| outcome.velocity().collect()).collect()
 }

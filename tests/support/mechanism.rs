@@ -1,9 +1,9 @@
-//! Mechanisms in the plane, written twice: as a URDF from any of their links as the root, and as velocities of their
-//! points, by which M = sum m J'J + I w'w is summed up body by body, without recursion.
+//! Planar mechanisms in two forms: as a URDF with any of their links as the root, and as velocities of their points.
+//! From the latter, M = sum m J^T J + I w^T w is summed body by body, without recursion.
 //!
-//! All geometry is kept in the world where every joint is at zero; a frame stands at the joint that leads to its link
-//! (at the link's own anchor for the root), so that another root moves frames, turns joints round, and moves no matter.
-//! q and v are x, z and pitch of link 0 for the frame at its anchor, then an entry per joint.
+//! All geometry is stored in world coordinates with every joint at zero. A link's frame is at the joint that leads to
+//! the link, or at the link's own anchor if it is the root. Another root therefore moves frames and reverses joints,
+//! but moves no mass. q and v are x, z and pitch of link 0's frame at its anchor, then one entry per joint.
 
 use super::urdf::{self, Axis};
 use nalgebra::{DMatrix, DVector};
@@ -13,24 +13,24 @@ use serde_json::{Value, json};
 /// A point of the plane: forward, up \[m\].
 pub type Point = [f64; 2];
 
-/// A body of the mechanism and the joint, called the same, that ties it to an earlier one; link 0 has none.
+/// A body of the mechanism and the joint of the same name that connects it to an earlier link; link 0 has no joint.
 #[derive(Debug, Clone)]
 pub struct Link {
     pub name: String,
     pub parent: usize,
-    /// Of the joint.
+    /// Position of the joint.
     pub place: Point,
     pub kind: Axis,
-    /// The joint that it follows, multiplier, offset.
+    /// The mimicked joint, multiplier and offset.
     pub follows: Option<(String, f64, f64)>,
     /// Mass \[kg\]; 0 for a link without inertial.
     pub mass: f64,
     pub com: Point,
     /// Moment of inertia, about every axis \[kg m^2\].
     pub moment: f64,
-    /// Where the frame stands while the link is the root.
+    /// Origin of the link's frame if the link is the root.
     pub anchor: Point,
-    /// Pitch of the frame's axes \[rad\].
+    /// Pitch of the axes of the link's frame \[rad\].
     pub turn: f64,
     /// Collision spheres: center, radius \[m\].
     pub spheres: Vec<(Point, f64)>,
@@ -41,10 +41,10 @@ pub struct Mechanism {
     pub links: Vec<Link>,
 }
 
-/// The pitch and the place of every link, each with its rate.
+/// The pitch and the position of every link, each with its rate.
 struct Poses {
     pitch: Vec<[f64; 2]>,
-    /// Of the point that is at the world's origin where all joints are at zero.
+    /// Of the link's point that is at the world's origin if all joints are at zero.
     origin: Vec<[Point; 2]>,
 }
 
@@ -56,18 +56,18 @@ fn minus([a, b]: Point, [x, z]: Point) -> Point {
     [a - x, b - z]
 }
 
-/// Turned by a pitch, which tips forward down.
+/// Rotates a vector by a pitch; a positive pitch turns forward to down.
 pub fn turned([x, z]: Point, pitch: f64) -> Point {
     let (sin, cos) = pitch.sin_cos();
     [cos * x + sin * z, cos * z - sin * x]
 }
 
-/// The velocity of an arm that turns.
+/// The velocity of the end of an arm that turns at `rate`.
 fn swept([x, z]: Point, rate: f64) -> Point {
     [rate * z, -rate * x]
 }
 
-/// A point of a link, as states name it.
+/// A point of a link in the JSON of states.
 pub fn point(link: &str, [x, z]: Point) -> Value {
     json!({"link": link, "offset": [x, 0.0, z]})
 }
@@ -85,13 +85,13 @@ impl Link {
 }
 
 impl Mechanism {
-    /// A root with its frame at the world's origin.
+    /// A single link, the root, with its frame at the world's origin.
     pub fn of(mass: f64, com: Point, moment: f64) -> Self {
         Self { links: vec![Link::new("root", 0, [0.0; 2], mass, com, moment)] }
     }
 
-    /// With a link behind a hinge: its frame is at `origin` of its parent's, its CoG at `com` of its own; with some
-    /// moment.
+    /// Adds a link behind a hinge: its frame is at `origin` in the parent's frame, its CoG at `com` in its own, and its
+    /// moment of inertia is 0.02 m^2 times its mass.
     pub fn with(mut self, name: &str, parent: &str, origin: Point, mass: f64, com: Point) -> Self {
         let parent = self.index(parent);
         let place = plus(self.links[parent].place, origin);
@@ -99,13 +99,13 @@ impl Mechanism {
         self
     }
 
-    /// With the last link changed.
+    /// Changes the last link.
     pub fn but(mut self, change: impl FnOnce(&mut Link)) -> Self {
         change(self.links.last_mut().expect("a link"));
         self
     }
 
-    /// With the last joint following another.
+    /// Makes the last joint follow another one.
     pub fn following(self, mimicked: &str, multiplier: f64, offset: f64) -> Self {
         self.but(|link| link.follows = Some((mimicked.to_owned(), multiplier, offset)))
     }
@@ -114,7 +114,7 @@ impl Mechanism {
         self.links.iter().position(|link| link.name == name).expect("a link of this name")
     }
 
-    /// All points of links, changed.
+    /// Changes all points of all links.
     fn map_points(&mut self, change: impl Fn(Point) -> Point) {
         for link in &mut self.links {
             let spheres = link.spheres.iter_mut().map(|(center, _)| center);
@@ -124,7 +124,7 @@ impl Mechanism {
         }
     }
 
-    /// In units of which so many make one of the old ones.
+    /// The same mechanism in other units, of which `mass` and `length` make one of the old units.
     pub fn in_units(&self, mass: f64, length: f64) -> Self {
         let mut other = self.clone();
         other.map_points(|point| point.map(|entry| entry * length));
@@ -136,20 +136,20 @@ impl Mechanism {
         other
     }
 
-    /// The unit of length of each coordinate, or 1 of an angle.
+    /// Per coordinate the number of new length units in an old one, or 1 for an angle.
     pub fn units_of_coordinates(&self, length: f64) -> Vec<f64> {
         let joints = self.links[1..].iter().map(|link| matches!(link.kind, Axis::Prismatic(_)));
         [true, true, false].into_iter().chain(joints).map(|slides| if slides { length } else { 1.0 }).collect()
     }
 
-    /// Parent and child of a link's joint, seen from this root.
+    /// Parent and child of a link's joint in the tree with this root.
     fn ends(&self, link: usize, root: usize) -> [usize; 2] {
         let mut way = std::iter::successors(Some(root), |&at| (at > 0).then(|| self.links[at].parent));
         let parent = self.links[link].parent;
         if way.any(|at| at == link) { [link, parent] } else { [parent, link] }
     }
 
-    /// Where each link's frame stands in the world of zero.
+    /// Origins of the links' frames with all joints at zero.
     fn frames(&self, root: usize) -> Vec<Point> {
         let mut frames: Vec<Point> = self.links.iter().map(|link| link.anchor).collect();
         for (index, link) in self.links.iter().enumerate().skip(1) {
@@ -158,12 +158,12 @@ impl Mechanism {
         frames
     }
 
-    /// A point of the world of zero in a link's frame.
+    /// Converts a point, given with all joints at zero, from the world to a link's frame.
     fn local(&self, frames: &[Point], link: usize, point: Point) -> Point {
         turned(minus(point, frames[link]), -self.links[link].turn)
     }
 
-    /// The URDF with this root.
+    /// The URDF with this link as the root.
     pub fn urdf(&self, root: usize) -> String {
         let frames = self.frames(root);
         let along = |[x, z]: Point| format!("{x} 0 {z}");
@@ -205,9 +205,9 @@ impl Mechanism {
         urdf::robot(&links.clone().map(link).chain(links.skip(1).map(joint)).collect::<Vec<_>>())
     }
 
-    /// Where all links are.
+    /// Positions of all links and their rates.
     fn poses(&self, q: &[f64], v: &[f64]) -> Poses {
-        // The frame's pitch counts, so that the matter has turned by less.
+        // q[2] is the pitch of the frame, which exceeds that of the stored geometry by `turn`.
         let (pitch, arm) = (q[2] - self.links[0].turn, self.links[0].anchor);
         let arm = turned(arm, pitch);
         let origin = [minus([q[0], q[1]], arm), minus([v[0], v[1]], swept(arm, v[2]))];
@@ -232,25 +232,25 @@ impl Mechanism {
         poses
     }
 
-    /// Where a link's point is.
+    /// Position of a link's point, which is given by its position with all joints at zero.
     pub fn point(&self, q: &[f64], link: usize, point: Point) -> Point {
         self.poses(q, q).point(link, point)[0]
     }
 
-    /// Velocities for a unit rate of every joint.
+    /// Evaluates `of` for a unit rate of each coordinate; one column per coordinate.
     fn rates<const ROWS: usize>(&self, q: &[f64], of: impl Fn(&Poses) -> [f64; ROWS]) -> DMatrix<f64> {
         let unit = |column: usize| -> Vec<f64> { (0..q.len()).map(|k| f64::from(k == column)).collect() };
         let columns = (0..q.len()).map(|column| DVector::from_row_slice(&of(&self.poses(q, &unit(column)))));
         DMatrix::from_columns(&columns.collect::<Vec<_>>())
     }
 
-    /// Velocity of a point of a link's frame for a unit rate of every joint (2 rows).
+    /// Jacobian (2 rows) of a point that is given in a link's frame.
     pub fn point_rates(&self, q: &[f64], name: &str, offset: Point) -> DMatrix<f64> {
         let link = self.index(name);
         self.rates(q, |poses| poses.point(link, plus(self.links[link].place, offset))[1])
     }
 
-    /// M of all joints, as if none followed another.
+    /// The mass matrix in the coordinates of all joints, as if none followed another.
     pub fn mass_matrix(&self, q: &[f64]) -> DMatrix<f64> {
         let bodies = self.links.iter().enumerate().map(|(index, link)| {
             let rates = self.rates(q, |poses| {
@@ -263,7 +263,7 @@ impl Mechanism {
         bodies.reduce(|sum, body| sum + body).expect("a body")
     }
 
-    /// The coordinates of all joints from those that are independent, and T of v_all = T v.
+    /// Computes the coordinates of all joints from those of the independent ones, and the map T of v_all = T v.
     pub fn tied(&self, q: &[f64]) -> (Vec<f64>, DMatrix<f64>) {
         let independent = |link: &&Link| link.follows.is_none();
         let columns: Vec<&str> = self.links[1..].iter().filter(independent).map(|link| link.name.as_str()).collect();
@@ -280,8 +280,8 @@ impl Mechanism {
         (all, map)
     }
 
-    /// The ends of a loop, as JSON for the URDF with this root: a point of one link, and the point of another that is
-    /// there in this position.
+    /// The ends of a loop, as JSON for the URDF with this root: a point of one link, and the point of `other` that
+    /// coincides with it at q.
     pub fn meeting(&self, root: usize, q: &[f64], (link, at): (usize, Point), other: usize) -> Value {
         let frames = self.frames(root);
         let poses = self.poses(q, q);
@@ -291,7 +291,7 @@ impl Mechanism {
         json!({"a": end(link, at), "b": end(other, there)})
     }
 
-    /// The state, as JSON for the URDF with this root, with contacts at points of links.
+    /// The state as JSON for the URDF with this root, with contacts (link, point, radius).
     pub fn state(&self, root: usize, q: &[f64], v: &[f64], contacts: &[(usize, Point, f64)]) -> Value {
         let (frames, poses) = (self.frames(root), self.poses(q, v));
         let [place, speed] = poses.point(root, self.links[root].anchor);
@@ -359,7 +359,7 @@ prop_compose! {
 }
 
 prop_compose! {
-    /// A tree of 3 to 8 links; massless ones are on joints that do not move.
+    /// A random tree of 3 to 8 links; only links on joints that do not move may be massless.
     pub fn mechanism()(root in link(), parts in prop::collection::vec(jointed(), 2..8)) -> Mechanism {
         let mut links = vec![Link { mass: root.mass + 1.0, ..root }];
         for (parent, link) in parts {
@@ -371,7 +371,7 @@ prop_compose! {
     }
 }
 
-/// Coordinates or rates of a mechanism with `joints` joints.
+/// Random coordinates or rates: base entries below `base` and entries of `joints` joints below `range` in magnitude.
 pub fn motion(joints: usize, base: f64, range: f64) -> impl Strategy<Value = Vec<f64>> {
     let joints = prop::collection::vec(-range..range, joints);
     (prop::array::uniform3(-base..base), joints).prop_map(|(base, joints)| [&base[..], &joints].concat())

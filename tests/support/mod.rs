@@ -1,4 +1,4 @@
-//! What several test files use; `tests/README.md` says where a new test goes.
+//! Helpers that several test files use; `tests/README.md` says where a new test goes.
 
 #![allow(dead_code, reason = "each binary uses its own part")]
 

@@ -3,8 +3,8 @@
 use super::random::Random;
 use serde_json::{Value, json};
 
-/// A body on so many contacts in a row, each of which also moves a little by itself: G has three eigenvalues of size
-/// one, and all others are near 1e-18. With matrices whose entries are exact.
+/// A problem of a body on a row of contacts, each of which also has small motions of its own (1e-9): three eigenvalues
+/// of G are of order one or more, all others are near 1e-18. It is given by M and J, whose entries are exact.
 pub fn nearly_dependent(contacts: usize) -> Value {
     let rows = 2 * contacts;
     let mut random = Random::new(7);

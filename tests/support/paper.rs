@@ -1,4 +1,4 @@
-//! The paper's models and their states, with the values of `data/paper.json` (40 digits).
+//! The paper's models and states, and their reference values in `data/paper.json` (40 digits).
 
 use heelstrike::Mode;
 use serde::Deserialize;
@@ -15,7 +15,7 @@ const THIGH: f64 = 0.2;
 pub struct Model {
     pub name: &'static str,
     pub urdf: &'static str,
-    /// The legs' inertia that takes the place of the file's.
+    /// The legs' moment of inertia, which replaces that of the file.
     pub inertia: Option<&'static str>,
     pub kneed: bool,
 }
@@ -29,7 +29,7 @@ pub const MODELS: [Model; 6] = [
     Model { name: "ramone_as_computed_in_paper", urdf: "ramone_paper", inertia: None, kneed: true },
 ];
 
-/// What the reference holds of a model: states by leg angle, and regions `[start, "modes|modes"]` by friction.
+/// Reference values of a model: states by leg angle, and regions `[start, "modes|modes"]` by friction.
 #[derive(Deserialize)]
 pub struct Reference {
     pub at: BTreeMap<String, At>,
@@ -71,8 +71,8 @@ impl Model {
         if self.kneed { ["left_foot", "right_foot"] } else { ["left_leg", "right_leg"] }
     }
 
-    /// The trailing foot at rest on the ground, the robot turning about it at 1 rad/s counter-clockwise, joints at
-    /// rest.
+    /// The state at leg angle `alpha`: the trailing foot rests on the ground, the robot turns about it at 1 rad/s
+    /// counter-clockwise, and the joints are at rest. `pose` replaces the angles that are computed here.
     pub fn state(&self, alpha: f64, pose: Option<&Pose>, friction: &str) -> Value {
         let friction = friction.parse().map_or(json!(friction), |number: f64| json!(number));
         let (pitch, joints) = if self.kneed {

@@ -1,8 +1,8 @@
-//! Many seeds in four threads.
+//! Checks of many seeds on four threads.
 
 use std::thread;
 
-/// Runs `check` on the numbers below `count` and adds up what it returns.
+/// Runs `check` on the numbers below `count` and adds up the results entry by entry.
 pub fn total<const N: usize>(count: u64, check: impl Fn(u64) -> [u64; N] + Sync) -> [u64; N] {
     let check = &check;
     let work = |worker| move || (worker..count).step_by(4).map(check).fold([0; N], added);

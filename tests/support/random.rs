@@ -1,4 +1,5 @@
-//! A seeded stream of random choices; the same seed gives the same stream for ever, so that a seed is a test case.
+//! A seeded stream of random choices. The same seed always gives the same stream, so that a seed identifies a test
+//! case.
 
 /// SplitMix64 (Steele, Lea and Flood 2014).
 pub struct Random {
@@ -17,13 +18,12 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// From 0 to 1, with all the digits of an f64.
+    /// A multiple of 2^-53 from 0 to below 1.
     pub fn uniform(&mut self) -> f64 {
-        // 53 bits make a number below one.
         (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// From `low` to `high`, with all its digits.
+    /// A number from `low` to `high`.
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.uniform()
     }
@@ -33,7 +33,7 @@ impl Random {
         low + (self.bits() % (high - low + 1) as u64) as i64
     }
 
-    /// True once in `n` times.
+    /// True with probability 1 / n.
     pub fn once_in(&mut self, n: i64) -> bool {
         self.whole(1, n) == 1
     }

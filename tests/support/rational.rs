@@ -1,4 +1,4 @@
-//! Rational numbers and exact linear algebra: Gauss on rationals, Bareiss on whole numbers.
+//! Rational numbers and exact linear algebra: Gauss-Jordan elimination on rationals, Bareiss elimination on integers.
 
 use dashu_base::{Gcd, Sign};
 use dashu_int::{IBig, UBig};
@@ -49,7 +49,7 @@ pub fn transposed(matrix: &Matrix) -> Matrix {
     (0..matrix[0].len()).map(|column| matrix.iter().map(|row| row[column].clone()).collect()).collect()
 }
 
-/// Eliminates the first `columns` columns by Gauss and Jordan; their rank.
+/// Applies Gauss-Jordan elimination to the first `columns` columns and returns their rank.
 fn eliminate(rows: &mut Matrix, columns: usize) -> usize {
     let mut rank = 0;
     for column in 0..columns {
@@ -92,7 +92,7 @@ pub fn rank(matrix: &Matrix) -> usize {
     eliminate(&mut matrix.clone(), matrix.first().map_or(0, Vec::len))
 }
 
-/// The least whole number that makes whole numbers of all `values`.
+/// The least common denominator of `values`.
 pub fn common_denominator<'a>(values: impl IntoIterator<Item = &'a RBig>) -> UBig {
     values.into_iter().fold(UBig::ONE, |common, value| {
         let denominator = value.denominator();
@@ -101,18 +101,18 @@ pub fn common_denominator<'a>(values: impl IntoIterator<Item = &'a RBig>) -> UBi
     })
 }
 
-/// `scale * value`, which must be whole.
+/// `scale * value`, which must be an integer.
 pub fn whole(value: &RBig, scale: &UBig) -> IBig {
     value.numerator() * IBig::from(scale / value.denominator())
 }
 
-/// The solution of a square system of whole numbers: x = numerators / determinant.
+/// The solution of a square system of integers: x = numerators / determinant.
 pub struct Cramer {
     pub determinant: IBig,
     pub numerators: Vec<IBig>,
 }
 
-/// Solves `rows` = [A | b] without a fraction (Bareiss 1968); `None` if det A = 0.
+/// Solves `rows` = [A | b] without fractions (Bareiss 1968); `None` if det A = 0.
 pub fn cramer(mut rows: Vec<Vec<IBig>>) -> Option<Cramer> {
     let n = rows.len();
     let mut previous = IBig::ONE;
@@ -137,7 +137,7 @@ pub fn cramer(mut rows: Vec<Vec<IBig>>) -> Option<Cramer> {
         }
         previous = pivot_row[k].clone();
     }
-    // Up to its sign the last pivot is det A; every numerator is det A times an unknown, whole by Cramer's rule.
+    // The last pivot is det A up to its sign. Every numerator is det A times an unknown, an integer by Cramer's rule.
     let last = previous;
     let mut numerators = vec![IBig::ZERO; n];
     for row in (0..n).rev() {

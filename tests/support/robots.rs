@@ -1,4 +1,4 @@
-//! The robots of other people's projects (`data/robots`) and their references.
+//! Robots of other projects (`data/robots`) and their reference values.
 
 use super::command::read;
 use serde::de::DeserializeOwned;
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::ops::Range;
 
-/// Their folders, and which variant of the reference is the robot as it is read.
+/// The folder of each robot, and the variant of its reference that matches how heelstrike reads the file by default.
 pub const ROBOTS: [(&str, &str); 8] = [
     ("a1", "default"),
     ("acrobot", "fixed"),
@@ -18,7 +18,7 @@ pub const ROBOTS: [(&str, &str); 8] = [
     ("upkie", "default"),
 ];
 
-/// A contact of a reference, as states name it.
+/// A contact of a reference, with the fields that it has in states.
 #[derive(Deserialize, Serialize)]
 pub struct Contact {
     pub link: String,
@@ -26,7 +26,7 @@ pub struct Contact {
     pub radius: f64,
 }
 
-/// The path of the URDF in a folder and that variant of its reference; variants differ in their fields.
+/// The path of the URDF in a folder, and the variant of its reference as a `T` with the fields that a test needs.
 pub fn robot_and_reference<T: DeserializeOwned>((folder, variant): (&str, &str)) -> (String, T) {
     let folder = format!("tests/data/robots/{folder}");
     let reference: Value = serde_json::from_str(&read(&format!("{folder}/reference.json"))).expect("a reference");
@@ -34,7 +34,7 @@ pub fn robot_and_reference<T: DeserializeOwned>((folder, variant): (&str, &str))
     (urdf, serde_json::from_value(reference["variants"][variant].clone()).expect("the variant"))
 }
 
-/// Values of coordinates as states name them; the first `base` ones are those of a base that floats.
+/// The JSON of states for values of coordinates; the first `base` ones are those of the floating base.
 pub fn by_name(coordinates: &[String], base: usize, values: &[f64]) -> Value {
     let part = |range: Range<usize>| -> Value { range.map(|k| (coordinates[k].clone(), json!(values[k]))).collect() };
     let mut named = json!({"joints": part(base..values.len())});

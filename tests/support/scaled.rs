@@ -1,4 +1,4 @@
-//! Comparison to a reference, relative to a stated size, that gathers every difference before it fails.
+//! Comparison with a reference, relative to a stated size, that collects all differences before it fails.
 
 use nalgebra::DMatrix;
 use std::borrow::Cow;
@@ -6,24 +6,24 @@ use std::borrow::Cow;
 /// A matrix of a report.
 type Rows<'a> = Option<Cow<'a, [Vec<f64>]>>;
 
-/// Every difference found so far.
+/// The differences found so far.
 #[derive(Debug, Default)]
 pub struct Differences(Vec<String>);
 
 impl Differences {
-    /// Notes a difference that is no number.
+    /// Adds a difference.
     pub fn note(&mut self, place: &str, what: impl std::fmt::Display) {
         self.0.push(format!("{place}: {what}"));
     }
 
-    /// Compares what is no number.
+    /// Compares values that are not numbers.
     pub fn same<T: PartialEq + std::fmt::Debug>(&mut self, place: &str, is: T, should: T) {
         if is != should {
             self.note(place, format!("{is:?} instead of {should:?}"));
         }
     }
 
-    /// Compares number by number; `tolerance` is absolute: the factor times the size it refers to.
+    /// Compares number by number; `tolerance` is absolute: a relative one times the size that it refers to.
     pub fn compare(&mut self, place: &str, is: &[f64], should: &[f64], tolerance: f64) {
         if is.len() != should.len() {
             return self.note(place, format!("{} numbers instead of {}", is.len(), should.len()));
@@ -34,7 +34,7 @@ impl Differences {
         }
     }
 
-    /// Compares two matrices to `factor` of the reference's largest entry; none is a difference.
+    /// Compares a matrix with a reference to `factor` times its largest entry; a missing matrix is a difference.
     pub fn compare_matrix(&mut self, place: &str, is: &Rows<'_>, should: &DMatrix<f64>, factor: f64) {
         let is = is.as_deref().unwrap_or_default();
         if is.len() != should.nrows() || is.iter().any(|row| row.len() != should.ncols()) {
@@ -50,17 +50,16 @@ impl Differences {
     }
 }
 
-/// Whether both have as many numbers, the same to an absolute tolerance; a NaN is within none.
+/// Whether both have the same length and their entries differ by at most `tolerance`; a NaN always differs.
 pub fn near(is: &[f64], should: &[f64], tolerance: f64) -> bool {
     is.len() == should.len() && is.iter().zip(should).all(|(is, should)| (is - should).abs() <= tolerance)
 }
 
-/// Largest magnitude.
+/// The largest magnitude; 0 for no numbers.
 pub fn largest(numbers: &[f64]) -> f64 {
     numbers.iter().fold(0.0, |size, number| size.max(number.abs()))
 }
 
-/// The rows as a matrix.
 pub fn matrix(rows: &[Vec<f64>]) -> DMatrix<f64> {
     DMatrix::from_fn(rows.len(), rows.first().map_or(0, Vec::len), |i, j| rows[i][j])
 }

@@ -1,4 +1,4 @@
-//! Robots that studies ask about.
+//! Robots for studies.
 
 use heelstrike::Robot;
 use heelstrike::description::Description;
@@ -7,7 +7,7 @@ use heelstrike::robot::Reduction;
 use heelstrike::state::Defaults;
 use heelstrike::sweep::{RobotStudy, Study};
 
-/// A robot and what a study may ask of it.
+/// A robot with the description from which a study varies it.
 pub struct Subject {
     pub name: &'static str,
     pub description: Description,
@@ -23,7 +23,7 @@ impl Subject {
         Self { name, description, reduction, robot }
     }
 
-    /// The model of a study.
+    /// The study of this robot.
     pub fn model<'a>(&'a self, study: &'a Study<'a>) -> RobotStudy<'a> {
         RobotStudy {
             study,

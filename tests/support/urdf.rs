@@ -2,12 +2,12 @@
 
 use std::fmt::Display;
 
-/// A robot of these elements.
+/// The URDF of a robot with these elements.
 pub fn robot(elements: &[String]) -> String {
     format!("<robot name=\"mechanism\">\n{}</robot>\n", elements.concat())
 }
 
-/// A robot of one link of 2 kg, its CoG at its origin.
+/// The URDF of a robot of one link of 2 kg with its CoG at its origin.
 pub fn body(moment: f64, collisions: &str) -> String {
     robot(&[link("body", 2.0, [0.0; 2], moment, collisions)])
 }
@@ -30,7 +30,7 @@ pub const POINT: &str = "sphere radius=\"0\"";
 /// How a joint moves.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Axis {
-    /// About the plane's normal, times this.
+    /// About the plane's normal, times this sign.
     Revolute(f64),
     /// Along this direction.
     Prismatic([f64; 2]),
@@ -39,10 +39,10 @@ pub enum Axis {
     OffPlane,
 }
 
-/// About the plane's normal.
+/// A revolute joint about the plane's normal.
 pub const HINGE: Axis = Axis::Revolute(1.0);
 
-/// A joint, with `more` of its elements.
+/// A joint with wide limits and with `more` elements.
 pub fn joint(name: impl Display, axis: Axis, ends: [&str; 2], [x, z]: [f64; 2], more: &str) -> String {
     let (kind, axis) = match axis {
         Axis::Revolute(sign) => ("revolute", format!("0 {sign} 0")),
