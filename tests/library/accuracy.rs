@@ -1,5 +1,5 @@
-//! The stiff and extreme suite: every case answers with its condition or refuses with its reason, and M and G keep
-//! their digits against a reference of at least 256 bits.
+//! The suite of stiff and extreme cases: every case is answered with its condition number or refused with its reason,
+//! and M and G keep their digits, compared with a reference of at least 256 bits.
 
 use crate::support::impact::{outcomes, robot, velocities_after};
 use crate::support::urdf::{self, HINGE, joint, link};
@@ -12,12 +12,12 @@ use heelstrike::{Reason, Robot};
 use std::collections::BTreeSet;
 use std::time::Duration;
 
-/// A single run of each method: errors are looked at here, never times.
+/// A single run of each method, because the tests look at errors and not at times.
 const ONCE: Budget = Budget { time: Duration::ZERO, samples: 1 };
 
-/// What f64 must keep of every entry where the condition allows.
+/// The error of an entry, relative to its scale, that f64 may have if M is well conditioned.
 const DIGITS: f64 = 1e-12;
-/// What it must keep at the worst, by the condition.
+/// The error that f64 may have per unit of the condition number of M.
 const DIGITS_BY_CONDITION: f64 = 1e-15;
 
 fn walk(choose: impl Fn(&Case) -> bool) {
@@ -42,7 +42,7 @@ fn assert_answered(study: &CaseStudy) {
     let answer = study.answer.as_ref().unwrap_or_else(|| panic!("{name} must be answered"));
     assert!(answer.outcomes > 0, "{name}: {answer:?}");
     assert!(answer.margin.is_none_or(f64::is_finite), "{name}: {answer:?}");
-    // A condition, or a rank that explains its absence.
+    // G has a condition number or does not have full rank.
     match study.condition.delassus {
         Some(condition) => assert!(condition.is_finite() && condition >= 1.0 - 1e-9, "{name}: {condition}"),
         None => assert!(answer.rank < Some(2 * study.contacts), "{name}: {answer:?}"),
@@ -67,7 +67,7 @@ fn assert_answered(study: &CaseStudy) {
         .methods
         .iter()
         .find(|method| method.number == "f64" && method.factorization == Some(Factorization::ArticulatedBodies));
-    // Links of one size are no difficulty to the recursion, however many are in a chain.
+    // The recursion keeps them in every case: links of one size are no difficulty to it, however many are in a chain.
     let error = recursion.and_then(|method| method.error?.delassus).expect("computed");
     assert!(error <= DIGITS, "{name}: {error:e} by articulated bodies");
 }
@@ -82,7 +82,7 @@ fn every_other_case_keeps_its_digits() {
     walk(|case| !case.name.starts_with("chain of 1000"));
 }
 
-/// The energy of all bodies after the impact, link by link, is what the contacts left of it.
+/// Asserts that the kinetic energy after each outcome, summed link by link, is the energy before minus `energy_loss`.
 fn assert_energy(name: &str, robot: &Robot, state: &State) -> Box<Impact> {
     let impact = Pipeline::new(robot, Options::default()).impact(state).expect("an answer");
     let (plan, mut configuration, mut workspace) =
@@ -104,10 +104,10 @@ fn velocities_keep_their_digits_in_chains() {
         let CaseSubject::State(subject) = &case.subject else { panic!("a state") };
         let impact = assert_energy(&case.name, &subject.0, &subject.1);
         let effort = impact.analyzed().expect("few contacts").effort;
-        // A straight chain has signs that are exactly zero.
+        // f64 decides most combinations, but a straight chain has signs that are exactly zero.
         assert!(2 * effort.bound > effort.combinations(), "{}: {effort:?}", case.name);
         for (outcome, after) in outcomes(&impact).iter().zip(velocities_after(&impact)) {
-            // The first contact is the root's own origin.
+            // The first contact is at the root's origin and moves as the base does.
             for (base, contact) in after.iter().zip(outcome.velocity_after[0]) {
                 assert!((base - contact).abs() <= DIGITS, "{}: {base} {contact}", case.name);
             }
@@ -132,7 +132,7 @@ fn mimic_joints_take_their_part_of_the_impact() {
     assert_compared("mimic", &robot, &state);
 }
 
-/// Every method that knows mimic joints and loops keeps its digits, of M, G and the outcomes.
+/// Asserts that every method that supports mimic joints and loops keeps its digits of M, G and the outcomes.
 fn assert_compared(name: &str, robot: &Robot, state: &State) {
     let study = of_state(name, robot, state, &Options::default(), ONCE);
     assert!(study.answer.as_ref().is_some_and(|answer| answer.proven), "{name}: {:?}", study.refused);

@@ -1,7 +1,8 @@
-//! The order of modules that `src/lib.rs` and every `mod.rs` declare: a module uses only those declared above it.
+//! Checks the order of modules that `src/lib.rs` and every `mod.rs` declare: a module uses only modules declared above
+//! it.
 //!
-//! A module may also use what its ancestors define. Tests inside of modules are exempt. Paths count as they are written
-//! (`crate::`, `super::`), and a name that a `mod.rs` re-exports counts as the module that it comes from.
+//! A module may also use what its ancestors define. Unit tests inside modules are exempt. Paths count as they are
+//! written (`crate::`, `super::`). A name that a `mod.rs` re-exports counts as the module that it comes from.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -10,14 +11,14 @@ use std::path::Path;
 /// A module's path from the crate's root, such as `["impact", "analysis"]`.
 type ModulePath = Vec<String>;
 
-/// What the source of one module says.
+/// The parsed source of one module.
 #[derive(Default)]
 struct Module {
-    /// Its children in the order of their declarations.
+    /// Child modules in the order of their declarations.
     children: Vec<String>,
-    /// The names that it imports or re-exports, and where each comes from.
+    /// Imported and re-exported names, and the path of each.
     imports: BTreeMap<String, ModulePath>,
-    /// Every path that it writes, from the crate's root.
+    /// Every path in the source, from the crate's root.
     paths: Vec<ModulePath>,
 }
 
@@ -68,7 +69,7 @@ fn collect(folder: &Path, path: &mut ModulePath, sources: &mut BTreeMap<ModulePa
     }
 }
 
-/// The places where a module uses one that is declared below it.
+/// Finds the places where a module uses one that is declared below it.
 fn violations(sources: &BTreeMap<ModulePath, String>) -> BTreeSet<String> {
     let modules: BTreeMap<&ModulePath, Module> = sources.iter().map(|(path, text)| (path, parse(path, text))).collect();
     let mut found = BTreeSet::new();
@@ -88,7 +89,7 @@ fn violations(sources: &BTreeMap<ModulePath, String>) -> BTreeSet<String> {
     found
 }
 
-/// Follows imports of modules on the way, a few steps at most.
+/// Replaces imported and re-exported names in a path by their own paths, in at most four steps.
 fn resolved(path: &ModulePath, modules: &BTreeMap<&ModulePath, Module>) -> ModulePath {
     let mut path = path.clone();
     for _ in 0..4 {
@@ -104,7 +105,7 @@ fn resolved(path: &ModulePath, modules: &BTreeMap<&ModulePath, Module>) -> Modul
     path
 }
 
-/// The declarations, imports and paths of a module, without its comments and tests.
+/// Parses the declarations, imports and paths of a module, without its comments and tests.
 fn parse(own: &ModulePath, text: &str) -> Module {
     let text = text.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
     let lines = text.lines().map(|line| line.split("//").next().unwrap_or_default());
@@ -145,7 +146,7 @@ fn absolute(own: &ModulePath, path: &[String], children: &[String]) -> Option<Mo
     Some(base)
 }
 
-/// Every path of a tree such as `crate::{a::B, c}` at the start of `text`.
+/// Expands a tree such as `crate::{a::B, c}` at the start of `text` to its paths.
 fn expanded(text: &str) -> Vec<Vec<String>> {
     let text = text.trim_start();
     if let Some(list) = text.strip_prefix('{') {

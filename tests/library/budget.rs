@@ -1,4 +1,4 @@
-//! Budgets of work: what is open when one ends, and that it costs nothing where it is not needed.
+//! Time budgets: what stays open when one ends, and that usual states never read the clock.
 
 use crate::support::impact::{ramone, try_impact};
 use crate::support::nearly::nearly_dependent;
@@ -15,12 +15,12 @@ use std::time::Duration;
 
 thread_local!(static LOOKS: Cell<u32> = const { Cell::new(0) });
 
-/// Goes on by a second at each look.
+/// A clock that advances by one second at each reading.
 fn ticking() -> Duration {
     Duration::from_secs(LOOKS.replace(LOOKS.get() + 1).into())
 }
 
-/// A budget for so many looks at the clock, the first of which begins it.
+/// A budget of `count` readings of that clock; the first reading starts it.
 fn looks(count: u64) -> Budget {
     LOOKS.set(0);
     Budget { time: Duration::from_secs(count), clock: ticking }
@@ -42,7 +42,7 @@ fn what_a_budget_leaves_open_is_undecided() {
         assert_eq!((combinations, beyond_budget), (4_u64.pow(contacts as u32), true));
         let listed = outcomes.iter().filter(|outcome| !outcome.decided).count() as u64;
         assert!(listed <= undecided.min(100) && undecided <= combinations, "{listed} of {undecided}");
-        // It may be among those that are not listed.
+        // No slip may be one of the undecided outcomes that are not listed.
         assert!(no_slip_consistent != Some(false) || listed == undecided);
     }
 }

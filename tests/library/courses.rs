@@ -1,4 +1,4 @@
-//! Curves of outcomes along a parameter against single states, and the units of parameters.
+//! Curves of outcomes along a parameter, compared with single states, and the units of parameters.
 
 use crate::support::scaled::largest;
 use crate::sweep::command::straight;
@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 
 const MINIMALISTIC: &str = include_str!("../../urdf/minimalistic.urdf");
 
-/// Asks about the minimalistic walker against its leg angle.
+/// Calls `ask` with a study of the minimalistic walker over its leg angle.
 fn walk<T>(friction: Value, ask: impl FnOnce(&RobotStudy) -> T) -> T {
     let mut study = straight(None);
     study["parameters"]["alpha"] = json!({"from": 0.001, "to": 1.5, "steps": 40});
@@ -24,7 +24,7 @@ fn curves(model: &RobotStudy) -> (Survey, Vec<RegionCurves>) {
     (survey, curves)
 }
 
-/// Velocities, impulses.
+/// Contact velocities after the impact, and impulses.
 fn numbers(motion: &Motion) -> [Vec<f64>; 2] {
     [&motion.velocity_after, &motion.impulse].map(|pairs| pairs.concat())
 }
@@ -52,9 +52,9 @@ fn a_curve_goes_from_border_to_border() {
 
 #[test]
 fn straight_lines_stay_near_the_outcomes() {
-    // Off by less than half a pixel of 200; angles of a hundred.
+    // Half a pixel of 200, relative to the largest number; for angles half a pixel of 100, relative to a turn.
     const SEEN: f64 = 2.5e-3;
-    // A third, which is no place that was looked at.
+    // Where between two places a line is compared: not at their middle, where the refinement looked.
     const SHARE: f64 = 0.3;
     let line = |a: f64, b: f64| a + SHARE * (b - a);
     for friction in [json!("infinite"), json!(1), json!(10)] {
@@ -102,7 +102,7 @@ fn parameter_has_the_unit_of_its_numbers() {
         (still.clone(), json!({"mass": "p"}), Some("kg")),
         (still.clone(), json!({"inertia": "p + 1"}), Some("kg m²")),
         (still.clone(), json!({"com": [0, 0, "-p"]}), Some("m")),
-        // Not the parameter itself, or no unit, or two.
+        // No unit: no number is the parameter, up to its sign and a constant, or two such numbers have different units.
         (json!({"position": {"base": {"pitch": "2*p"}}}), json!({}), None),
         (json!({"position": {"base": {"pitch": "p^2"}}}), json!({}), None),
         (still, json!({"mass": "p", "inertia": "p"}), None),

@@ -1,4 +1,4 @@
-//! States from tables and results as tables: what is read, what is refused and where, and what is written.
+//! Tables of states and of results: what is read, what is refused and with which place, and what is written.
 
 use crate::support::impact::{outcomes, reduced, robot, velocities_after};
 use crate::support::urdf::{self, Axis, HINGE, POINT, collision, joint, link};
@@ -11,7 +11,7 @@ use heelstrike::{Defaults, Error, Friction, Robot, State};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// A knee, a point for a foot, and a box on the body that can touch at two corners.
+/// A body with a box that can touch at two corners, a knee, and a shin with a point foot.
 fn leg_urdf() -> String {
     urdf::robot(&[
         link("body", 2.0, [0.0; 2], 1.0, &collision([0.0; 2], r#"box size="0.4 0.1 0.2""#)),
@@ -24,7 +24,7 @@ fn leg() -> Robot {
     robot(&leg_urdf())
 }
 
-/// The states of a table whose every row is on a line of its own.
+/// Parses a table with one row per line.
 fn states(table: &[u8], robot: &Robot) -> Vec<Result<State, Error>> {
     let mut lines = table.split_inclusive(|&byte| byte == b'\n');
     let header = Header::read(lines.next().unwrap(), Form::Csv, robot, Rates::Columns, &[]).unwrap();
@@ -80,7 +80,7 @@ fn other_programs_tables_are_read() {
     }
 }
 
-/// The error as a person sees it.
+/// The error with its remedy.
 fn shown(error: &Error) -> String {
     let hint = error.remedy().map_or(String::new(), |hint| format!(" | {hint}"));
     format!("{error}{hint}")
@@ -142,7 +142,7 @@ fn headers_that_do_not_fit_are_refused() {
     insta::assert_snapshot!("headers", refusals);
 }
 
-/// A leg that can swing out of the plane, with a wheel that follows its knee; its base is a chain of three joints.
+/// A leg with one joint out of the plane and a wheel that mimics its knee, on a base that is a chain of three joints.
 fn hip() -> Robot {
     let [forward, up] = [[1.0, 0.0], [0.0, 1.0]].map(Axis::Prismatic);
     robot(&urdf::robot(&[
@@ -163,7 +163,7 @@ fn missing_columns_are_listed_by_name() {
         |record: &[u8], rates| Header::read(record, Form::Csv, &leg(), rates, &[]).unwrap().missing().join(" ");
     let all = "q_base_x q_base_pitch q_knee v_base_x v_base_z v_base_pitch";
     assert_eq!(missing(b"v_knee,q_base_z,tau_base_x,friction_needed,joint_friction", Rates::Columns), all);
-    // A stance gives the base's x and z, a quaternion its pitch, and the time the velocities.
+    // A stance replaces the base's x and z, a quaternion its pitch, and the time all velocities.
     assert_eq!(missing(b"v_knee,stance", Rates::Columns), "q_base_pitch q_knee v_base_pitch");
     let quaternion = b"time,q_knee,q_base_qw,q_base_qx,q_base_qy,q_base_qz";
     assert_eq!(missing(quaternion, Rates::Time), "q_base_x q_base_z q_base_y");
@@ -224,7 +224,7 @@ fn columns_of_the_base_are_not_those_of_joints() {
     }
 }
 
-/// A column of numbers has no word.
+/// A column of numbers cannot hold the word `infinite`.
 #[test]
 fn infinite_friction_is_a_word_or_a_number() {
     let found = states(b"q_knee,v_knee,friction\n0,0,inf\n0,0,infinite\n0,0,1e999\n", &leg());
@@ -243,7 +243,7 @@ fn broken_row_stays_out_of_the_next() {
     assert!(shown(&error).len() < 200, "{error}");
 }
 
-/// The rows that are written for a state, by column.
+/// The rows that are written for a state, by column, and its impact.
 fn rows(robot: &Robot, state: &State, options: Options) -> (Vec<BTreeMap<String, String>>, Box<Impact>) {
     let impact = Pipeline::new(robot, options).impact(state).unwrap();
     let (mut out, columns) = (Vec::new(), Columns::new(robot, &[], None, Layout::default()));
@@ -256,7 +256,7 @@ fn by_column(table: &[u8]) -> Vec<BTreeMap<String, String>> {
     csv::Reader::from_reader(table).deserialize().map(Result::unwrap).collect()
 }
 
-/// Each outcome has a row with every number of the result.
+/// Asserts that each outcome has a row with every number of the result.
 fn assert_rows(rows: &[BTreeMap<String, String>], impact: &Impact, contact: &str, velocity: &[&str]) {
     assert_eq!(rows.len(), outcomes(impact).len());
     let verdict = impact.analysis.as_ref().unwrap().verdict.to_string();
@@ -281,7 +281,7 @@ fn every_outcome_is_a_row_with_every_number() {
     assert_eq!((rows.len(), rows[0]["verdict"].as_str()), (1, "unique"));
     assert_rows(&rows, &impact, "shin", &[&base[..], &["v_after_knee"]].concat());
     assert_eq!(["mode_body", "mode_body/0", "p_body/1_n"].map(|column| rows[0][column].as_str()), [""; 3]);
-    // It leaves the ground, or jams.
+    // The block leaves the ground or jams.
     let (rows, impact) = block("1.7,0.4,infinite");
     assert!(rows.len() > 1);
     assert_rows(&rows, &impact, "block", &base);
@@ -370,7 +370,7 @@ fn foreign_columns_are_carried_beside_a_refusal() {
     assert_eq!(cell("error"), "line 7: v_knee: expected a number, found \"oops\"");
 }
 
-/// A state of the block, whose G is [[2, 1], [1, 2]], and its rows.
+/// The rows and the impact of a state of the block, whose G is [[2, 1], [1, 2]].
 fn block(row: &str) -> (Vec<BTreeMap<String, String>>, Box<Impact>) {
     let robot = robot(include_str!("../../urdf/block.urdf"));
     let state = states(format!("id,v_base_x,v_base_z,friction\nk,{row}\n").as_bytes(), &robot).pop().unwrap().unwrap();
@@ -382,10 +382,10 @@ fn a_border_has_what_is_zero_and_a_family_its_modes() {
     let found = |row: &str| -> Vec<[String; 3]> {
         block(row).0.iter().map(|row| ["border", "family", "families"].map(|column| row[column].clone())).collect()
     };
-    // Resting, it is not pressed; struck, it stops with less than all of its friction.
+    // At rest nothing presses the block, so that L_n = 0. Struck, it stops inside its friction cone.
     assert_eq!(found("0,0,0.5"), [["block: L_n = 0", "false", ""]]);
     assert_eq!(found("-0.5,-1,0.5"), [["", "false", ""]]);
-    // At friction 2 sliding loads the contact by just what brakes it: it stops, goes on, or anything between.
+    // At friction 2 a slide has L_t = -2 L_n, so that c_n = L_t + 2 L_n = 0: it stops, slides on, or anything between.
     let ends = [["block: |L_t| = mu L_n", "true", "slide+"], ["block: L_n = 0", "true", "slide+"]];
     assert_eq!(found("1,0,2"), ends);
 }

@@ -1,4 +1,4 @@
-//! What the example `lecture` claims of its biped and of Painleve's rod.
+//! Checks what the example `lecture` claims about its biped and about Painleve's rod.
 
 #[path = "../../examples/lecture/biped.rs"]
 mod biped;
@@ -22,7 +22,7 @@ fn borders_part_the_regions_of_the_map() {
     for cell in &map.cells {
         let above = jams.iter().min_by(|a, b| (a.0 - cell.theta).abs().total_cmp(&(b.0 - cell.theta).abs()));
         let &(theta, border) = above.expect("a curve");
-        // The curve is steep at its ends.
+        // Compares only cells near a point of the curve, but farther than 0.2 from it: the curve is steep at its ends.
         if (theta - cell.theta).abs() < 3e-3 && (border - cell.friction).abs() > 0.2 {
             let jams = matches!(cell.found, Some(rod::Kind::Two | rod::Kind::Nothing));
             assert_eq!(jams, cell.friction > border, "{cell:?}");

@@ -1,4 +1,5 @@
-//! Joints outside the limits of the robot's file: noted, or refused where that is asked for.
+//! Joints outside the limits of the robot's file, which are noted, or refused with `strict_limits`; other doubtful
+//! input.
 
 use crate::support::impact::{ramone, reduced, robot, try_impact};
 use crate::support::urdf::{self, Axis, HINGE, joint, link};
@@ -9,7 +10,7 @@ use heelstrike::{Friction, Pipeline, Robot, State};
 use serde_json::json;
 use std::fmt::Write;
 
-/// A body with the joint `hip`, whose limit is `limit`, and `calf`, which mimics it threefold.
+/// A body with the joint `hip`, which has this limit, and the joint `calf`, which mimics it with multiplier 3.
 fn limited(axis: Axis, limit: &str) -> Robot {
     let mimic = r#"<mimic joint="hip" multiplier="3"/>"#;
     let parts = [
@@ -22,7 +23,6 @@ fn limited(axis: Axis, limit: &str) -> Robot {
     robot(&urdf::robot(&parts))
 }
 
-/// Each state next to its notes.
 #[test]
 fn doubtful_angles_and_limits_are_noted() {
     let at = |hip: f64, pitch: f64| json!({"position": {"base": {"pitch": pitch}, "joints": {"hip": hip}}});
@@ -33,20 +33,20 @@ fn doubtful_angles_and_limits_are_noted() {
         (HINGE, within, -2.25, 0.0),
         (HINGE, within, -25.0, 0.0),
         (slide, within, 2.75, 0.0),
-        // As f32 has it, and beyond.
+        // Beyond the limit by the rounding of f32, which is not noted, and by more.
         (HINGE, within, f64::from(2.5_f32.next_up()), 0.0),
         (HINGE, within, 2.5 + 1e-5, 0.0),
         (HINGE, r#"lower="0" upper="0""#, 2.75, 0.0),
         (HINGE, r#"lower="2" upper="-2""#, 2.75, 0.0),
         (HINGE, r#"lower="x" upper="1""#, 2.75, 0.0),
-        // One end that is not given is 0.
+        // A missing end of a limit is 0.
         (HINGE, r#"upper="2""#, -0.5, 0.0),
         (HINGE, "", 2.75, 0.0),
         (HINGE, "", 30.0, -90.0),
-        // Wheels turn on and on, and simulators print many digits.
+        // Wheels make many turns, and simulators print angles with many digits: only whole numbers look like degrees.
         (HINGE, "", 30.01, 6.0),
         (slide, "", 30.0, 0.0),
-        // A base with legs does not.
+        // The base of a robot with legs does not turn so far.
         (HINGE, "", 6.0, -12.34),
     ] {
         let found = try_impact(&limited(axis, limit), Options::default(), at(hip, pitch)).expect("an answer").notes;
@@ -55,7 +55,7 @@ fn doubtful_angles_and_limits_are_noted() {
         writeln!(notes, "{axis:?} {limit}: {hip}, pitch {pitch}\n{found}").expect("a string takes all");
     }
     insta::assert_snapshot!(notes);
-    // Nor does a hip that carries a knee.
+    // Neither does a hip that carries a knee.
     let joints = json!({"left_hip": -28.65, "left_knee": 57.3});
     let state = json!({"position": {"base": {"z": 2}, "joints": joints}, "friction": 1});
     let notes = try_impact(&ramone(), Options::default(), state).expect("an answer").notes;

@@ -1,4 +1,4 @@
-//! One feature per module, through the library or as the command prints it, against cases worked by hand.
+//! One feature per module, through the library or as the command prints it, compared with cases worked out by hand.
 
 #[cfg(feature = "accuracy")]
 mod accuracy;

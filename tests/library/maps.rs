@@ -1,4 +1,4 @@
-//! Studies of two parameters: the areas and curves of a map against single states.
+//! Studies of two parameters: areas and curves of maps, compared with the answers to single states.
 
 use crate::support::random::Random;
 use crate::support::urdf::{body, collision};
@@ -12,7 +12,7 @@ const PDW: &str = include_str!("../../urdf/pdw.urdf");
 const MINIMALISTIC: &str = include_str!("../../urdf/minimalistic.urdf");
 const WORKERS: Workers<'static> = Workers { threads: 2, done: &|| () };
 
-/// The walker against its leg angle and its legs' inertia.
+/// A study of the walker over its leg angle and its legs' moment of inertia.
 fn inertia() -> Value {
     let mut study = straight(None);
     study["parameters"] = json!({"alpha": {"from": 0.001, "to": 1.5697, "steps": 33},
@@ -22,10 +22,10 @@ fn inertia() -> Value {
     study
 }
 
-/// The map of that study, found once for all tests of this file.
+/// The map of that study, computed once for all tests of this file.
 static INERTIA: LazyLock<Map> = LazyLock::new(|| with(PDW, &inertia(), 0, |model| Map::of(model, WORKERS)));
 
-/// Asks about the model of a study and its map.
+/// Calls `ask` with the model of a study and its map.
 fn with_map<T>(urdf: &str, study: &Value, ask: impl FnOnce(&RobotStudy, &Map) -> T) -> T {
     with(urdf, study, 0, |model| match Findings::of(model, WORKERS) {
         Findings::Map(map) => ask(model, &map),
@@ -33,7 +33,7 @@ fn with_map<T>(urdf: &str, study: &Value, ask: impl FnOnce(&RobotStudy, &Map) ->
     })
 }
 
-/// How often the loops of an area wind around a point: once inside of it, else not at all.
+/// The winding number of an area's loops about a point: 1 inside the area, 0 outside.
 fn winding(area: &Area, [x, y]: [f64; 2]) -> i32 {
     let mut turns = 0;
     for points in &area.loops {
@@ -49,10 +49,10 @@ fn winding(area: &Area, [x, y]: [f64; 2]) -> i32 {
     turns
 }
 
-/// Random points of the ranges lie within exactly one area, and have its regime except in a thin seam at its curves.
+/// Random points of the ranges lie in exactly one area, and have its regime except in a thin seam along its curves.
 #[test]
 fn points_lie_in_the_area_of_their_outcomes() {
-    // Where many areas meet.
+    // A study in whose map many areas meet.
     let mut many = straight(None);
     many["parameters"] = json!({"alpha": {"from": 0, "to": "pi/2", "steps": 20},
         "mu": {"from": 0, "to": 2, "steps": 20}});
@@ -68,7 +68,8 @@ fn points_lie_in_the_area_of_their_outcomes() {
             assert_eq!(winding(only, [x, y]), 1, "holes run the other way");
             wrong += usize::from(solver.regime(&[x, y]) != only.regime);
         }
-        // Curves are straight between points at most a sixty-fourth of the ranges apart.
+        // Curves are polylines with points at most 1/64 of the ranges apart, which leaves up to 0.2 % on the wrong
+        // side.
         assert!(wrong * 500 < count, "{wrong} of {count} points are not in the area of their outcomes");
     };
     with(PDW, &inertia(), 0, |model| check(model, &INERTIA));
@@ -104,7 +105,7 @@ fn curves_and_areas_have_what_turns_and_what_holds() {
     });
 }
 
-/// Where the velocity of a block's only contact passes zero on a circle, its area is known.
+/// The normal velocity of a block's only contact is zero on a circle, so that the size of the area inside is known.
 #[test]
 fn an_island_has_its_size() {
     for (radius, room) in [(0.03_f64, 2e-2), (0.1, 5e-3), (0.4, 1e-3)] {
@@ -126,8 +127,8 @@ fn an_island_has_its_size() {
     }
 }
 
-/// Of the curves along the border p = border(q) of a study how far points and middles of chords are from it, and the
-/// greatest p.
+/// For the curves along the border p = border(q) of a study: the largest distance of points in p, the largest distance
+/// of the middles of chords at right angles to them, and the largest p.
 fn along(study: &Value, urdf: &str, border: impl Fn(f64) -> f64) -> [f64; 3] {
     with_map(urdf, study, |_, map| {
         let mut off = [0.0_f64, 0.0, 0.0];
@@ -150,20 +151,20 @@ fn along(study: &Value, urdf: &str, border: impl Fn(f64) -> f64) -> [f64; 3] {
 fn curves_follow_bulges_and_keep_beside_thin_regions() {
     let range = json!({"from": 0, "to": 1, "steps": 2});
     let parameters = json!({"p": range, "q": range});
-    // The block sticks from friction 1 on: a tip that is narrower than a cell, and deeper than half its width.
+    // The block sticks at friction 1 or more: in a tip that is narrower than a cell, and deeper than half its width.
     let bulge = json!({"parameters": parameters, "state": {"velocity": {"base": {"x": 1, "z": -1}},
         "friction": "max(0, 1.32 - p - 400*(q - 0.508)^2)"}});
     let tip = |q: f64| 0.32 - 400.0 * (q - 0.508).powi(2);
     let [off, bent, most] = along(&bulge, include_str!("../../urdf/block.urdf"), tip);
     assert!(off < 1e-6 && bent < 1e-4 && (most - 0.32).abs() < 1e-4, "{off:e} {bent:e} {most}");
-    // Both legs touch in a band 1e-6 wide, along the same curve of the pitch.
+    // Both legs touch in a band 1e-6 wide about pitch = 0.3, which is p = 0.8 - 0.2 sin(20 q).
     let bend = json!({"parameters": parameters, "state": {"position": {"base": {"pitch": "p - 0.5 + 0.2*sin(20*q)"},
         "joints": {"hip": 0.6}}, "velocity": {"base": {"z": -1}}, "place": "lowest", "friction": 0.5}});
     let [off, bent, most] = along(&bend, MINIMALISTIC, |q| 0.8 - 0.2 * (20.0 * q).sin());
     assert!(off < 1e-5 && bent < 1e-4 && most > 0.9, "{off:e} {bent:e}");
 }
 
-/// A cube that rolls from edge to edge stands on both in a band of 1e-6 rad, which is no region of a map.
+/// A cube that rolls from edge to edge touches with both in a band of 1e-6 rad of pitch. A map leaves this band out.
 #[test]
 fn a_map_leaves_out_where_a_foot_rolls() {
     let range = |from, to| json!({"from": from, "to": to, "steps": 12});

@@ -1,10 +1,11 @@
-//! A pipeline keeps memory from answer to answer, and nothing else.
+//! A pipeline reuses memory between answers, but no answer depends on those before.
 
 use crate::support::impact::ramone;
 use heelstrike::pipeline::{Aspect, Options, Pipeline};
 use heelstrike::{Defaults, Friction, State};
 
-/// What each question leaves behind is what the next one does not have: contacts, a stance, a box, forces, notes.
+/// Questions that differ in contacts, stance, uncertainty, forces and notes, so that data left by one shows in the
+/// next.
 const QUESTIONS: [(Aspect, &str); 8] = [
     (Aspect::Impact, include_str!("../../examples/ramone_measured.json")),
     (Aspect::Impact, r#"{"position": {"base": {"z": 2}}, "velocity": {"base": {"x": 1}}}"#),
@@ -33,7 +34,7 @@ fn answers_do_not_depend_on_those_before() {
     };
     let mut kept = Pipeline::new(&robot, options.clone());
     let (mut answered, mut refused) = (0, 0);
-    // Each follows each other one.
+    // Every ordered pair of questions.
     for (aspect, text) in QUESTIONS.iter().flat_map(|first| QUESTIONS.iter().flat_map(move |next| [first, next])) {
         let found = ask(&mut kept, *aspect, text);
         let expected = ask(&mut Pipeline::new(&robot, options.clone()), *aspect, text);

@@ -1,5 +1,5 @@
-//! What once went wrong, each with what it should be; found by reviews, by fuzzing and by comparison with an exact
-//! solver.
+//! Regressions: cases that were once answered wrongly, with their right answers. Reviews, fuzzing and comparison with
+//! an exact solver found them.
 
 use crate::support::impact::{impact, ramone, robot, try_impact};
 use crate::support::urdf::{self, HINGE, POINT, collision, joint, link};
@@ -29,7 +29,7 @@ fn near(found: f64, expected: f64) -> bool {
     (found - expected).abs() < 1e-13
 }
 
-/// A body on two legs that end in flat feet, 0.2 m long, of which the left one is 0.3 m ahead.
+/// A body on two legs with flat feet 0.2 m long, the left one 0.3 m ahead of the body, the right one 0.3 m behind.
 fn flat_footed() -> Robot {
     let leg = |name: &str, x: f64| {
         let foot = collision([0.0; 2], r#"box size="0.2 0.1 0.05""#);
@@ -56,7 +56,7 @@ fn free_tangential_impulses_earn_no_pressure() {
     let found = solve(&delassus, [[6., -3.], [6., -1.]], [Friction::Infinite; 2], [0.25, 0.5]);
     assert_eq!(modes(&found), [[Separate, Stick]]);
     let [_, l] = found.outcomes[0].impulse[..] else { panic!("two contacts") };
-    // Rounding of a few operations on numbers below a hundred.
+    // `near` allows for rounding of a few operations on numbers below a hundred.
     assert!(near(l[0], -2.0 / 23.0) && near(l[1], 1.0 / 46.0), "{l:?}");
 }
 
@@ -70,7 +70,7 @@ fn a_redundant_impulse_is_the_least() {
     }
 }
 
-/// Within cones of 1e-12 the search begins at impulses of 1e15, and pairs of f64 left 3e-6 of the impulse to rounding.
+/// In friction cones of 1e-12 the search starts at impulses of 1e15; double-double then left a relative error of 3e-6.
 #[test]
 fn impulse_in_thin_cones_keeps_its_digits() {
     let mut delassus = [0.0; 36];
@@ -78,19 +78,19 @@ fn impulse_in_thin_cones_keeps_its_digits() {
         (delassus[row * 6 + column], delassus[column * 6 + row]) = (entry, entry);
     }
     let analysis = solve(&delassus, [[0.0, 0.0], [0.0, -3.0], [3.0, 3.0]], [mu(1e-12); 3], [0.0; 3]);
-    // Only n of contact 1 presses without a cost: n_1 = 3 + t_2 + n_2 with |t_2| <= 1e-12 n_2.
+    // n_1 = 3 + t_2 + n_2 with |t_2| <= 1e-12 n_2: the shortest impulse has n_1 alone.
     assert_eq!(analysis.outcomes[0].impulse, [[0.0, 0.0], [0.0, 3.0], [0.0, 0.0]]);
 }
 
-/// Where contacts move a body 1e30 times less than others, 256 bits settled the signs and left 3e-9 of the impulse to
-/// rounding.
+/// One contact moves the body 1e30 times less than the others: 256 bits decided the signs, but left a relative error of
+/// 3e-9 in its impulse.
 #[test]
 fn an_impulse_of_a_light_contact_keeps_its_digits() {
     let jacobian = [[-3.0, -1.0], [1.5777218104420236e-30, 4.733165431326071e-30], [-2.0, -2.0], [-2.0, -2.0]];
     let rows = jacobian.as_flattened();
     let delassus: Vec<f64> = rows.iter().flat_map(|a| rows.iter().map(move |b| a * b)).collect();
     let analysis = solve(&delassus, jacobian.map(|row| row.map(|entry| -3.0 * entry)), [mu(1.6e-5); 4], [0.0; 4]);
-    // Contact 1 alone pushes forward, and its impulse is the shortest on the edge of its cone: J L = 3.
+    // Only contact 1 pushes forward. Its shortest impulse is on the edge of its friction cone, with J L = 3.
     let [tangential, normal] = jacobian[1];
     let expected = 3.0 / (normal + 1.6e-5 * tangential);
     let found = analysis.outcomes[0].impulse[1];
@@ -101,7 +101,7 @@ fn an_impulse_of_a_light_contact_keeps_its_digits() {
 /// A plank slides on two pairs of supports; how they share the load decides how much they brake it.
 #[test]
 fn ends_of_a_family_that_are_close_are_two() {
-    // Mass and moment 1, supports at 1 below the CoG.
+    // Mass and moment of inertia 1, supports 1 below the CoG.
     let jacobian: Vec<Vec<f64>> =
         [-2.0, -1.0, 1.0, 2.0].iter().flat_map(|&x| [vec![1.0, 0.0, -1.0], vec![0.0, 1.0, x]]).collect();
     let masses = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|row| row.to_vec());
@@ -135,11 +135,11 @@ fn a_twin_without_impulse_is_recognized() {
 
 #[test]
 fn ill_conditioned_matrix_keeps_its_digits() {
-    // Two bodies, 2^-30 apart in one entry; solved by hand: t rows decouple, and n rows are [[a, -b], [-b, b + d]].
+    // By hand: the t rows decouple; the n rows are [[a, -b], [-b, b + d]] with a = (1 + 2^-29) b and d = 2^-16.
     let (a, b, d) = (393_216.000_732_421_9, 393_216.0, 0.000_015_258_789_062_5);
     let delassus = [786_432., 0., 0., 0., 0., a, 0., -b, 0., 0., 786_432., 0., 0., -b, 0., b + d];
     let found = solve(&delassus, [[0., 0.], [0., -4.]], [mu(0.25); 2], [0.0; 2]);
-    // G L = (0, 4): L_1 = 4 b / det, L_2 = 4 a / det with det = a (b + d) - b^2, taken with exact entries.
+    // G L = (0, 4): L_1 = 4 b / det, L_2 = 4 a / det with det = a (b + d) - b^2, computed without cancellation.
     let det = (a - b) * b + a * ((b + d) - b);
     let [first, second] = [found.outcomes[0].impulse[0][1], found.outcomes[0].impulse[1][1]];
     assert!((first / (4.0 * b / det) - 1.0).abs() < 1e-14, "{first}");
@@ -148,10 +148,10 @@ fn ill_conditioned_matrix_keeps_its_digits() {
 
 #[test]
 fn friction_at_the_end_of_f64_has_signs_and_margins() {
-    // The pivot of a slide overflows, which left no impulse and with it an outcome.
+    // The pivot of a slide overflows, with which outcomes were wrong and yet proven.
     let found = solve(&[1., 3., 3., 9.], [[-2., 1.]], [mu(1e308)], [0.0]);
     assert_eq!((found.verdict, found.proven), (Verdict::NoImpact, true));
-    // The cone is all of the half-plane above: the margin is that of L_n sqrt(G_nn) = 0.1 / sqrt(0.5).
+    // The cone is the half-plane L_n >= 0, so that the margin is the slack L_n sqrt(G_nn) = 0.1 / sqrt(0.5).
     let found = solve(&[1., 0., 0., 0.5], [[1., -0.1]], [mu(1.7e308)], [0.0]);
     assert!(found.outcomes[0].margin.is_some_and(|margin| near(margin, 0.1 / 0.5_f64.sqrt())), "{found:?}");
 }
@@ -160,7 +160,7 @@ fn friction_at_the_end_of_f64_has_signs_and_margins() {
 
 #[test]
 fn a_foot_at_rest_hides_no_velocity_into_the_ground() {
-    // The slide of the first contact divides by 1e-8, and leaves it without an impulse.
+    // The pivot of the first contact's slide is 1e-8; its impulse is zero.
     let delassus = [2., 0.99999999, 0., 0.3, 0.99999999, 1., 0.2, 0.4, 0., 0.2, 2., 0., 0.3, 0.4, 0., 2.];
     let before = vec![[0., 0.], [0., -0.4]];
     let problem = ContactProblem::new(delassus.to_vec(), before, vec![mu(1.0), mu(0.5)], vec![0.0; 2]).unwrap();
@@ -190,7 +190,7 @@ fn a_flat_foot_that_slides_along_takes_no_impulse() {
 
 #[test]
 fn a_speed_that_is_all_rounding_is_taken_as_rest() {
-    // Base and joint rates cancel at the foot to 1e-16 m/s.
+    // The rates of base and joints cancel at the foot, up to 1e-16 m/s.
     let state = |x: f64, z: f64| {
         format!(
             r#"{{"position": {{"base": {{"z": 0.60432}}, "joints": {{"left_hip": 0.3, "right_hip": 0.1}}}}, "friction": 0.6,
@@ -205,7 +205,7 @@ fn a_speed_that_is_all_rounding_is_taken_as_rest() {
     let [t, n] = at_its_word.velocity_before[0];
     assert!(t.abs() < 1e-15 && n.abs() < 1e-15, "all but rounding is gone: {t} {n}");
     assert_ne!([t, n], [0.0; 2], "or the case shows nothing");
-    // Of exactly these f64 rates the foot leaves the ground, by less than f64 resolves.
+    // With exactly these f64 rates the foot leaves the ground, more slowly than f64 resolves.
     let analysis = at_its_word.analysis.expect("one contact");
     assert_eq!((analysis.verdict, analysis.proven), (Verdict::NoImpact, true));
     assert_eq!(analysis.outcomes[0].modes, [Separate]);
@@ -223,19 +223,21 @@ fn a_speed_that_is_all_rounding_is_taken_as_rest() {
     assert_eq!((analysis.verdict, analysis.proven), (Verdict::NoImpact, true));
     assert_eq!(analysis.outcomes[0].modes, [Stick]);
 
-    // With eight decimals it rests to some 1e-8 m/s; 4e-7 m/s are no rounding of these.
+    // Rates of eight decimals leave some 1e-8 m/s, which is rest to their digits; 4e-7 m/s are more than their
+    // rounding.
     let printed = |number: f64| (number * 1e8).round() / 1e8;
     let rests = |state: &str| impact(&ramone(), state).resting[0];
     assert!(rests(&state(printed(-x), printed(-z))));
     assert!(!rests(&state(printed(-x + 4e-7), printed(-z))));
-    // What is measured is not at rest, but somewhere in its box.
+    // With an uncertainty the foot is not at rest: its velocity may be anywhere in the box.
     assert!(!rests(&nulled.replacen('{', r#"{"uncertainty": {"velocity": 1e-3}, "#, 1)));
 }
 
 #[test]
 fn digits_explain_only_what_nearly_cancels() {
-    // 1 m below the base, x and pitch rate cancel but for `slip`, and the terms add up to 2 m/s and more. The pitch is
-    // known to half a decimal place of x: 0.05 rad, with which the foot may move at 0.05 m/s.
+    // 1 m below the base, the rates of x and pitch cancel except for `slip`; the terms add up to 2 m/s and more. The
+    // pitch is known to half a decimal place of x, 0.05 rad, with which the foot may move at 0.05 m/s. Yet digits
+    // explain no more than 1e-4 of the terms.
     let rests = |slip: f64| {
         let state = format!(
             r#"{{"position": {{"base": {{"x": 12345.6, "z": 1, "pitch": 0}}}}, "friction": 0.5,
@@ -260,7 +262,7 @@ fn a_robot_that_cannot_move_answers() {
     assert_eq!(robot.base(), Base::Fixed);
     let found = impact(&robot, r#"{"held": ["j"]}"#);
     assert_eq!(found.analysis.expect("one contact").verdict, Verdict::NoImpact);
-    // Held against the ground, the driven foot slides; nothing can stop it.
+    // The braked joint keeps its rate, so that nothing can stop the foot: it slides.
     let driven = impact(&robot, r#"{"held": ["j"], "velocity": {"joints": {"j": 1.0}}}"#);
     let analysis = driven.analysis.expect("one contact");
     assert_eq!(analysis.rank, Some(0));
@@ -285,7 +287,7 @@ fn matrices_within_the_range_keep_their_digits() {
         ContactProblem::new(delassus.to_vec(), vec![[0.1, -1.0]], vec![mu(0.7)], vec![0.0])
     };
     assert!(scaled(1e-160).is_err() && scaled(1e154).is_err());
-    // G_nt L_t + G_nn L_n = 1 on the edge L_t = -0.7 L_n: L_n = 1 / (1 - 0.35).
+    // Sticking: 3 L_t + 0.5 L_n = -0.1 and 0.5 L_t + L_n = 1, in parts of 1 / `unit`, give `expected`.
     for unit in [1e-110, 1.0, 1e110] {
         let found = analyze(&scaled(unit).expect("within the range"), ListedRejections::Nothing).expect("one contact");
         let sticking = found.outcomes[0].impulse[0];
@@ -295,8 +297,8 @@ fn matrices_within_the_range_keep_their_digits() {
     }
 }
 
-/// The change by the impulse was taken from the sum with a velocity next to which it vanishes, and the contact was
-/// shown to separate and to press at once.
+/// The velocity change by the impulse was taken from its sum with a velocity next to which it vanishes. The contact was
+/// then proven both to separate and to press.
 #[test]
 fn an_impulse_is_not_lost_beside_a_great_velocity() {
     let state = r#"{"friction": 0.5, "stance": "right_foot",
@@ -308,7 +310,7 @@ fn an_impulse_is_not_lost_beside_a_great_velocity() {
     assert_eq!(analysis.index_sum, Some(1));
 }
 
-/// Heights were taken to be rounded as the distance is: whatever the depth, far away every foot touched.
+/// The rounding of heights was taken as that of the distance, so that far away every foot touched at any depth.
 #[test]
 fn a_far_base_does_not_change_which_feet_touch() {
     let block = block();
@@ -324,7 +326,7 @@ fn a_far_base_does_not_change_which_feet_touch() {
     assert!(lost.contains("so far from the world's origin"), "{lost}");
 }
 
-/// Without a contact nobody asked whether the velocity after the impulse is a number.
+/// Without a contact, the velocity after the applied impulse was not checked to be finite.
 #[test]
 fn an_impulse_beyond_all_numbers_is_refused() {
     let state = r#"{"friction": 1, "position": {"base": {"z": 9}}, "impulse": [{"link": "block", "offset": [9, 0, 0], "vector": [0, 1e308]}]}"#;

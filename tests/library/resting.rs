@@ -1,5 +1,5 @@
-//! Contacts that rest but for rounding, and others that depend on them: a state whose numbers are exact has the outcomes
-//! of the same state with its rates off by less than f64 resolves.
+//! Contacts that rest up to rounding, and contacts that depend on them: a state with exact rates has the same outcomes
+//! as the state with its rates off by less than f64 resolves.
 
 use crate::support::impact::{impact, is_proven, modes, robot, try_impact};
 use crate::support::mechanism::{point, turned};
@@ -19,8 +19,8 @@ fn an_exact_zero_is_not_noted() {
     assert_eq!((found.contacts.len(), &found.notes[..]), (1, &[][..]));
 }
 
-/// A slide on the world, one on it and an arm: three contacts on three degrees of freedom, of which the arm's point rests
-/// to 1.6e-16 m/s. The base cannot move with it.
+/// A slide on the world, a slide on that and an arm: three contacts on three degrees of freedom. The arm's point rests
+/// up to 1.6e-16 m/s. The fixed base cannot move with it.
 #[test]
 fn a_bolted_robot_strikes_beside_a_point_that_rests() {
     let robot = robot(&urdf::robot(&[
@@ -41,11 +41,12 @@ fn a_bolted_robot_strikes_beside_a_point_that_rests() {
     let found = impact(&robot, state);
     assert_eq!(found.resting, [false, false, true]);
     assert!(is_proven(&found));
-    // By an enumeration with linear programs.
+    // The expected modes come from an enumeration with linear programs.
     assert_eq!(modes(&found), [[Stick, Separate, SlideMinus]]);
 }
 
-/// A torso on two hinged legs at `rates` [x, z, pitch, left, right]; a point of the torso is between the feet.
+/// The state of a torso on two hinged legs with `rates` [x, z, pitch, left, right]; a point of the torso is between the
+/// feet.
 fn squatting(rates: [f64; 5], friction: &Value) -> Value {
     let [x, z, pitch, left, right] = rates;
     json!({
@@ -55,7 +56,7 @@ fn squatting(rates: [f64; 5], friction: &Value) -> Value {
     })
 }
 
-/// Both feet rest while the torso comes down, which five degrees of freedom allow in one way.
+/// Both feet rest while the torso comes down, which five degrees of freedom allow in exactly one way.
 #[test]
 fn a_torso_lands_between_two_feet_that_rest() {
     let robot = robot(&urdf::robot(&[
@@ -80,7 +81,8 @@ fn a_torso_lands_between_two_feet_that_rest() {
     }
 }
 
-/// Two points rest by the speed that is given although their body turns: then the body rests, and all of its points.
+/// The given `resting_speed` puts two points at rest although their body turns: the body then rests with all its
+/// points.
 #[test]
 fn two_points_at_rest_hold_their_body() {
     let robot = robot(&urdf::body(0.0625, ""));
@@ -94,7 +96,7 @@ fn two_points_at_rest_hold_their_body() {
     assert!(is_proven(&found) && found.analysis.is_some_and(|analysis| analysis.verdict == Verdict::NoImpact));
 }
 
-/// A foot of two points rests, and nothing else could move; but a joint that keeps its rate swings the other leg.
+/// A foot with two contacts rests, while the braked hip keeps its rate and swings the other leg.
 #[test]
 fn a_held_joint_swings_a_leg_over_a_foot_at_rest() {
     let robot = robot(&urdf::robot(&[
@@ -109,7 +111,7 @@ fn a_held_joint_swings_a_leg_over_a_foot_at_rest() {
         "contacts": [point("stand", [-0.1, -0.98]), point("stand", [0.1, -1.0]), point("leg", [0.0, -reach])],
     });
     let found = impact(&robot, state);
-    // The leg's point moves about the hip.
+    // The leg's point moves about the hip at 1 rad/s.
     let moving = [-reach * 0.5_f64.cos(), -reach * 0.5_f64.sin()];
     for (contact, expected) in found
         .contacts
@@ -123,7 +125,8 @@ fn a_held_joint_swings_a_leg_over_a_foot_at_rest() {
     assert!(is_proven(&found) && found.analysis.is_some_and(|analysis| analysis.verdict == Verdict::Unique));
 }
 
-/// The root rests as it is given; that the loop is closed moves it by some 1e-18 m/s.
+/// The root is given at rest. Closing the loop changes its velocity by some 1e-18 m/s, and it must still count as at
+/// rest.
 #[test]
 fn what_rests_as_given_rests_next_to_a_loop() {
     let robot = robot(&urdf::robot(&[
@@ -175,7 +178,8 @@ fn flat_footed() -> Robot {
     robot(&urdf::robot(&parts))
 }
 
-/// At angles of hip and knee of each leg, and as many rates, with the feet level: as many digits are kept as decimals say.
+/// The state with these angles and rates of hip and knee of each leg; ankles keep the feet level, rounded to
+/// `decimals`.
 fn level(angles: [[f64; 2]; 2], rates: [[f64; 2]; 2], decimals: i32) -> Value {
     let rounded = |number: f64| (number * 10_f64.powi(decimals)).round() / 10_f64.powi(decimals);
     let part = |numbers: [[f64; 2]; 2], pitch: f64| {
@@ -189,7 +193,8 @@ fn level(angles: [[f64; 2]; 2], rates: [[f64; 2]; 2], decimals: i32) -> Value {
     json!({"position": part(angles, 0.05), "velocity": part(rates, 1.04), "friction": 0.8})
 }
 
-/// Of rates that cancel in decimals f64 leaves some 1e-17 rad/s, of which J v of the other corner may round to 0.
+/// Rates that cancel in decimals sum to some 1e-17 rad/s in f64, with which J v of the sole's other corner may round to
+/// 0.
 #[test]
 fn the_whole_sole_stands_with_its_stance() {
     let robot = flat_footed();
@@ -199,7 +204,7 @@ fn the_whole_sole_stands_with_its_stance() {
         let [own, other, rates] = [(); 3].map(|()| [hundredth(), hundredth()]);
         let mut state = level([own, other], [rates, [0.85, 1.63]], 2);
         state["stance"] = json!("left_foot");
-        // In some poses the other leg is in the ground.
+        // Skips poses in which the other leg is in the ground.
         let Ok(found) = try_impact(&robot, Options::default(), &state) else { continue };
         answered += 1;
         assert_eq!(found.contacts.len(), 2, "{state}");
@@ -210,14 +215,14 @@ fn the_whole_sole_stands_with_its_stance() {
     assert!(answered > 50, "{answered}");
 }
 
-/// Both stand, but the digits of the pose lift one of them, which no rate says; and noise moves the other.
+/// Both feet are meant to stand. The digits of the pose lift one of them, or noise of the rates moves one.
 #[test]
 fn feet_that_nearly_stand_are_noted() {
     let robot = flat_footed();
     let standing = level([[0.3, -0.6], [0.5, -1.0]], [[0.0; 2]; 2], 2);
     let with = |knee: f64, rate: f64| {
         let mut state = standing.clone();
-        // As long as the other leg, to 2e-5 m.
+        // Makes the right leg as long as the left one, to 2e-5 m.
         let long = 0.4 * (0.35_f64.cos() + 0.25_f64.cos());
         let hip = (long / 0.8).acos();
         state["position"]["joints"]["right_hip"] = json!(hip - 0.05);
@@ -234,7 +239,7 @@ fn feet_that_nearly_stand_are_noted() {
     assert!(noted(&noisy, "_foot/0 moves at ") && noted(&noisy, "if it stands"), "{:?}", noisy.notes);
 }
 
-/// Two legs that differ in the last digits of their hips, as exporters write them.
+/// Two legs whose hips differ in height in the last digits, as exporters write them.
 #[test]
 fn feet_at_the_same_place_except_for_last_digits_are_noted() {
     let leg = |side: &str, height: f64| {
@@ -267,7 +272,7 @@ fn a_slide_that_strikes_by_rounding_is_noted() {
         (normal, found.notes.iter().any(|note| note.contains("rounding decides whether it strikes")))
     };
     let (carried, _) = noted(0.0);
-    // By units in the last place of what the turn gives the foot.
+    // Changes z by units in the last place of the velocity that the turn gives the foot.
     let beside = (1..9).map(|units| noted(-carried * (1.0 + f64::from(units) * f64::EPSILON)));
     let (own, is_noted) = beside.into_iter().find(|(own, _)| *own != 0.0).expect("more than rounding");
     assert!(own.abs() < 1e-15 && is_noted, "{own}");
