@@ -1,4 +1,4 @@
-//! What the root is, and where the robot begins.
+//! How the root is attached, and with which link the robot begins.
 
 use super::*;
 use crate::support::impact::try_impact;
@@ -10,12 +10,12 @@ const Y: (&str, &str) = ("prismatic", "0 1 0");
 const Z: (&str, &str) = ("prismatic", "0 0 1");
 const FIXED: (&str, &str) = ("fixed", "1 0 0");
 
-/// How the root is attached, the body that the robot begins with, and its joints.
+/// The kind of base, the first body, and the joints.
 fn found(robot: &Robot) -> (Base, &str, Vec<&str>) {
     (robot.base(), &robot.bodies()[0].name, names(robot))
 }
 
-/// The chain with a root of this name.
+/// Renames the root of a chain to `world`.
 fn world(text: &str) -> String {
     text.replace("\"a\"", "\"world\"")
 }
@@ -28,23 +28,24 @@ fn root_floats_by_its_mass_and_joints() {
     let fixed = chain(&[0.0, 1.0, 1.0], &[FIXED, PITCH]);
     let forked = chain(&[0.0, 1.0, 1.0], &[PITCH, PITCH]).replace("<parent link=\"b\"/>", "<parent link=\"a\"/>");
     for (text, expected, kg, because) in [
-        // However little it weighs.
+        // A root with mass, however little.
         (chain(&[0.001, 1.0], &[PITCH]), (Base::Floating, "a", vec!["j"]), 1.001, Some(mass)),
-        // Massless by itself, but fixed to what has mass; a joint that is frozen fixes as well.
+        // Massless roots to which links with mass are fixed, by a fixed joint or a frozen one.
         (fixed.clone(), (Base::Floating, "a", vec!["k"]), 2.0, Some(fixed_to)),
         (chain(&[0.0, 1.0, 1.0], &[ROLL, PITCH]), (Base::Floating, "a", vec!["k"]), 2.0, Some(fixed_to)),
-        // A rail, a single hinge, two of them.
+        // Massless roots that carry the robot by a rail, by one hinge and by two.
         (chain(&[0.0, 1.0, 1.0], &[X, PITCH]), (Base::Fixed, "a", vec!["j", "k"]), 2.0, Some(alone)),
         (chain(&[0.0, 1.0], &[PITCH]), (Base::Fixed, "a", vec!["j"]), 1.0, Some(alone)),
         (forked, (Base::Floating, "a", vec!["j", "k"]), 2.0, Some(several)),
-        // Incomplete: no pitch, two slides along one line, mass on the way.
+        // Incomplete chains of a base: without pitch, with two slides along one line, with mass on the way.
         (chain(&[0.0, 0.0, 1.0], &[X, Z]), (Base::Fixed, "a", vec!["j", "k"]), 1.0, Some(alone)),
         (chain(&[0.0, 0.0, 0.0, 1.0], &[X, X, PITCH]), (Base::Fixed, "a", vec!["j", "k", "l"]), 1.0, Some(alone)),
         (chain(&[0.0, 0.1, 0.0, 1.0], &[X, Z, PITCH]), (Base::Fixed, "a", vec!["j", "k", "l"]), 1.1, Some(alone)),
-        // A root of this name is bolted, with what is fixed to it, unless a whole chain frees it.
+        // A root named `world` is bolted, with what is fixed to it, unless a complete chain frees it.
         (world(&fixed), (Base::Fixed, "world", vec!["k"]), 1.0, Some("the root is named world")),
         (world(&chain(&[5.0, 0.0, 0.0, 1.0], &[X, Z, PITCH])), (Base::Floating, "d", vec![]), 1.0, None),
-        // A whole chain in three dimensions: the yaw behind the pitch is frozen, so that the root is the link between.
+        // A complete chain in three dimensions: the yaw behind the pitch is frozen, so that the base is the link
+        // between them.
         (
             chain(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 2.0, 1.0], &[X, Y, Z, ROLL, PITCH, YAW, PITCH]),
             (Base::Floating, "f", vec!["p"]),
@@ -84,8 +85,8 @@ fn a_whole_chain_is_the_base_itself() {
 
 #[test]
 fn a_turned_chain_keeps_the_axes_of_the_files_root() {
-    // The last joint's frame is turned by a quarter about z, so that its own x axis is the root's y; the torso's CoG,
-    // at (0, -0.3, 0.2) there, lies at x = 0.3.
+    // The last joint's frame is turned by a quarter turn about z, so that its x axis is the root's y. The torso's CoG,
+    // at (0, -0.3, 0.2) in it, is at x = 0.3.
     let text = chain(&[0.0, 0.0, 0.0, 2.0], &[X, Z, ROLL])
         .replace(
             "<child link=\"d\"/><origin xyz=\"0 0 -1\"/>",
@@ -119,19 +120,19 @@ fn a_planar_joint_about_another_axis_slides() {
         assert_eq!(found(&robot), (Base::Fixed, "a", vec!["j", "k"]), "{axis}");
         assert_eq!(robot.joints()[0].axis, Axis::Prismatic { direction: along.into() }, "{axis}");
     }
-    // As the same mechanism of single joints.
+    // Single joints give the same robot.
     let yaw = ("revolute", "0 0 1");
     let single = load(&chain(&[0.0, 0.0, 0.0, 2.0, 1.0], &[X, ("prismatic", "0 1 0"), yaw, PITCH]));
     assert_eq!(found(&single), (Base::Fixed, "a", vec!["j", "m"]));
     assert_eq!(single.joints()[0].axis, of_base("0 0 1").joints()[0].axis);
-    // Nearly normal, it is meant in the plane.
+    // An axis near the plane's normal is taken as the normal.
     let robot = of_base("0 1 0.02");
     assert_eq!(found(&robot), (Base::Floating, "b", vec!["k"]));
     assert_eq!(
         only_caution(&robot),
         "planar, with an axis off the plane's normal, and taken as in the plane: j; straighten the axis"
     );
-    // Without an <axis> it is meant in the plane.
+    // Without an <axis> the joint is taken to move in the plane.
     let text = chain(&[0.0, 2.0, 1.0], &[("planar", "0 0 1"), PITCH]).replace("<axis xyz=\"0 0 1\"/>", "");
     assert_eq!(found(&load(&text)), (Base::Floating, "b", vec!["k"]));
 }
@@ -173,12 +174,12 @@ fn nearly_massless_chain_gets_a_caution() {
     assert_eq!(found(&robot), (Base::Floating, "a", vec!["j", "k", "l", "m"]));
     let caution = only_caution(&robot);
     assert!(caution.contains("\"j\", \"k\", \"l\"") && caution.contains("`base: fixed`"), "{caution}");
-    // Under a massless root it is the base all the same.
+    // Under a massless root the chain is the base nevertheless.
     let robot = load(&chain(&[0.0, 1e-6, 1e-6, 2.0, 1.0], &[X, Z, PITCH, PITCH]));
     assert_eq!(found(&robot), (Base::Floating, "d", vec!["m"]));
     let caution = only_caution(&robot);
     assert!(caution.contains("weigh 0.000002 kg, which is left out"), "{caution}");
-    // A carriage of 1 kg is none.
+    // With a carriage of 1 kg it is not.
     let robot = load(&chain(&[0.0, 1.0, 0.0, 2.0, 1.0], &[X, Z, PITCH, PITCH]));
     assert_eq!(found(&robot), (Base::Fixed, "a", vec!["j", "k", "l", "m"]));
 }

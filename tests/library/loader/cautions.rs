@@ -1,14 +1,14 @@
-//! Robots in which something is doubtful: which joints they keep, and what is said of them, word for word.
+//! Doubtful robots: which joints they keep, and their cautions, word for word.
 
 use super::*;
 use std::fmt::Write;
 
-/// tan 5 degrees.
+/// A pitch joint with its axis tilted by 5 degrees.
 const TILTED: (&str, &str) = ("revolute", "0 1 0.087488663525924");
 
 const INERTIA: &str = "<inertia ixx=\"0.01\" iyy=\"0.01\" izz=\"0.01\"/>";
 
-/// The joints and cautions of each case.
+/// Lists the joints and cautions of each case.
 fn listed<'a>(cases: impl IntoIterator<Item = (&'a str, Robot)>) -> String {
     let mut text = String::new();
     for (what, robot) in cases {
@@ -20,13 +20,13 @@ fn listed<'a>(cases: impl IntoIterator<Item = (&'a str, Robot)>) -> String {
     text
 }
 
-/// With more attributes of the frame of the joint that leads to this link.
+/// Adds attributes to the frame of the joint that leads to this link.
 fn framed(text: &str, child: &str, attributes: &str) -> String {
     let joint = format!("<child link=\"{child}\"/><origin");
     text.replace(&joint, &format!("{joint} {attributes}"))
 }
 
-/// With an element at the end of the first joint.
+/// Adds an element at the end of the first joint.
 fn with_element(text: &str, element: &str) -> String {
     text.replacen("</joint>", &format!("{element}</joint>"), 1)
 }
@@ -35,7 +35,7 @@ fn limited(text: &str, limits: &str) -> String {
     with_element(text, &format!("<limit {limits} effort=\"1\" velocity=\"1\"/>"))
 }
 
-/// As Digit has it: hinges behind an abduction that are tilted by 0.375 rad, to the left and to the right.
+/// Legs like those of Digit: hinges behind an abduction, tilted by 0.375 rad to the left and to the right.
 fn tilted_legs() -> String {
     let leg = |side: &str, tilt: f64| {
         let [abduct, hip, knee, ankle] = ["abduct", "hip", "knee", "ankle"].map(|name| format!("{side}_{name}"));
@@ -62,11 +62,11 @@ fn tilted_legs() -> String {
 fn joints_off_the_plane_are_named_with_a_remedy() {
     let tilted = massive(&[ROLL, TILTED, TILTED]);
     let mounted = framed(&massive(&[("fixed", "1 0 0"), PITCH, PITCH, ROLL]), "b", "rpy=\"0.0872665 0 0\"");
-    // What a tilted joint carries is in line again: straightening its frame would tilt that.
+    // The second frame undoes the tilt of the first: straightening the first would tilt what it carries.
     let undone = framed(&framed(&massive(&[PITCH; 3]), "b", "rpy=\"0.3 0 0\""), "c", "rpy=\"-0.3 0 0\"");
     let kept = undone.replacen("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 0.955336 -0.29552\"/>", 1);
     let shoulders = with_arms(&massive(&[PITCH, PITCH, PITCH, TILTED, PITCH, TILTED, PITCH]));
-    // Links c and d are both on b, to its sides.
+    // Links c and d are both children of b and tilted to opposite sides.
     let hung = massive(&[ROLL, PITCH, PITCH]).replace("<parent link=\"c\"/>", "<parent link=\"b\"/>");
     let sides = framed(&framed(&hung, "c", "rpy=\"0.3 0 0\""), "d", "rpy=\"-0.3 0 0\"");
     let mimicking = with_element(&massive(&[ROLL, TILTED, TILTED, PITCH]), "<mimic joint=\"m\"/>");
@@ -125,11 +125,11 @@ fn doubtful_inertias_and_lengths_are_named() {
     };
     let moving =
         |lower: f64, upper: f64| load(&limited(&massive(&[PITCH]), &format!("lower=\"{lower}\" upper=\"{upper}\"")));
-    // What follows a joint may weigh something.
+    // Joint j moves the massless b, and its mimic joint k moves c, which has mass.
     let links = [("a", 1.0), ("b", 0.0), ("c", 1.0)].map(|(name, mass)| link(name, mass, [0.0; 2], mass, ""));
     let joints = [("j", "b", ""), ("k", "c", "<mimic joint=\"j\"/>")];
     let joints = joints.map(|(name, child, more)| joint(name, HINGE, ["a", child], [0.0, -1.0], more));
-    // What slides may be as long as its joint reaches, which the size at zero does not show.
+    // A prismatic joint may extend the robot beyond its size at zero.
     let shape = urdf::collision([0.0; 2], "sphere radius=\"0.03\"");
     let ends = [link("body", 5.0, [0.0; 2], 4e-3, ""), link("foot", 5.0, [0.0; 2], 4e-3, &shape)];
     let slide = "<joint name=\"leg\" type=\"prismatic\"><parent link=\"body\"/><child link=\"foot\"/><axis xyz=\"0 0 1\"/>\
@@ -185,7 +185,7 @@ fn a_thigh_without_its_inertia_is_named() {
     let about = |axis: &str| {
         massive(&INERTIA.replace("0.01", "0").replace(&format!("{axis}=\"0\""), &format!("{axis}=\"0.01\"")))
     };
-    // What is fixed to a frame has its mass, whether it is welded to it or kept apart.
+    // A massless link has the mass of what is fixed to it, whether that is welded or kept apart.
     let fixed = walker("", -0.5).replace("\"knee\" type=\"continuous\"", "\"knee\" type=\"fixed\"");
     let kept = heelstrike::reductions::Reductions { weld: false, ..Default::default() };
     let cautions = listed([
@@ -229,7 +229,7 @@ fn elements_that_are_not_read_are_named_with_their_lines() {
         ("<axis ", "<limit lower=\"2\" upper=\"-1\"/><axis "),
         ("<axis ", "<limit upper=\"1,5\"/><axis "),
         ("<axis ", "<limit effort=\"1\" velocity=\"x\"/><axis "),
-        // As other formats call them.
+        // Names of other formats.
         ("<axis ", "<limit min=\"-1\" max=\"1\"/><axis "),
         ("</robot>", "<loop_joint name=\"l\"/></robot>"),
         ("</robot>", &still),

@@ -1,6 +1,7 @@
-//! URDF text -> robot: what is read, to which digits, what is merged, skipped or refused, and with which words.
+//! From URDF text to robot: what is read and with which digits, what is merged, skipped or refused, and with which
+//! words.
 //!
-//! Here belongs what a user sees of the loader through `Robot`; details of one stage are tested next to its code.
+//! These tests cover what a user sees of the loader through `Robot`; details of one stage are tested next to its code.
 
 use crate::support::command::read;
 use crate::support::impact::{reduced as reduce, robot as load};
@@ -17,7 +18,7 @@ mod cautions;
 mod plane;
 mod untidy;
 
-/// Center and radius of the disc that is a link's only shape.
+/// Center and radius of a link's only shape, which must be a disc.
 fn disc(link: &Link) -> ([f64; 2], f64) {
     let [shape] = &link.shapes[..] else { panic!("one shape") };
     match (shape.corners(), shape.rim) {
@@ -26,7 +27,7 @@ fn disc(link: &Link) -> ([f64; 2], f64) {
     }
 }
 
-/// With these joints frozen at values.
+/// Loads a robot with these joints frozen at values.
 fn holding(text: &str, hold: &[(usize, f64)]) -> Robot {
     reduce(text, &Reduction { hold: hold.to_vec(), ..Reduction::default() })
 }
@@ -61,7 +62,7 @@ fn values_are_those_that_urdf_rs_reads() {
             );
             assert_eq!((own.axis, &ours.links[own.child].name), (other.axis.xyz.0, &other.child.link));
         }
-        // The world needs no element of its own.
+        // The link `world` need not be in the file.
         let named =
             ours.links.iter().filter(|own| own.name != "world" || theirs.links.iter().any(|t| t.name == own.name));
         assert_eq!((named.count(), ours.joints.len()), (theirs.links.len(), theirs.joints.len()));
@@ -70,13 +71,13 @@ fn values_are_those_that_urdf_rs_reads() {
     assert!(compared > 4, "{compared} robots");
 }
 
-/// With an element in a revolute joint.
+/// Adds a <mimic> element to a revolute joint.
 fn with_mimic(text: &str, joint: &str, mimic: &str) -> String {
     let joint = format!("name=\"{joint}\" type=\"revolute\">");
     text.replace(&joint, &format!("{joint}<mimic {mimic}/>"))
 }
 
-/// A robot of these elements, on the line after its first tag.
+/// A robot with these elements, which begin on line 2.
 fn robot(body: &str) -> String {
     format!("<robot name=\"r\">\n{body}\n</robot>")
 }
@@ -87,7 +88,7 @@ const PITCH: (&str, &str) = ("revolute", "0 1 0");
 const YAW: (&str, &str) = ("revolute", "0 0 1");
 
 /// Links a, b, c ... of these masses in a chain, each 1 m below the one before, with joints j, k, l ... of these types
-/// and axes; an element on each line.
+/// and axes; one element per line.
 fn chain(masses: &[f64], joints: &[(&str, &str)]) -> String {
     let letter = |first: char, k: usize| (first..='z').nth(k).expect("few");
     let link = |(k, &mass): (usize, &f64)| match letter('a', k) {
@@ -104,12 +105,12 @@ fn chain(masses: &[f64], joints: &[(&str, &str)]) -> String {
     robot(&masses.iter().enumerate().map(link).chain(joints.iter().enumerate().map(joint)).collect::<String>())
 }
 
-/// Such a chain of massive links.
+/// A chain of links of 1 kg.
 fn massive(joints: &[(&str, &str)]) -> String {
     chain(&vec![1.0; joints.len() + 1], joints)
 }
 
-/// The last four joints of a chain of seven as two arms that hang from `a`.
+/// Moves the last four joints of a chain of seven to two arms that hang from `a`.
 fn with_arms(chain: &str) -> String {
     let raised = |text: &str, from: char, to: char, place: &str| {
         let ends = |parent: char, place: &str| {
@@ -130,12 +131,12 @@ fn only_caution(robot: &Robot) -> &str {
     caution
 }
 
-/// Massive links `a` and `b`, and a joint of this type and with these elements.
+/// Links `a` and `b` of 1 kg, and a joint of this type with these elements.
 fn two_links(kind: &str, elements: &str) -> String {
     massive(&[(kind, "")]).replace("<origin xyz=\"0 0 -1\"/><axis xyz=\"\"/>", elements)
 }
 
-/// Rounding of a few operations on numbers of order one.
+/// Asserts equality to 1e-15, the rounding of a few operations on numbers of order one.
 #[track_caller]
 fn assert_at(found: Vector, [x, z]: [f64; 2]) {
     assert!((found.x - x).abs() < 1e-15 && (found.z - z).abs() < 1e-15, "{found:?} is not {x}, {z}");
@@ -145,7 +146,7 @@ fn left_out(what: &str, why: &str) -> LeftOutPart {
     LeftOutPart { what: what.into(), why: why.into() }
 }
 
-// Robots of others.
+// Robots of other projects.
 
 #[test]
 fn wheels_are_discs_and_unread_meshes_left_out() {
@@ -163,7 +164,7 @@ fn wheels_are_discs_and_unread_meshes_left_out() {
 
 #[test]
 fn quarter_turns_leave_a_symmetric_robot_symmetric() {
-    // Its fixed joints turn by 1.5707963267948966, of which the cosine is 6e-17.
+    // Its fixed joints turn by 1.5707963267948966, whose cosine in f64 is 6e-17.
     let upkie = load(include_str!("../../data/robots/upkie/upkie.urdf"));
     let bits = |point: Vector| point.components().map(f64::to_bits);
     for (left, right) in [(1, 4), (2, 5), (3, 6)] {
@@ -315,7 +316,7 @@ fn skipped_shapes_are_listed_one_by_one() {
 
 #[test]
 fn a_long_chain_is_reduced_without_recursion() {
-    // As many joints as may move, every second one; 2,000 x 2 + 1 links.
+    // 2,000 joints move, the most that may, and alternate with fixed ones.
     let count = 4_001;
     let links = (0..count).map(|k| link(format!("l{k}"), 1.0, [0.0, -0.5], 0.1, ""));
     let joints = (1..count).map(|k| {

@@ -1,4 +1,4 @@
-//! Which plane, which joints stay in it, and what becomes of the others.
+//! The choice of the plane, the joints that stay in it, and what happens to the others.
 
 use super::*;
 use heelstrike::robot::{FreezeReason, Plane, PlaneReason};
@@ -33,14 +33,14 @@ fn plane_without_a_common_direction_is_that_of_legs() {
     let robot = load(&massive(&[("continuous", "1 0 0"), ROLL, PITCH]));
     assert_eq!((robot.reading().plane, robot.reading().plane_because), (Plane::YZ, PlaneReason::Legs));
     assert_eq!((robot.reading().better_plane, names(&robot)), (None, vec!["j", "k"]));
-    // Of equally many the usual one.
+    // If two planes keep equally many joints, the usual one is taken.
     let robot = load(&massive(&[ROLL, PITCH]));
     assert_eq!((robot.reading().plane, robot.reading().plane_because), (Plane::XZ, PlaneReason::Legs));
     // Two arms, whose ends are higher than the foot, do not count.
     let arms = with_arms(&massive(&[PITCH, PITCH, PITCH, ROLL, ROLL, ROLL, ROLL]));
     let robot = load(&arms);
     assert_eq!((robot.reading().plane, names(&robot)), (Plane::XZ, vec!["j", "k", "l"]));
-    // An axis that lies between them is nearer to the normal of one.
+    // An axis between two normals counts for the nearer one.
     let oblique = ("revolute", "0 1 0.4");
     let robot = load(&massive(&[ROLL, oblique, oblique]));
     assert_eq!(robot.reading().plane, Plane::XZ);
@@ -50,7 +50,7 @@ fn plane_without_a_common_direction_is_that_of_legs() {
     assert!(robot.reading().plane_in_words().ends_with("plane yz would keep 2 joints"));
     let given = reduce(&massive(&[("continuous", "1 0 0"), PITCH]), &in_plane(Plane::YZ));
     assert_eq!((given.reading().plane_because, names(&given)), (PlaneReason::Asked, vec!["j"]));
-    // No hinge has a direction.
+    // Without hinges nothing chooses a plane.
     let slide = load(&massive(&[("prismatic", "0 1 0"), ("prismatic", "0 0 1")]));
     assert_eq!((slide.reading().plane_because, names(&slide)), (PlaneReason::Usual, vec!["k"]));
 }
@@ -106,14 +106,14 @@ fn joints_that_leave_the_plane_are_frozen_at_zero() {
 
 #[test]
 fn frozen_joints_keep_their_values() {
-    // j turns about x by a quarter, so that the z axis of k points to -y: k stays.
+    // j turns by a quarter turn about x, so that the z axis of k points to -y: k stays.
     let text = massive(&[("revolute", "2 0 0"), YAW, ("prismatic", "0 0 1")]);
     let hold =
         |hold: &[(usize, f64)]| Reduction { plane: Some(Plane::XZ), hold: hold.to_vec(), ..Reduction::default() };
     let robot = reduce(&text, &hold(&[(0, FRAC_PI_2)]));
     assert_eq!((names(&robot), robot.joints()[0].axis), (vec!["k"], Axis::Revolute { sign: -1.0 }));
     assert_eq!(still(&robot, "j"), &FreezeReason::Asked { value: FRAC_PI_2 });
-    // The origin of k, 1 m down in b's frame, lies 1 m to the left: dropped.
+    // The origin of k, 1 m down in b's frame, is 1 m to the left, which the plane drops.
     assert_at(robot.joints()[0].origin, [0.0, -1.0]);
 
     // A slide that is frozen carries its child along: 1 m down and 0.25 m up.
@@ -123,7 +123,7 @@ fn frozen_joints_keep_their_values() {
     let why = "frozen at 0.25 as asked: welded into a";
     assert!(robot.left_out().contains(&left_out("joint \"l\"", why)), "{:?}", robot.left_out());
 
-    // A joint of the plane can be frozen as well, and then gives no plane.
+    // A joint in the plane can be frozen as well; it then does not count in the choice of the plane.
     let robot = holding(&massive(&[ROLL, YAW]), &[(0, 0.0)]);
     assert_eq!((robot.reading().plane, names(&robot)), (Plane::XY, vec!["k"]));
 
@@ -212,7 +212,7 @@ fn a_mimic_joint_of_a_frozen_joint_is_frozen_with_it() {
     };
     let robot = load(&mimic("1 0 0"));
     assert!(robot.joints().is_empty() && robot.mimic_joints().is_empty());
-    // At its offset, as the mimicked one is at zero.
+    // It is frozen at its offset, because the mimicked joint is at zero.
     let frozen = still(&robot, "k");
     assert_eq!(frozen, &FreezeReason::Follows { mimicked: "j".into(), value: 0.1 });
     assert_eq!(frozen.to_string(), "frozen at 0.1 by j, which it follows");
@@ -224,7 +224,7 @@ fn a_mimic_joint_of_a_frozen_joint_is_frozen_with_it() {
     let expected = [-first.sin() - both.sin(), -1.0 - first.cos() - both.cos()];
     assert_at(robot.links()[2].point::<f64>([0.0, 0.0, -1.0]), expected);
 
-    // So is one on the way to the joint that it mimics, which that turn leaves off the plane, or fixed.
+    // So is a mimic joint on the path to its mimicked joint, if that is off the plane after that turn, or fixed.
     let tilted = with_mimic(&massive(&[PITCH, ROLL]), "j", "joint=\"k\" multiplier=\"-0.5\" offset=\"0.6\"");
     for text in [tilted.clone(), tilted.replace("name=\"k\" type=\"revolute\"", "name=\"k\" type=\"fixed\"")] {
         let robot = load(&text);
@@ -232,13 +232,13 @@ fn a_mimic_joint_of_a_frozen_joint_is_frozen_with_it() {
         assert_at(robot.links()[1].point::<f64>([0.0, 0.0, -1.0]), [-0.6_f64.sin(), -1.0 - 0.6_f64.cos()]);
     }
 
-    // One on the way to the joint that it mimics does not turn that into the plane, where it would move.
+    // A mimic joint on the path to its mimicked joint is not used to turn that into the plane, in which it would move.
     let quarter = "joint=\"l\" offset=\"1.5707963267948966\"";
     let robot = load(&with_mimic(&massive(&[PITCH, ROLL, ("revolute", "0 0 1")]), "k", quarter));
     assert_eq!(names(&robot), ["j"]);
     assert!(["k", "l"].iter().all(|name| matches!(still(&robot, name), FreezeReason::OffPlane { .. })));
 
-    // A mimic joint off the plane is frozen as such; the mimicked one stays.
+    // A mimic joint off the plane is frozen for that reason; the mimicked joint stays.
     let robot = load(&with_mimic(&massive(&[PITCH, ROLL]), "k", "joint=\"j\""));
     assert_eq!((names(&robot), robot.mimic_joints().len()), (vec!["j"], 0));
     assert!(matches!(still(&robot, "k"), FreezeReason::OffPlane { .. }));
@@ -251,13 +251,13 @@ fn a_mimic_joint_of_a_frozen_joint_is_frozen_with_it() {
     );
 }
 
-// Whatever the order and the names.
+// Names and order.
 
 #[test]
 fn names_and_order_in_the_file_change_nothing_else() {
     let text = massive(&[PITCH, ROLL, ("prismatic", "0 0 1"), ("revolute", "0 -1 0")]);
-    // Each letter the one that stands opposite in the alphabet, so that their order turns round; joints named like
-    // links.
+    // Replaces each letter by its counterpart from the end of the alphabet, which reverses their order, and then adds
+    // spaces and an umlaut.
     let opposite = |letter: char| char::from_u32('a' as u32 + 'z' as u32 - letter as u32).expect("a letter");
     let renamed: String = "abcdejklm".chars().fold(text.clone(), |text, letter| {
         text.replace(&format!("\"{letter}\""), &format!("\"*{}\"", opposite(letter)))

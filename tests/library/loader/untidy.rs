@@ -1,8 +1,8 @@
-//! Files that break a rule of XML, of URDF or of physics, and are read all the same.
+//! Files that break a rule of XML, of URDF or of physics, and are read nevertheless.
 
 use super::*;
 
-/// A massive link.
+/// A link of 1 kg.
 const LINK: &str = "<link name=\"a\"><inertial><mass value=\"1\"/></inertial></link>";
 
 #[test]
@@ -18,7 +18,7 @@ fn a_misspelt_or_late_declaration_is_passed_over() {
         let robot = load(&format!("{declaration}\r\n<robot>{LINK}</robot>"));
         assert_eq!(robot.links().len(), 1, "{declaration}");
     }
-    // Declaring macros is not using them.
+    // A file that declares xacro need not use macros.
     let declared = "<robot xmlns:xacro=\"http://www.ros.org/wiki/xacro\">";
     assert_eq!(load(&format!("{declared}{LINK}</robot>")).links().len(), 1);
 }
@@ -30,7 +30,7 @@ fn undeclared_prefixes_are_listed_and_passed_over() {
          <link name=\"b\" drake:ignore=\"true\"/></robot>"
     );
     let refused = Robot::from_urdf(&text).expect_err("two roots");
-    // The place is that of the file.
+    // The place refers to the text of the file.
     assert_eq!(refused.to_string(), "3:1: link \"b\": links \"a\" and \"b\" are both roots");
     let robot = load(&text.replace("<link name=\"b\" drake:ignore=\"true\"/>", ""));
     let listed = |tag: &str| left_out(&format!("<{tag}> in <robot>"), "no part of the robot's mechanics");
@@ -51,7 +51,7 @@ fn an_inertia_that_no_body_has_is_listed() {
         let robot = load(&link(ixx, iyy, izz));
         assert_eq!((robot.bodies()[0].moment, robot.left_out()), (iyy, &[left_out("link \"a\"", why)][..]));
     }
-    // A point mass is a body.
+    // A body may be a point mass.
     assert_eq!(load(&link(0.0, 0.0, 0.0)).left_out(), []);
 }
 
