@@ -1,9 +1,9 @@
-//! Which spot touches, once, and with which normal.
+//! Which points of feet touch, that each is found once, and with which normals.
 
 use super::*;
 use std::f64::consts::FRAC_1_SQRT_2;
 
-/// The only contact's normal.
+/// Asserts that there is one contact, and its normal.
 #[track_caller]
 fn assert_normal(found: &Impact, [x, z]: [f64; 2]) {
     let [contact] = &found.contacts[..] else { panic!("{:?}", touches(found)) };
@@ -13,19 +13,19 @@ fn assert_normal(found: &Impact, [x, z]: [f64; 2]) {
 
 #[test]
 fn corners_push_along_the_middle_of_what_both_allow() {
-    // A point on the edge of a step: halfway between tread and riser.
+    // A point on the edge of a step has the normal halfway between those of tread and riser.
     let edge = [[-2.0, 0.0], [0.0, 0.0], [1e-9, -2.0], [2.0, -2.0]];
     let s = FRAC_1_SQRT_2;
     assert_normal(&impact(&point(), state([0.0; 3], FALLING, 1, &edge)), [s, s]);
-    // A level sole whose toe ends at the edge: it lies flat, so the tread's normal. Its heel on the edge, the rest over
-    // the void: all of the quarter between riser and tread.
+    // A level sole whose toe ends at the edge lies flat and has the tread's normal. With its heel on the edge and the
+    // rest over the void, all normals between those of riser and tread are possible.
     let flat = impact(&sole(), state([-0.2, 0.1, 0.0], FALLING, 1, &edge));
     assert_touches(&flat, &[[[-0.4, 0.0], [0.0, 1.0]], [[0.0, 0.0], [0.0, 1.0]]]);
     assert_normal(&impact(&sole(), state([0.2, 0.1, 0.0], FALLING, 1, &edge)), [s, s]);
-    // The heel of a sole that is pitched by -0.4 (nose up) allows -0.4 to pi/2 - 0.4 from upright toward +x; the edge 0
-    // to pi/2. The middle of both is pi/4 - 0.2.
+    // The heel of a sole that is pitched by -0.4 (nose up) allows normals at -0.4 to pi/2 - 0.4 from upright toward +x,
+    // the edge allows 0 to pi/2. The middle of what both allow is pi/4 - 0.2.
     let (sin, cos) = 0.4_f64.sin_cos();
-    // The heel at (-0.2, -0.1) of the body, turned: (cos x + sin' z, cos z - sin' x) with sin' = sin(-0.4).
+    // The heel is at (-0.2, -0.1) in the body, turned to (cos x + sin' z, cos z - sin' x) with sin' = sin(-0.4).
     let heel = [-0.2 * cos + 0.1 * sin, -0.1 * cos - 0.2 * sin];
     let tilted = impact(&sole(), state([-heel[0], -heel[1], -0.4], FALLING, 1, &edge));
     let angle = std::f64::consts::FRAC_PI_4 - 0.2;
@@ -34,8 +34,8 @@ fn corners_push_along_the_middle_of_what_both_allow() {
 
 #[test]
 fn a_spot_touches_once() {
-    // Whatever the overhang, from well beyond the tolerance to nothing and back, and whether the sole is a hair above
-    // or in the tread: two contacts with the tread's normal.
+    // Two contacts with the tread's normal, whether the overhang is within the tolerance or beyond, and whether the
+    // sole is slightly above the tread or in it.
     for overhang in [-1e-3, -1e-7, -1e-9, -1e-15, 0.0, 1e-15, 1e-9, 1e-7, 1e-3] {
         for height in [-1e-9, -1e-16, 0.0, 1e-16, 1e-9] {
             let text = state([-0.2 + overhang, 0.1 + height, 0.0], FALLING, 1, &step(0.0, -0.5));
@@ -59,8 +59,8 @@ fn a_plate_without_thickness_lies_on_an_edge() {
     }
 }
 
-/// A cylinder of radius 0.2 m and 0.5 m long whose axis is 0.7 rad off the plane's normal, toward x: its ends are
-/// ellipses, 0.2 cos 0.7 by 0.2 m, at 0.25 sin 0.7 before and behind the CoG.
+/// A cylinder of radius 0.2 m and 0.5 m long whose axis is 0.7 rad off the plane's normal, toward x. Its ends are
+/// ellipses with half-axes 0.2 cos 0.7 and 0.2 m, at 0.25 sin 0.7 before and behind the CoG.
 #[test]
 fn an_oblique_cylinder_meets_segments_and_corners() {
     let cylinder = r#"<geometry><cylinder radius="0.2" length="0.5"/></geometry>"#;
@@ -76,8 +76,8 @@ fn an_oblique_cylinder_meets_segments_and_corners() {
     let up = [0.0, 1.0];
     near([-1.0, 0.2, 0.0], &step(0.0, -1.0), &[[[-1.0 - reach, 0.0], up], [[-1.0 + reach, 0.0], up]]);
     near([0.0, 0.2, 0.0], &step(0.0, -1.0), &[[[-reach, 0.0], up], [[0.0, 0.0], up]]);
-    // The front end at 45 degrees of its ellipse, (half cos s, 0.2 sin s) with s = -pi/4, on a ridge: its normal there
-    // is along (cos s / half, sin s / 0.2).
+    // The front end touches a ridge at 45 degrees of its ellipse, (half cos s, 0.2 sin s) with s = -pi/4. Its outward
+    // normal there is along (cos s / half, sin s / 0.2).
     let s = FRAC_1_SQRT_2;
     let out = [s / half, -s / 0.2];
     let size = f64::hypot(out[0], out[1]);
@@ -90,7 +90,7 @@ fn an_oblique_cylinder_meets_segments_and_corners() {
     let place = [-reach - far * sin, far * cos, 0.0];
     let point = [-far * sin + half * half * sin / far, far * cos - 0.2 * 0.2 * cos / far];
     near(place, &[[-4.0 * cos, -4.0 * sin], [4.0 * cos, 4.0 * sin]], &[[point, [-sin, cos]]]);
-    // Sunk: by as much as it is too low.
+    // Sunk cylinders: the depth is how much they are too low.
     let sunk = |[x, z]: [f64; 2], profile: &[[f64; 2]]| depth(&robot, &state([x, z, 0.0], [0.0; 3], 1, profile));
     let depths =
         [sunk([-1.0, 0.15], &step(0.0, -1.0)), sunk([0.0, 0.15], &ridge), sunk([-1.0, -0.3], &step(0.0, -1.0))];
@@ -114,12 +114,12 @@ fn contacts_named_by_hand_take_the_nearest_ground() {
     assert_eq!(named(0.0, 2.0, 0.5), ([0.0, 1.0, 1.5], [0.0, 1.5]));
     assert_eq!(named(0.0, -0.25, 0.0), ([0.0, 1.0, -0.25], [0.0, -0.25]));
     assert_close(&named(2.0, 0.0, 0.0).0, &[s, s, s]);
-    // Nearest to the corner, at 0.4 rad; and on it, in the middle of both normals.
+    // The corner is nearest, in the direction of 0.4 rad; on the corner, the normal is in the middle of both.
     let (sin, cos) = 0.4_f64.sin_cos();
     assert_close(&named(1.0 + sin, cos, 0.5).0, &[sin, cos, 0.5]);
     let eighth = std::f64::consts::FRAC_PI_8;
     assert_close(&named(1.0, 0.0, 0.0).0, &[eighth.sin(), eighth.cos(), 0.0]);
-    // Beyond an end the last segment goes on.
+    // Beyond an end the last segment is continued.
     assert_eq!(named(-5.0, 0.5, 0.0), ([0.0, 1.0, 0.5], [-5.0, 0.5]));
 }
 

@@ -1,4 +1,4 @@
-//! Where there is no ground, and where a foot is in it.
+//! Feet above gaps and beyond the ends of the ground, and feet that are in the ground.
 
 use super::*;
 use heelstrike::reductions::Reductions;
@@ -11,7 +11,7 @@ fn over_a_gap_and_beyond_an_end_there_is_nothing() {
     assert_eq!(over.analysis.unwrap().verdict, Verdict::NoContact);
     assert_eq!(over.notes.len(), 1);
     assert!(over.notes[0].contains("the lowest foot, body, is 0.1 m"), "{:?}", over.notes);
-    // A sole bridges it: both edges carry, and act through the sole's ends.
+    // A sole bridges the gap: both edges carry it, which act through the sole's ends if contacts are merged.
     let bridge = |merge: bool| {
         let options = Options { reductions: Reductions { merge, ..Reductions::ALL }, ..Options::default() };
         try_impact(&sole(), options, state([0.0, 0.1, 0.0], FALLING, 1, &gap)).expect("an answer")
@@ -33,7 +33,7 @@ fn a_foot_in_the_ground_is_refused_with_its_depth() {
         ("toe in the riser", sole(), [0.02, 0.1], &step(0.2, 0.5)[..], 0.02),
         ("in the tread", sole(), [-1.0, 0.05], &step(0.2, 0.5), 0.05),
         ("as a whole far below the tread", sole(), [-1.0, -0.9], &step(0.2, 0.5), 1.0),
-        // Where a lower one would still be far beneath.
+        // The lower tread is far beneath.
         ("below the upper tread", sole(), [-1.0, -0.2], &step(0.5, -3.0), 0.3),
         ("disc, its middle above the ground", disc(), [-1.0, 0.4], &step(0.2, 0.5), 0.1),
         ("disc, its middle below the ground", disc(), [-1.0, -0.3], &step(0.2, 0.5), 0.8),
@@ -42,7 +42,7 @@ fn a_foot_in_the_ground_is_refused_with_its_depth() {
         let found = depth(&robot, &state([x, z, 0.0], level, 1, profile));
         assert!((found - expected).abs() < 2e-6, "{what}: {found} is not {expected}");
     }
-    // A thin pillar goes right through: no corner is inside of anything, and the shortest way out is along the box.
+    // A thin pillar goes right through: no corner is inside the other shape, and the shortest way out is along the box.
     let pillar = [[-1.0, -5.0], [-0.01, -5.0], [-0.009, 5.0], [0.009, 5.0], [0.01, -5.0], [1.0, -5.0]];
     let found = depth(&sole(), &state([0.0, 0.1, 0.0], level, 1, &pillar));
     assert!((0.1..0.25).contains(&found), "{found}");

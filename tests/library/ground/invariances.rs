@@ -1,10 +1,10 @@
-//! What changes nothing: a segment cut in two, another place, a mirror.
+//! Changes of a scene that do not change its outcomes: a segment cut in two, another place, a mirror image.
 
 use super::*;
 use crate::support::urdf::{HINGE, collision, joint, link};
 use proptest::prelude::*;
 
-/// A walker that touches stairs, seen in a mirror where `side` is -1: a box and a disc for feet.
+/// A walker that touches stairs with a box and a disc as feet; it is mirrored where `side` is -1.
 #[derive(Debug, Clone)]
 struct Walker {
     /// x, z, pitch.
@@ -37,7 +37,7 @@ impl Walker {
         )
     }
 
-    /// At the height where it touches, half of the tolerance above the one at which it is refused.
+    /// Puts the walker at the height where it touches, half of the tolerance above the one at which it is refused.
     fn landed(mut self) -> Self {
         let (mut low, mut high) = (-5.0, 5.0);
         while high - low > 1e-9 {
@@ -58,7 +58,7 @@ impl Walker {
         robot(&urdf::robot(&[link("body", 4.0, [side * 0.05, 0.1], 0.3, ""), legs.concat()]))
     }
 
-    /// What happens over this profile, the whole moved by `shift`.
+    /// The impact on this profile, with the walker moved by `shift`.
     fn try_strike(&self, side: f64, profile: &[[f64; 2]], shift: [f64; 2]) -> heelstrike::Result<Box<Impact>> {
         let ([x, z, pitch], [u, w, rate, one, two]) = (self.place, self.rates);
         let place = [side * x + shift[0], z + shift[1], side * pitch];
@@ -77,7 +77,7 @@ impl Walker {
 }
 
 fn sorted(mut numbers: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
-    // By coarse digits, so that rounding does not change the order.
+    // Compares coarse digits, so that rounding does not change the order.
     numbers.sort_by(|a, b| {
         let coarse = |row: &Vec<f64>| row.iter().map(|entry| (entry * 1e6).round() as i64).collect::<Vec<_>>();
         coarse(a).cmp(&coarse(b))
@@ -107,7 +107,7 @@ proptest! {
         let shifted: Vec<[f64; 2]> = walker.profile.iter().map(|[x, z]| [x + shift[0], z + shift[1]]).collect();
         let (here, there) = (walker.strike(1.0, &walker.profile, [0.0; 2]), walker.strike(1.0, &shifted, shift));
         prop_assert_eq!(here.contacts.len(), there.contacts.len());
-        // Risers 0.01 m wide turn by the rounding of their ends.
+        // Not exactly the same: risers 0.01 m wide turn by the rounding of their ends.
         assert_same_outcomes(&here, &there);
     }
 

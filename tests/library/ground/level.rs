@@ -1,4 +1,4 @@
-//! Which points touch the ground: shapes, slopes, tolerances, stance, contacts named by hand, braked joints, impulses.
+//! Which points touch level or sloped ground: shapes, tolerances, stance, named contacts, braked joints, impulses.
 
 use super::*;
 use crate::support::urdf::{HINGE, POINT, collision, joint, link};
@@ -27,10 +27,10 @@ fn shapes_touch_with_their_lowest_points() {
         .map(|(place, radius)| robot(&urdf::body(0.5, &collision(place, &format!("sphere radius=\"{radius}\"")))));
     let two = [collision([-0.3, 0.0], "sphere radius=\"0.1\""), collision([0.3, -0.05], "box size=\"0.2 0.1 0.1\"")];
     let two = robot(&urdf::body(0.5, &two.concat()));
-    // The axis of the oblique cylinder rises at 45 degrees out of the plane: seen from the side its rims are ellipses,
-    // R = 0.1 wide and R sin 45 high to each side, at heights of +-0.2 cos 45. Pitched by p, d = (sin p, -cos p) is
-    // straight down as the body sees it, and its lowest point is (R^2 sin p, -(R^2 / 2) cos p) / k below the rim's
-    // middle, k = R sqrt(sin^2 + cos^2 / 2).
+    // The axis of the oblique cylinder rises at 45 degrees out of the plane: seen from the side its rims are ellipses
+    // with half-axes R = 0.1 and R sin 45, at heights of +-0.2 cos 45. At pitch p, d = (sin p, -cos p) is straight down
+    // in the body's frame, and the lowest point is (R^2 sin p, -(R^2 / 2) cos p) / k from the rim's center with k = R
+    // sqrt(sin^2 + cos^2 / 2).
     let (sin, cos) = 0.4_f64.sin_cos();
     let k = 0.1 * (sin * sin + 0.5 * cos * cos).sqrt();
     let rim = [0.01 * sin / k, -0.2 * half - 0.005 * cos / k];
@@ -49,9 +49,9 @@ fn shapes_touch_with_their_lowest_points() {
         ("tilted capsule", &body(capsule), nose_down(0.2, 0.1), 0.0, &[([0.2, 0.0], 0.1)]),
         ("oblique cylinder", &oblique, [0.0, 0.3 * half, 0.0], 0.0, &[([0.0, -0.3 * half], 0.0)]),
         ("pitched cylinder", &oblique, [0.0, sin * rim[0] - cos * rim[1], 0.4], 0.0, &[(rim, 0.0)]),
-        // Its axis 45 degrees off the plane: a line of its side touches, seen at its length times cos 45.
+        // Its axis is 45 degrees off the plane: a line of its side touches, and appears with its length times cos 45.
         ("lying cylinder", &body(lying), [0.0, 0.1, 0.0], 0.0, &line),
-        // The point between them acts through these two.
+        // The inner corner of the box acts through these two.
         ("two shapes", &two, [0.0, 0.1, 0.0], 0.0, &[([-0.3, 0.0], 0.1), ([0.4, -0.1], 0.0)]),
         ("point", &point, [0.0, 1.0, 0.0], 0.0, &[([0.25, -1.0], 0.0)]),
     ] {
@@ -80,7 +80,7 @@ fn shapes_touch_with_their_lowest_points() {
             assert_close(before, &[vx * nz - vz * nx, vx * nx + vz * nz]);
         }
     }
-    // Straight below the CoG: all 2 kg m/s stop.
+    // The contact is straight below the CoG: it stops all 2 kg m/s.
     assert_close(&outcomes(&impact(&oblique, at(0.3 * half, 1.0)))[0].impulse[0], &[0.0, 2.0]);
 }
 
@@ -169,7 +169,7 @@ fn a_leg_without_mass_or_friction_is_refused_by_name() {
     assert!(error.to_string().contains("leg"), "{error}");
 }
 
-/// A foot that turns back as fast as the body turns about the same axle moves as the axle does, but for rounding.
+/// A foot that turns against the body about its axle, at the same rate, moves as the axle does, up to rounding.
 #[test]
 fn the_explanation_of_a_slow_contact_has_its_digits() {
     let robot = crate::support::impact::robot(&crate::support::urdf::robot(&[

@@ -1,5 +1,5 @@
-//! Profiles: where feet touch steps, edges, notches and gaps, with which normals, and what comes of it, against cases
-//! worked by hand.
+//! Ground profiles: where feet touch steps, edges, notches and gaps, with which normals, and with which outcomes,
+//! compared with cases worked out by hand.
 //!
 //! Signs: x forward, z up, a positive pitch dips the nose; a body that turns at w moves its point at (x, z) from the
 //! CoG at w (z, -x), and an impulse (Lx, Lz) there turns it by I w = z Lx - x Lz.
@@ -41,7 +41,7 @@ fn point() -> Robot {
     body(r#"<geometry><sphere radius="0"/></geometry>"#)
 }
 
-/// The body at `[x, z, pitch]` with velocity `[x, z, pitch]` over a profile.
+/// The state of a body at `[x, z, pitch]` with velocity `[x, z, pitch]` over a profile.
 fn state(position: [f64; 3], velocity: [f64; 3], friction: impl Into<Value>, profile: &[[f64; 2]]) -> Value {
     let base = |[x, z, pitch]: [f64; 3]| json!({"base": {"x": x, "z": z, "pitch": pitch}});
     json!({"position": base(position), "velocity": base(velocity), "friction": friction.into(),
@@ -50,13 +50,13 @@ fn state(position: [f64; 3], velocity: [f64; 3], friction: impl Into<Value>, pro
 
 const FALLING: [f64; 3] = [0.0, -1.0, 0.0];
 
-/// Rounding of a few operations on numbers of order one.
+/// Asserts equality to 64 eps, the rounding of a few operations on numbers of order one.
 #[track_caller]
 fn assert_close(found: &[f64], expected: &[f64]) {
     assert!(near(found, expected, 64.0 * f64::EPSILON), "{found:?} is not {expected:?}");
 }
 
-/// Points and normals of all contacts.
+/// The point and the normal of each contact.
 fn touches(impact: &Impact) -> Vec<[[f64; 2]; 2]> {
     impact.contacts.iter().map(|contact| [contact.point, contact.normal()].map(Vector::components)).collect()
 }
@@ -66,7 +66,7 @@ fn assert_touches(impact: &Impact, expected: &[[[f64; 2]; 2]]) {
     assert_close(touches(impact).as_flattened().as_flattened(), expected.as_flattened().as_flattened());
 }
 
-/// The impulses and the velocity by coordinate of the only outcome.
+/// The impulses and the velocity by coordinate of the only outcome, which must be proven.
 fn only_outcome(impact: &Impact) -> (&[[f64; 2]], Vec<f64>) {
     let analysis = impact.analysis.as_ref().expect("an analysis");
     assert_eq!(analysis.verdict, Verdict::Unique);
@@ -81,7 +81,7 @@ fn depth(robot: &Robot, state: &Value) -> f64 {
     *depth
 }
 
-/// A step of this rise at x = `edge`, its riser 1e-6 m wide.
+/// The profile of a step of this rise at x = `edge`; its riser is 1e-6 m wide.
 fn step(edge: f64, rise: f64) -> [[f64; 2]; 4] {
     [[-2.0, 0.0], [edge, 0.0], [edge + 1e-6, rise], [2.0, rise]]
 }

@@ -1,4 +1,4 @@
-//! The lowest foot that does not touch, and the robot that is put on its lowest foot.
+//! The lowest foot that does not touch, and `place: lowest`, which puts the robot on its lowest foot.
 
 use super::{FALLING, assert_close, assert_same_outcomes, body, sole, state, step};
 use crate::support::impact::{impact, robot, try_impact};
@@ -19,7 +19,7 @@ fn two_feet(height: f64) -> Robot {
     ]))
 }
 
-/// Moving at (0, -0.6) m/s and 0.5 rad/s.
+/// A state that moves at (0, -0.6) m/s and 0.5 rad/s, with more fields.
 fn striking(z: f64, more: Value) -> Value {
     let mut state = json!({"position": {"base": {"z": z}}, "velocity": {"base": {"z": -0.6, "pitch": 0.5}}});
     state.as_object_mut().unwrap().extend(more.as_object().cloned().unwrap_or_default());
@@ -104,7 +104,7 @@ fn foot_in_the_air_is_named_with_a_remedy() {
 fn lowest_foot_is_put_on_the_ground() {
     let robot = two_feet(-0.25);
     for ground in [json!({"slope": 0.0}), json!({"slope": 0.3}), json!({"profile": step(0.75, 0.2)})] {
-        // How high the second foot must be, 0.25 m below the first and 1 m ahead.
+        // The height of the base at which the second foot, 0.25 m below the first and 1 m ahead, touches.
         let rise = match &ground["slope"] {
             Value::Null => 0.45,
             slope => 0.25 + slope.as_f64().unwrap().tan(),
@@ -152,7 +152,8 @@ fn a_foot_beyond_both_ends_of_the_ground_is_put_on() {
 
 #[test]
 fn a_foot_beside_the_end_is_put_on_it_from_any_height() {
-    // The ball's middle is beyond the end, and its other foot may be lower over the ground once the ball is past it.
+    // The ball's center is beyond the end. If the ball is lower than that, its rear foot may be the lower one over the
+    // ground.
     let [ball, rear] =
         [collision([0.03, 0.0], "sphere radius=\"0.05\""), collision([-0.5, 0.3], "sphere radius=\"0.01\"")];
     let ball = robot(&urdf::robot(&[link("ball", 2.0, [0.0; 2], 0.1, &(ball + &rear))]));
@@ -176,8 +177,8 @@ fn nearest_rim_of_an_oblique_cylinder_is_found_over_a_profile() {
         let mut placed = state;
         placed["place"] = json!("lowest");
         let drop = 0.3 - impact(&oblique, placed).placement.world(0, Vector::zero()).z;
-        // Along the normal of a slope of 0.5 at most it is 0.89 of that along z; over a corner of the ground the height of an
-        // ellipse is that to a tangent at its rim, which is less.
+        // Slopes are at most 0.5, so that the height along a normal is at least 0.89 times the drop along z. Over a
+        // corner of the ground the height of an ellipse is that to a tangent at its rim, which is less: hence 0.8.
         assert!((0.8 * drop..drop + 1e-9).contains(&nearest.height), "{x}: {nearest:?} of {drop}");
     }
 }
@@ -205,13 +206,13 @@ fn deep_foot_is_refused_with_its_velocity() {
     let raise: f64 = error.remedy().and_then(|hint| hint.split(' ').nth(4)?.parse().ok()).expect("a height");
     // The other point is 1 m ahead, where the ground is tan(1) m higher.
     assert!((raise - (1.25 + 1_f64.tan())).abs() < 1e-5, "{raise}");
-    // With a stance the base's place is not the user's to change; the foot turns about the one that stands.
+    // With a stance the user cannot move the base; the foot turns about the one that stands.
     let (velocity, remedy) = refused(json!({"stance": "body", "position": {}, "velocity": {"base": {"pitch": 0.5}}}));
     assert_close(&velocity, &[-0.125, -0.5]);
     assert!(remedy.contains("stand on other") && !remedy.contains("raise"), "{remedy}");
 }
 
-/// What is said of states of two feet and of RAMone in which something is doubtful, and of others next to them.
+/// The notes on doubtful states of two feet and of RAMone, and on similar states that are not doubtful.
 #[test]
 fn doubtful_scenes_are_noted_word_for_word() {
     let (high, ramone) = (two_feet(0.5), robot(RAMONE));

@@ -1,4 +1,4 @@
-//! Profiles with what else a scene has: contacts by name, slopes, a stance, uncertainty.
+//! Profiles together with other parts of a scene: named contacts, slopes, a stance, uncertainty.
 
 use super::*;
 use crate::support::impact::{modes, ramone};
@@ -46,7 +46,7 @@ fn a_straight_profile_is_a_slope() {
         let rise = 3.0 * slope.tan();
         let grounds =
             [format!(r#"{{"slope": {slope:?}}}"#), format!(r#"{{"profile": [[-3, {:?}], [3, {rise:?}]]}}"#, -rise)];
-        // Feet half a meter or less above and in the ground touch, so that there are two.
+        // Feet up to half a meter above or in the ground touch, so that there are two.
         let wide = || Options { contact_tolerance: Some(0.5), ..Options::default() };
         let [sloped, straight] = grounds.map(|ground| {
             let state = format!(
@@ -75,7 +75,7 @@ fn a_stance_stands_on_the_profile_at_x_0() {
     let raised = impact(&robot, state("[[-1, 0.25], [1, 0.75]]", r#", "position": {"base": {"pitch": 0.1}}"#));
     assert_close(&raised.contacts[0].point.components(), &[0.0, 0.5]);
     assert_eq!(raised.velocity_before, [[0.0; 2]]);
-    // Of the two segments at the foot of a riser it is the tread; the rear end stands there, and the rest is in the
+    // At the foot of a riser a stance is on the tread: the rear end stands there, and the rest of the sole is in the
     // step.
     let error =
         try_impact(&robot, Options::default(), state("[[-1, 0], [0, 0], [1e-6, 0.15], [1, 0.15]]", "")).unwrap_err();
@@ -87,7 +87,7 @@ fn a_stance_stands_on_the_profile_at_x_0() {
     assert!(error.remedy().is_some_and(|remedy| remedy.contains("shift the profile")), "{error}");
 }
 
-/// Where the edge's corner lies under the circle's center only to rounding, its foot rests all the same.
+/// A foot rests even if the corner of the ground is under its circle's center only up to rounding.
 #[test]
 fn a_circle_that_stands_on_an_edge_rests_exactly() {
     let robot = ramone();
@@ -114,8 +114,8 @@ fn a_circle_that_stands_on_an_edge_rests_exactly() {
 
 #[test]
 fn a_circle_that_stands_in_a_notch_rests_on_one_side() {
-    // The notch is at (0.5 - 0.5 sin, ...) = where the disc that stands level at x = 0 touches a wall at 45 degrees,
-    // too.
+    // A disc on level ground at x = 0 touches a wall of 45 degrees at (0.5 s, 0.5 - 0.5 s), s = sin 45: the wall begins
+    // where its line meets z = 0.
     let notch = 0.5 * FRAC_1_SQRT_2 - (0.5 - 0.5 * FRAC_1_SQRT_2);
     let text = format!(
         r#"{{"stance": "body", "friction": 1, "velocity": {{"base": {{"pitch": 1}}}},
@@ -125,8 +125,8 @@ fn a_circle_that_stands_in_a_notch_rests_on_one_side() {
     let found = impact(&disc(), &text);
     let s = FRAC_1_SQRT_2;
     assert_touches(&found, &[[[0.0, 0.0], [0.0, 1.0]], [[0.5 * s, 0.5 - 0.5 * s], [-s, s]]]);
-    // It rolls at 1 rad/s: the center at 0.5 m/s forward; the wall's point, at (0.5 s, -0.5 s) from there, moves by
-    // (-0.5 s, -0.5 s) more.
+    // It rolls at 1 rad/s: its center moves at 0.5 m/s forward, and the wall's point, (0.5 s, -0.5 s) from the center,
+    // at (-0.5 s, -0.5 s) relative to it.
     assert_eq!(found.velocity_before[0], [0.0; 2]);
     let [x, z] = [0.5 - 0.5 * s, -0.5 * s];
     assert_close(&found.velocity_before[1], &[s * x + s * z, -s * x + s * z]);
@@ -138,7 +138,7 @@ fn uncertain_state_keeps_its_contacts() {
         state["uncertainty"] = uncertainty;
         impact(&disc(), state)
     };
-    // A disc on an edge, its pitch uncertain: the same edge with the same normal.
+    // A disc on an edge with uncertain pitch touches the same edge with the same normal.
     let (sin, cos) = 0.4_f64.sin_cos();
     let text = state([0.5 * sin, 0.5 * cos, 0.0], FALLING, 0.6, &[[-0.1, -2.0], [0.0, 0.0], [0.1, -2.0]]);
     let found = with(text, json!({"position": 1e-3, "velocity": 1e-3}));

@@ -1,4 +1,4 @@
-//! Soles of meshes, whose facets are a micrometer apart: which corners stand.
+//! Soles of meshes, whose facets are micrometers apart: which corners touch.
 
 use super::*;
 use crate::support::impact::is_proven;
@@ -9,7 +9,8 @@ use heelstrike::description::Description;
 use heelstrike::reductions::Reductions;
 use heelstrike::robot::Reduction;
 
-/// A biped whose feet, hinged at the ends of straight legs 0.9 m long, have soles through these points \[m\] of an OBJ.
+/// A biped whose feet, hinged at the ends of straight legs 0.9 m long, have soles through these points \[m\] of OBJ
+/// meshes.
 fn biped(left: &[[f64; 2]], right: &[[f64; 2]]) -> Robot {
     let vertices = |sole: &[[f64; 2]]| -> String {
         // The top of the foot, and its sole.
@@ -33,7 +34,7 @@ fn biped(left: &[[f64; 2]], right: &[[f64; 2]]) -> Robot {
     Robot::reduce(&description, &Reduction::default()).expect("a robot")
 }
 
-/// Facets 1 to 2 micrometers apart, as those of XBot-L, atom01 and MagicBot are (the last one's sole is tilted, too).
+/// Soles with facets 1 to 2 micrometers apart, as those of XBot-L, atom01 and MagicBot; the last one is tilted, too.
 const UNEVEN: [[[f64; 2]; 4]; 3] = [
     [[-0.071, -0.05 + 1.54e-6], [-0.047, -0.05 + 9e-7], [0.067, -0.05 + 5e-8], [0.131, -0.05]],
     [[-0.071, -0.05 + 2.28e-6], [-0.068, -0.05 + 1.28e-6], [0.030, -0.05], [0.131, -0.05 + 2.28e-6]],
@@ -65,7 +66,8 @@ fn a_symmetric_fall_on_uneven_soles_is_symmetric() {
             else {
                 panic!("four joints")
             };
-            // As far apart as the soles, 4e-5 m, are for legs of 1 m that fall at 1 m/s.
+            // The soles differ by up to 4e-5 m, with legs of 1 m that fall at 1 m/s; rates may differ by ten times as
+            // much.
             assert!(near(&[left_hip, left_ankle], &[right_hip, right_ankle], 4e-4), "{outcome:?}");
         }
     }
@@ -80,7 +82,7 @@ fn a_stance_rests_on_the_corners_that_touch() {
         assert_eq!(touches(&found).len(), 2);
         assert_eq!((found.contacts[0].point.x, found.stance), (0.0, Some(0)));
         assert!((found.contacts[1].point.x - 0.202).abs() < 1e-12);
-        // The lowest corner is on the ground, and none is beneath it.
+        // The lowest corner is on the ground, and the others are not below it.
         let gaps = [uneven[0], uneven[3]].map(|[_, z]| z + 0.05);
         assert_close(&[found.contacts[0].gap, found.contacts[1].gap], &gaps);
         assert_eq!(found.velocity_before, [[0.0; 2]; 2]);
@@ -118,7 +120,7 @@ fn a_tolerance_that_is_given_is_meant() {
     assert_eq!(within(3e-7), [0.067, 0.131]);
     assert_eq!(within(1.2e-6), [-0.047, 0.131]);
     assert_eq!(within(2e-6), [-0.071, 0.131]);
-    // Not the upper end of a side of more than 45 degrees.
+    // The upper end of a side steeper than 45 degrees is not part of the sole.
     assert_eq!(within(0.2), [-0.071, 0.131]);
 }
 
@@ -158,7 +160,7 @@ fn one_legged([torso, leg]: [f64; 2]) -> Robot {
     ]))
 }
 
-/// Points that are named are level if they are so in all digits; then balls around f64 are all that a foot needs.
+/// Named points are level only if they are so in all digits; f64 with error bounds then needs no balls to decide.
 #[test]
 fn named_corners_of_a_level_sole_need_no_more_digits() {
     let robot = one_legged([0.0; 2]);
@@ -174,13 +176,13 @@ fn named_corners_of_a_level_sole_need_no_more_digits() {
     for (pitch, tilt, is_level) in [(0.125, 0.0, true), (-0.5, 0.0, true), (0.125, 1e-9, false), (0.01, 0.0, false)] {
         let analysis = struck(pitch, tilt);
         assert!(analysis.proven && analysis.verdict == Verdict::Unique, "{pitch} {tilt}");
-        // 0.25 - 0.01 is rounded, so that the last pose is tilted by 1e-17 rad.
+        // 0.25 - 0.01 is rounded, which tilts the last pose by 1e-17 rad.
         assert_eq!((analysis.effort.ball == 0, analysis.rank), (is_level, Some(3)), "{pitch} {tilt}");
     }
 }
 
-/// The sides 3, 4 and 5 give a normal (-0.6, 0.8) whose length in f64 is not one, so that a circle's point is not level
-/// with a point of its body that 3, 4 and 5 themselves would make so.
+/// A slope with the sides 3, 4 and 5 has the normal (-0.6, 0.8), whose length in f64 is not exactly one. A circle's
+/// point is therefore not exactly level with the point of its body that would be level with exact numbers.
 #[test]
 fn circles_on_a_profile_are_not_level_with_points() {
     let robot = robot(&urdf::robot(&[
@@ -197,11 +199,11 @@ fn circles_on_a_profile_are_not_level_with_points() {
     });
     let analysis = impact(&robot, state).analysis.expect("an analysis");
     assert!(analysis.proven && analysis.effort.bound < 16);
-    // Both stick, too, with impulses as great as the rest of that length is small.
+    // Both also stick in one outcome, with impulses as large as the error of that length is small.
     assert_eq!(analysis.verdict, Verdict::Ambiguous);
 }
 
-/// The state with its foot standing, or with these velocities x and z of its base and the lowest foot on the ground.
+/// The state with a stance on `foot` or, given the base's velocity [x, z], with `place: lowest`.
 fn placed(mut state: Value, base: Option<[f64; 2]>) -> Value {
     match base {
         None => state["stance"] = json!("foot"),
@@ -213,7 +215,7 @@ fn placed(mut state: Value, base: Option<[f64; 2]>) -> Value {
     state
 }
 
-/// A foot turns about its heel, which rests but for rounding, or for the digits of the rates, and its toe lands: the
+/// A foot turns about its heel, and its toe lands. The heel rests up to rounding, or up to the digits of the rates: the
 /// answer is that of a heel that stands.
 #[test]
 fn a_toe_lands_about_a_heel_that_rests_to_rounding() {
@@ -238,7 +240,7 @@ fn a_toe_lands_about_a_heel_that_rests_to_rounding() {
         let options = Options { matrices: true, ..Options::default() };
         let standing = try_impact(&robot, options, state(None, None)).expect("an answer");
         let jacobian = &standing.matrices.as_ref().expect("asked for").contact_jacobian;
-        // The base's x and z come first, and move the heel as they are.
+        // Columns 0 and 1 are the base's x and z, which move the heel one to one.
         let along = |row: &Vec<f64>| -row[2..].iter().zip(&rates).map(|(own, rate)| own * rate).sum::<f64>();
         let base = [along(&jacobian[0]), along(&jacobian[1])];
         for (digits, within) in [(None, 1e-12), (Some(9), 1e-7)] {
@@ -252,8 +254,8 @@ fn a_toe_lands_about_a_heel_that_rests_to_rounding() {
     }
 }
 
-/// The same of a foot with a hinged toe: three points of two bodies, of which the last one lands. If the toe is held, it
-/// is part of the foot, whether its column is left out or not.
+/// A foot with a hinged toe turns about its heel: of the three points on two bodies the last one lands. A braked toe is
+/// part of the foot, whether its column is left out or not.
 #[test]
 fn a_hinged_toe_lands_about_a_heel_that_rests() {
     let point = |x: f64| urdf::collision([x, -0.05], urdf::POINT);
@@ -283,7 +285,7 @@ fn a_hinged_toe_lands_about_a_heel_that_rests() {
         for kept in [false, true] {
             let mut options = Options { matrices: true, ..Options::default() };
             options.reductions.held = !kept;
-            // Every column is there, to find the base's velocity with which the heel rests.
+            // With all columns, to find the base's velocity with which the heel rests.
             let whole = Options { reductions: Reductions { held: false, ..Reductions::ALL }, ..options.clone() };
             let jacobian = try_impact(&robot, whole, state(None)).expect("an answer").matrices.expect("asked for");
             let along = |row: &[f64]| -row[2..].iter().zip(&rates).map(|(own, rate)| own * rate).sum::<f64>();
@@ -299,8 +301,8 @@ fn a_hinged_toe_lands_about_a_heel_that_rests() {
     }
 }
 
-/// A sole that the angles' rounding tilts by 1e-16 rad has no impulses of 1e16 N s: the answer is that of a sole that
-/// no rounding tilts.
+/// The rounding of angles tilts a sole by 1e-16 rad, which must not give impulses of 1e16 N s: the answer is that of a
+/// sole that no rounding tilts.
 #[test]
 fn a_flat_sole_is_level_in_every_pose() {
     for seed in 0..40 {
@@ -332,11 +334,11 @@ fn a_flat_sole_is_level_in_every_pose() {
     }
 }
 
-/// Two feet whose joints are held stand as those of one body: rounding tilts the line between them by 1e-16 rad, and no
-/// impulse of 1e16 N s balances on that.
+/// Two feet of braked legs act as feet of one body: rounding tilts the line between them by 1e-16 rad, which must not
+/// give impulses of 1e16 N s.
 #[test]
 fn feet_of_held_legs_are_level_as_one_body_is() {
-    // With bodies whose axes have these pitches where the feet are level.
+    // The axes of torso and legs have these pitches if the feet are level.
     let biped = |torso: f64, legs: [f64; 2], hip: urdf::Axis| {
         let mut elements = vec![urdf::link("torso", 5.0, turned([0.02, 0.1], -torso), 0.07, "")];
         for (at, side) in ["left", "right"].into_iter().enumerate() {
@@ -393,7 +395,7 @@ fn a_sole_that_few_digits_tilt_is_noted() {
         assert_eq!(found.contacts.len(), 2);
         assert_eq!(is_hard(&found), is_noted, "{pitch}: {:?}", found.notes);
     }
-    // A gram that passes on the momentum of a robot pushes far harder than its own motion needs.
+    // A foot of 0.1 g that passes on the momentum of a robot pushes far harder than its own motion needs.
     let foot = urdf::link("foot", 1e-4, [0.0; 2], 1e-9, &urdf::collision([0.0; 2], "sphere radius=\"0.01\""));
     let ankle = urdf::joint("ankle", urdf::HINGE, ["body", "foot"], [0.1, -0.5], "");
     let light = robot(&urdf::robot(&[urdf::link("body", 50.0, [0.0; 2], 1.0, ""), foot, ankle]));
