@@ -13,7 +13,7 @@ use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::{Defaults, Friction, Impact, Result, Robot, State};
 use std::fmt::Display;
 
-/// The answer to a state in JSON; friction is 0.5 unless it is given.
+/// Computes the forces of a state in JSON, with friction 0.5 unless the state gives another.
 fn try_forces(robot: &Robot, state: impl Display) -> Result<Box<Impact>> {
     let defaults = Defaults { friction: Some(Friction::Finite(0.5)), ..Defaults::default() };
     let state = State::from_json(&state.to_string(), robot, &defaults)?;
@@ -24,7 +24,7 @@ fn forces(robot: &Robot, state: impl Display) -> Box<Impact> {
     try_forces(robot, &state).unwrap_or_else(|error| panic!("{error}\n{state}"))
 }
 
-/// A rigid body of mass m and moment m k^2 whose frame is at its center, without shapes.
+/// A rigid body without shapes, of mass m and moment of inertia m k^2 (`square` is k^2), with its frame at its center.
 fn rod(mass: f64, square: f64) -> Robot {
     robot(&urdf::robot(&[urdf::link("rod", mass, [0.0; 2], mass * square, "")]))
 }

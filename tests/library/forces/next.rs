@@ -13,7 +13,7 @@ fn disc() -> Robot {
     robot(&urdf::body(0.1, &collision([0.0; 2], "sphere radius=\"0.5\"")))
 }
 
-/// The forces of a state that is taken to rest below this speed.
+/// The forces of a state with this `resting_speed`.
 fn forces(robot: &Robot, state: &Value, resting_speed: Option<f64>) -> Box<Impact> {
     let state = State::from_json(&state.to_string(), robot, &Defaults::default()).unwrap();
     Pipeline::new(robot, Options { resting_speed, ..Options::default() }).forces(&state).unwrap()
@@ -30,7 +30,7 @@ fn nexts(robot: &Robot, state: impl Display) -> Vec<Next> {
     outcomes.into_iter().filter_map(|outcome| outcome.next).collect()
 }
 
-/// A disc that falls with a spin: it sticks or slides on under its weight, and with a bounce it is in the air.
+/// A disc that has fallen sticks under its weight, slides on after a push, or is in the air after a bounce.
 #[test]
 fn disc_rests_slides_or_bounces() {
     let disc = disc();
@@ -50,7 +50,7 @@ fn disc_rests_slides_or_bounces() {
     assert_eq!(after(json!({}), push), expected(Verdict::Unique, Some(SlidePlus)));
 }
 
-/// A point that slides as its body turns about it; its normal velocity is what rounding leaves of 0.1 - 0.1.
+/// A point slides while its body turns about it; its normal velocity is what rounding leaves of 0.1 - 0.1.
 #[test]
 fn what_rounding_leaves_does_not_bounce() {
     let disc = disc();
@@ -66,7 +66,7 @@ fn what_rounding_leaves_does_not_bounce() {
     assert_eq!(found, nexts(&disc, turning(0.0)));
 }
 
-/// Loops, an uncertainty and a brief answer change nothing in it, nor it in them.
+/// Loops, an uncertainty and a brief answer do not change `next`, and `next` does not change the rest of the answer.
 #[test]
 fn next_stands_next_to_all_else() {
     let [ramone, bar] = [include_str!("../../../urdf/ramone.urdf"), include_str!("../../../urdf/five_bar.urdf")];
@@ -87,7 +87,7 @@ fn next_stands_next_to_all_else() {
     }
 }
 
-/// The same answer as to a state with the velocities after the impact.
+/// `next` equals the forces of a state with the velocities after the impact.
 #[test]
 fn next_is_forces_at_the_velocities_after() {
     let walker = robot(include_str!("../../../urdf/minimalistic.urdf"));
@@ -125,7 +125,8 @@ fn next_is_forces_at_the_velocities_after() {
     assert!(verdicts.iter().all(|&count| count > 2), "{verdicts:?}");
 }
 
-/// Rounding leaves the robot a rate of turn of 1e-16 rad/s, by which no foot of held legs moves against the other.
+/// Rounding leaves the robot a pitch rate of 1e-16 rad/s, with which the feet of braked legs do not move relative to
+/// each other.
 #[test]
 fn held_legs_stand_on_both_feet_after_an_impact() {
     let ramone = ramone();
@@ -144,8 +145,8 @@ fn held_legs_stand_on_both_feet_after_an_impact() {
     }
 }
 
-/// An arm that is bolted to the world has more rows of contact than joints, and stands with rates of 1e-16 rad/s, or of
-/// 1e-13 rad/s where its impulse is one of many.
+/// An arm that is bolted to the world has more contact rows than joints. It stands with rates of 1e-16 rad/s, or of
+/// 1e-13 rad/s if its impulse is not unique.
 #[test]
 fn what_an_impact_stops_stands_as_it_would_without_rates() {
     let links = "<link name=\"world\"/>".to_owned() + &link("l", 1.0, [0.15, -0.2], 0.01, "");
@@ -171,7 +172,7 @@ fn what_an_impact_stops_stands_as_it_would_without_rates() {
     assert!(stands > 10, "{stands}");
 }
 
-/// The same of a robot on both feet of held legs whose rates are noise, below the resting speed.
+/// A robot on both feet of braked legs, with rates that are noise below the resting speed.
 #[test]
 fn rates_below_the_resting_speed_are_zero_where_a_robot_stands() {
     let ramone = ramone();
@@ -188,7 +189,7 @@ fn rates_below_the_resting_speed_are_zero_where_a_robot_stands() {
     assert_eq!(modes(&found), [[Stick; 2]]);
     assert_eq!(modes(&forces(json!({}), None)), modes(&found));
     assert!(found.notes.iter().any(|note| note == "all rates are taken as zero (resting speed 0.000001 m/s)"));
-    // A joint that moves is not noise, and none of the rates is taken away.
+    // A joint that moves is not noise; no rate is then taken as zero.
     let moving = forces(json!({"base": {"pitch": 5e-17}, "joints": {"left_hip": 0.1}}), Some(1e-6));
     assert!(!moving.notes.iter().any(|note| note.starts_with("all rates")), "{:?}", moving.notes);
 }

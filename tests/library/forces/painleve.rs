@@ -1,5 +1,5 @@
-//! Painleve's rod: its lower end slides along the ground, p = 1 + (l/k)^2 cos(theta) (cos(theta) - mu s sin(theta)),
-//! and b_n = l omega^2 sin(theta) - g.
+//! Painleve's rod, whose lower end slides along the ground, against its closed form: p = 1 + (l/k)^2 cos(theta)
+//! (cos(theta) - mu s sin(theta)) and b_n = l omega^2 sin(theta) - g.
 
 use super::{forces, modes, outcomes, rod};
 use crate::support::random::Random;
@@ -9,7 +9,7 @@ use serde_json::json;
 
 const GRAVITY: f64 = 9.81;
 
-/// A rod with its center ahead of its lower end, at this inclination.
+/// A rod with its center ahead of its lower end, at the inclination `theta` \[rad\].
 #[derive(Debug, Clone, Copy)]
 struct Rod {
     half: f64,
@@ -18,7 +18,7 @@ struct Rod {
     theta: f64,
     omega: f64,
     friction: f64,
-    /// Velocity of the lower end along the ground; backward, friction drives it into the ground.
+    /// Velocity of the lower end along the ground. If it is backward, friction drives the end into the ground.
     slide: f64,
 }
 
@@ -85,11 +85,11 @@ fn rod_is_in_the_region_of_its_closed_form() {
         assert_eq!((modes(&found), analysis.verdict, analysis.proven), (expected, verdict, true), "{rod:?}");
         for outcome in outcomes(&found).iter().filter(|outcome| outcome.modes == on) {
             let force = -2.0 * lift / pressure;
-            // The end is where f64 puts it.
+            // The lower end is rounded to f64, which p amplifies where it is near 1e-6.
             assert!((outcome.impulse[0][1] - force).abs() < 1e-9 * force.abs(), "{rod:?} {outcome:?}");
             assert_eq!(outcome.velocity_after[0][1], 0.0);
         }
-        // Without finite forces an impact without approach ends the slide.
+        // If there are no finite forces, an impact without approach ends the slide.
         let shock =
             found.sustained.unwrap().shock.map(|shock| shock.iter().map(|own| own.modes.clone()).collect::<Vec<_>>());
         assert_eq!(shock, (verdict == Verdict::None).then(|| vec![vec![Mode::Stick]]), "{rod:?}");

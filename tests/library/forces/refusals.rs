@@ -1,4 +1,4 @@
-//! States that are in no sustained contact.
+//! States that are refused because they are not in sustained contact, and similar ones that are answered.
 
 use super::{rod, try_forces};
 use crate::support::impact::{outcomes, robot};
@@ -41,7 +41,7 @@ fn circles_of_other_radii_at_one_place_are_refused() {
 
 #[test]
 fn uncertainty_leaves_what_is_zero_to_rounding() {
-    // A rolling wheel: the velocity of its lowest point is zero but for rounding.
+    // A rolling wheel: the velocity of its lowest point is zero up to rounding.
     let wheel = robot(&body(0.1, &collision([0.0; 2], "sphere radius=\"0.3\"")));
     let mut state = json!({"position": {"base": {"z": 0.3, "pitch": 0.3}},
         "velocity": {"base": {"x": 0.3 * 0.7, "z": 1e-17, "pitch": 0.7}}});
@@ -50,7 +50,7 @@ fn uncertainty_leaves_what_is_zero_to_rounding() {
     assert_eq!(format!("{:?}", try_forces(&wheel, &state).unwrap().sustained.unwrap().slips), without);
 }
 
-/// Two points that rounding alone holds apart are one place, about which the body may turn.
+/// Two points that differ only by rounding are one place, about which the body may turn.
 #[test]
 fn places_apart_by_rounding_do_not_stop_a_turn() {
     let at = |x: f64| json!({"link": "rod", "offset": [x, 0, -0.3]});
@@ -84,8 +84,8 @@ fn what_leaves_the_range_of_f64_has_a_remedy() {
     }
 }
 
-/// Two links of 0.5 m hang straight down from a pin 1 m above their end: along the line they hold no velocity, but their
-/// turns bring both ends together at 0.5 omega^2 each.
+/// Two links of 0.5 m hang straight down, and a loop pins their end 1 m below their hinge. Their rates keep it closed,
+/// but their rotation pulls each end toward the knee with 0.5 omega^2.
 #[test]
 fn a_loop_that_moves_through_its_dead_point_is_refused() {
     let leg = |name: &str, shape: &str| link(name, 1.0, [0.0, -0.25], 0.02, shape);
@@ -107,7 +107,8 @@ fn a_loop_that_moves_through_its_dead_point_is_refused() {
     assert!(try_forces(&tri, state(0.0)).is_ok(), "at rest it stays closed");
 }
 
-/// Three cranks of one length between two rails, the third of which follows from the others, moving, hanging and locked.
+/// A coupler on three parallel cranks of one length: one loop follows from the others, whether they move, hang or are
+/// locked.
 #[test]
 fn loops_that_follow_from_others_are_no_dead_points() {
     let crank = |name: &str, at: f64| {
@@ -127,10 +128,10 @@ fn loops_that_follow_from_others_are_no_dead_points() {
         (0.7, 30.0, json!(["ja"]), 9.81),
         (0.7, 1e4, json!([]), 0.0),
     ] {
-        // Exact, and as a pose of five digits leaves the loops open.
+        // The exact pose, and one whose rounding to five digits leaves the loops open.
         for off in [[0.0; 2], [3e-6, -4e-6]] {
             let state = json!({
-                // The coupler stays level: its hinge turns back.
+                // The coupler stays level: its hinge turns back by the same angle.
                 "position": {"joints": {"ja": angle, "jb": angle + off[0], "jc": angle + off[1], "jd": -angle}},
                 "velocity": {"joints": {"ja": rate, "jb": rate, "jc": rate, "jd": -rate}},
                 "held": held, "gravity": gravity, "loops": [end("b", 0.4), end("c", 0.8)], "contacts": [],

@@ -1,4 +1,4 @@
-//! Virtual model control: joint torques that imitate springs and dampers, against moments worked out by hand.
+//! Virtual model control: joint torques that imitate springs and dampers, compared with moments worked out by hand.
 
 use super::{forces, try_forces};
 use crate::support::impact::{outcomes, reduced};
@@ -76,12 +76,12 @@ fn spring_to_the_world_gives_its_moments() {
     let down = 50.0 * 0.55;
     assert!(near(&record["virtual"][1]["torque"]["slide"], down), "{record}");
     assert!(near(&record["torque"]["hinge"], 7.0 + hinge) && near(&record["torque"]["slide"], down), "{record}");
-    // The base is 0.7 m behind and 0.3 m below the first point; the second is below it.
+    // The base is 0.7 m behind the first point and 0.3 m below it; the second point is straight below the base.
     let about = 0.3 * force[0] - 0.7 * force[1];
     let unrealized = &record["unrealized"];
     assert!(near(&unrealized["fx"], force[0]) && near(&unrealized["fz"], force[1] - down), "{unrealized}");
     assert!(near(&unrealized["moment"], about), "{unrealized}");
-    // What is unrealized is not applied: the robot moves as under the torques alone.
+    // The unrealized part is not applied: the robot moves as under the joint torques alone.
     let mut alone = state.clone();
     alone["torque"] = record["torque"].clone();
     alone.as_object_mut().unwrap().remove("virtual");
@@ -93,7 +93,8 @@ fn spring_to_the_world_gives_its_moments() {
 
 #[test]
 fn spring_between_links_asks_nothing_of_pairs() {
-    // Between the pitches of two links: equal and opposite moments, which the joints between them give alone.
+    // A spring between the pitches of two links gives opposite moments, which the joints between them supply
+    // completely.
     let robot = arm(Base::Floating);
     let state = json!({
         "position": {"base": {"pitch": 0.7}, "joints": {"hinge": 0.4}},
@@ -103,7 +104,8 @@ fn spring_between_links_asks_nothing_of_pairs() {
             "pitch": {"stiffness": 50, "damping": 5, "target": 0.1}, "moment": 3}],
     });
     let record = record(&robot, &state, &forces(&robot, &state));
-    // The hand is turned by 0.4 + (0.5 * 0.4 + 0.2) against the body, at 2 + 1 rad/s; the coordinate moves both joints.
+    // The hand is turned by 0.4 + (0.5 * 0.4 + 0.2) relative to the body, at 2 + 1 rad/s. The coordinate moves both
+    // joints.
     let moment = 3.0 + 50.0 * (0.1 - 0.8) - 5.0 * 3.0;
     let own = &record["virtual"][0];
     assert!(near(&own["moment"], moment) && near(&own["torque"]["hinge"], 1.5 * moment), "{own}");
@@ -123,7 +125,8 @@ fn bolted_robot_leaves_nothing_unrealized() {
 
 #[test]
 fn held_joint_carries_its_load_through() {
-    // With the hinge held the hand's wrist is, too: only the slide moves, and the springs on the arm have no effect.
+    // The braked hinge holds the mimic joint at the wrist, too: only the slide moves; springs on the arm have no
+    // effect.
     let robot = arm(Base::Fixed);
     let rail = json!({"a": {"link": "rail"}, "b": {"world": [0, 0]}, "stiffness": [0, 50]});
     let hand = json!({"a": {"link": "hand"}, "b": {"world": [3, 1]}, "stiffness": [70, 80]});

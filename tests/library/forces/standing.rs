@@ -20,7 +20,7 @@ fn block_stands_by_the_lever_rule() {
     let found = forces(&block(), json!({"position": {"base": {"z": 0.2}}}));
     assert_eq!(modes(&found), [[Mode::Stick; 2]]);
     let outcome = &outcomes(&found)[0];
-    // Both share what holds the block along the ground, so that only the sum of that is determined: here none.
+    // Only the sum of both tangential forces is determined: here it is zero.
     assert!(!outcome.impulse_unique && outcome.proven);
     for (found, expected) in outcome.impulse.iter().zip([0.25, 0.75]) {
         assert!((found[1] - expected * 2.0 * GRAVITY).abs() < 1e-13 && found[0].abs() < 1e-14, "{outcome:?}");
@@ -41,8 +41,8 @@ fn odd_gravity_is_noted() {
     }
 }
 
-/// A wheel of radius r rolls down a slope with g sin / (1 + I / (m r^2)); its lowest point has no acceleration along
-/// the ground, and none of its own.
+/// A wheel of radius r rolls down a slope with the acceleration g sin / (1 + I / (m r^2)); its lowest point does not
+/// accelerate along the ground.
 #[test]
 fn wheel_rolls_down_a_slope() {
     let (radius, slope, spin) = (0.25, -0.2_f64, 3.0);
@@ -71,7 +71,7 @@ fn nothing_touches_in_mid_flight() {
     assert_eq!(outcomes(&found)[0].velocity().collect::<Vec<_>>(), [0.0, -1.62, 0.0]);
 }
 
-/// A heel that lifts off with the turning foot takes no part; the toe about which it turns does.
+/// A heel that lifts off as the foot turns takes no part; the toe about which the foot turns does.
 #[test]
 fn heel_leaves_while_the_foot_turns() {
     let found = forces(
@@ -84,7 +84,7 @@ fn heel_leaves_while_the_foot_turns() {
     assert!(notes.contains("body/0 leaves the ground"), "{notes}");
 }
 
-/// A body of 5 kg on a thigh and a foot, which stands wherever its contacts hold it while the body turns.
+/// A body of 5 kg on a thigh and a foot. The contacts hold the lower links while the body turns.
 #[test]
 fn what_stands_by_rates_that_cancel_stands_in_every_digit() {
     let leg = robot(&urdf::robot(&[
@@ -96,7 +96,8 @@ fn what_stands_by_rates_that_cancel_stands_in_every_digit() {
     ]));
     let on = |link: &str, [x, z]: [f64; 2]| json!({"link": link, "offset": [x, 0, z]});
     let heel = on("foot", [-0.05, -0.05]);
-    // On level ground and a ramp; and at a point of the thigh, which does not turn either.
+    // Contacts of the foot on level ground and on a ramp, and one with a point of the thigh, which does not turn
+    // either.
     let ramp =
         json!({"ground": {"profile": [[-9, 0], [0.1, 0], [9, 1.78]]}, "contacts": [heel, on("foot", [0.15, -0.03])]});
     let kneeling = json!({"contacts": [heel, on("foot", [0.15, -0.05]), on("thigh", [0.2, -0.3])]});
@@ -121,7 +122,7 @@ fn what_stands_by_rates_that_cancel_stands_in_every_digit() {
     }
 }
 
-/// Two soles on legs that slide or swing, all of which have one rate of turn: rounding, or below the resting speed.
+/// Two soles on legs that slide or swing. All turn at one rate, which is rounding or below the resting speed.
 #[test]
 fn what_turns_as_one_with_a_sole_that_stands_does_not_turn() {
     let sole =

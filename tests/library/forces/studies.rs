@@ -1,4 +1,4 @@
-//! Studies that ask for forces: Painleve's uniform rod against its friction, its angle and its rate of turn.
+//! Studies that ask for forces: Painleve's uniform rod over its friction, its angle and its rate of turn.
 
 use crate::support::urdf;
 use crate::sweep::studies::with;
@@ -51,13 +51,14 @@ fn force_has_no_bound_where_the_paradox_begins() {
         let [border] = &survey.borders[..] else { panic!("{survey:?}") };
         assert!((border.at - friction_at_pole(0.9)).abs() < 1e-11, "{}", border.at);
         let ended: Vec<_> = border.transition.ended.iter().map(|own| (own.inequality, &*own.modes, own.side)).collect();
-        // Below it slides on, or above it, too, where the rod would lift off anyway.
+        // Below the pole the rod slides on; for the greater omega, at which it also lifts off, it can slide above the
+        // pole.
         let side = if omega < 5.0 { Side::Below } else { Side::Above };
         assert_eq!(ended, [(Inequality::UnboundedForce, &[SlideMinus][..], side)]);
     }
 }
 
-/// The pole is one foot's, and what is violated most beyond it is the other's.
+/// The pole belongs to one foot, and the inequality that is violated most beyond it belongs to the other.
 #[test]
 fn the_foot_whose_force_has_no_bound_is_named() {
     let leg = |link: &str| json!({"link": link, "offset": [0, 0, -1]});
@@ -111,7 +112,7 @@ fn map_has_the_four_regions_of_the_rod() {
         // regions meet their borders are joined within a cell of 1e-4 of the ranges.
         let meeting = (2.0 * GRAVITY / (5.2 * 5.2)).asin();
         for &[mu, theta] in points.iter().filter(|[mu, theta]| *mu < 4.0 && (theta - meeting).abs() > 1e-3) {
-            // Points are found to 1e-9 of the ranges, and the curve rises by up to 50 of one in one of the other.
+            // Points are found to 1e-9 of the ranges, and the curve is as steep as 50.
             assert!((mu - friction_at_pole(theta)).abs() < 1e-7 * mu, "{theta} {mu}");
         }
         let least = points.iter().fold(f64::INFINITY, |least, &[mu, _]| least.min(mu));
