@@ -1,4 +1,4 @@
-//! `--loops FILE` and the fields of results.
+//! The option `--loops FILE`, and the fields of results about loops.
 
 use crate::constraints::four_bar::{CRANKS, WIDTH, parallelogram, pin, state};
 use crate::support::command::{Run, file, heelstrike_reads, place};
@@ -30,7 +30,7 @@ fn a_file_of_loops_serves_the_states_that_have_none() {
     let lines = |states: &[&Value]| states.iter().map(|state| format!("{state}\n")).collect::<String>();
     let alone = run("batch", &["--matrices"], &lines(&[&own, &open])).well();
     let with = run("batch", &["--matrices", "--loops", &loops()], &lines(&[&own, &open, &free])).well();
-    // But for the number of its line.
+    // The answer without its first field, the number of its line.
     let answer = |line: &str| line.split_once(',').expect("an object").1.to_owned();
     let [alone, lines] = [&alone, &with].map(|run| run.stdout.lines().map(answer).collect::<Vec<_>>());
     assert_eq!(lines, [&*alone[0], &*alone[0], &*alone[1]]);

@@ -1,5 +1,6 @@
-//! A leg of five bars (torso, two thighs, two shanks) that the tree has to cut open, against the same leg without the
-//! loop: its dependent rates are solved for (implicit differentiation), v = T v_red with T = [1; -K_d^-1 K_i].
+//! A five-bar leg (torso, two thighs, two shanks), which the tree has to cut open, compared with reduced coordinates of
+//! the closed leg: the dependent rates are solved for (implicit differentiation), v = T v_red with T = [1; -K_d^-1
+//! K_i].
 
 use crate::constraints::{assert_near, flat, impact, matrices};
 use crate::support::impact::{loop_impulses, modes, outcomes, robot, velocities_after};
@@ -10,14 +11,14 @@ use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
-/// Sums of some twenty products, inverses of matrices of condition below a few thousand.
+/// Tolerance in eps: sums of some twenty products, inverses of matrices of condition below a few thousand.
 const ROUNDINGS: f64 = 1e5;
 
 const THIGH: f64 = 0.4;
 const SHANK: f64 = 0.5;
 const WIDTH: f64 = 0.2;
 
-/// With both thighs and the left shank of a leg that hangs this far behind the root's middle.
+/// Adds both thighs and the left shank of a leg that hangs this far behind the root's middle.
 fn open_leg(mechanism: Mechanism, leg: &str, behind: f64) -> Mechanism {
     let left = format!("{leg}left_thigh");
     mechanism
@@ -26,7 +27,7 @@ fn open_leg(mechanism: Mechanism, leg: &str, behind: f64) -> Mechanism {
         .with(&format!("{leg}right_thigh"), "root", [0.5 * WIDTH - behind, 0.0], 0.7, [-0.01, -0.18])
 }
 
-/// The shanks' ends are one pin. Its foot is that of the left shank.
+/// Adds a whole leg. The pin joins the ends of its shanks; the foot is the end of the left one.
 fn with_leg(mechanism: Mechanism, leg: &str, behind: f64) -> Mechanism {
     let (thigh, shank) = (format!("{leg}right_thigh"), format!("{leg}right_shank"));
     open_leg(mechanism, leg, behind).with(&shank, &thigh, [0.0, -THIGH], 0.3, [0.02, -0.25])
@@ -51,8 +52,8 @@ const PIN: Ends = [("left_shank", [0.0, -SHANK]), ("right_shank", [0.0, -SHANK])
 const HIND_PIN: Ends = [("hind_left_shank", [0.0, -SHANK]), ("hind_right_shank", [0.0, -SHANK])];
 const KNEE: Ends = [("right_thigh", [0.0, -THIGH]), ("right_shank", [0.0, SHANK])];
 
-/// The coordinates of the tree that is cut at the pin, from pitch and the angles of both thighs: two circles about the
-/// knees.
+/// The coordinates of the tree that is cut at the pin, from the pitch and the angles of both thighs: the foot is where
+/// two circles about the knees meet.
 fn closed(pitch: f64, left: f64, right: f64) -> Vec<f64> {
     let down = |angle: f64, length: f64| [-length * f64::sin(angle), -length * f64::cos(angle)];
     let [a, b] = [(-0.5 * WIDTH, left), (0.5 * WIDTH, right)].map(|(x, angle)| {
@@ -62,7 +63,7 @@ fn closed(pitch: f64, left: f64, right: f64) -> Vec<f64> {
     let apart = [b[0] - a[0], b[1] - a[1]];
     let distance = apart[0].hypot(apart[1]);
     let drop = (SHANK * SHANK - 0.25 * distance * distance).sqrt();
-    // Below the middle of both knees.
+    // The intersection below the knees.
     let foot = [0.5 * (a[0] + b[0]) + drop * apart[1] / distance, 0.5 * (a[1] + b[1]) - drop * apart[0] / distance];
     let angle = |knee: [f64; 2]| f64::atan2(-(foot[0] - knee[0]), -(foot[1] - knee[1]));
     vec![0.3, 0.9, pitch, left, angle(a) - left, right, angle(b) - right]
@@ -73,7 +74,7 @@ fn loop_rows(mechanism: &Mechanism, q: &[f64], [a, b]: Ends) -> DMatrix<f64> {
     mechanism.point_rates(q, a.0, a.1) - mechanism.point_rates(q, b.0, b.1)
 }
 
-/// T: rates of the tree for those of x, z, pitch and both thighs (columns 3 and 5).
+/// T, from the rates of x, z, pitch and both thighs (columns 3 and 5) to those of the tree.
 fn velocity_map(rows: &DMatrix<f64>) -> DMatrix<f64> {
     let (kept, solved) = ([0, 1, 2, 3, 5], [4, 6]);
     let dependent = rows.select_columns(&solved).try_inverse().expect("bent knees") * rows.select_columns(&kept);
@@ -108,7 +109,7 @@ fn strike(mechanism: &Mechanism, q: &[f64], v: &[f64], loops: &[Ends]) -> Box<Im
     proven(impact(&robot(&mechanism.urdf(0)), &state(mechanism, q, v, loops)))
 }
 
-/// q and v of the tree that is cut at the pin, its loop kept.
+/// Random q and v of the tree that is cut at the pin, which keep its loop closed.
 fn case() -> impl Strategy<Value = (Vec<f64>, DVector<f64>)> {
     let rates = prop::array::uniform5(-1.0..1.0f64);
     (-0.5..0.5f64, -0.2..0.7f64, -0.7..0.2f64, rates)
@@ -140,11 +141,11 @@ proptest! {
         let found = strike(&mechanism, &q, v.as_slice(), &[PIN]);
         let matrices = matrices(&found);
 
-        // Those of the tree are the tree's.
+        // M and J are those of the open tree.
         let (mass, jacobian) = (mechanism.mass_matrix(&q), jacobian(&mechanism, &q));
         assert_near(&matrices.mass_matrix, &mass, ROUNDINGS);
         assert_near(&matrices.contact_jacobian, &jacobian, ROUNDINGS);
-        // G is that of the leg without the loop.
+        // G is that of the closed leg in reduced coordinates.
         let reduced = (map.transpose() * &mass * &map).try_inverse().expect("positive definite");
         let feet = &jacobian * &map;
         assert_near(&matrices.delassus, &(&feet * &reduced * feet.transpose()), ROUNDINGS);
@@ -161,7 +162,7 @@ proptest! {
             // M (v+ - v-) = J' L + K' l.
             let given = jacobian.transpose() * &impulse + rows.transpose() * flat(&loops);
             assert_vectors_near((&mass * (&after - &v)).as_slice(), given.as_slice(), 10.0 * size);
-            // Loops take no energy.
+            // Impulses of loops do no work.
             let left = 0.5 * after.dot(&(&mass * &after));
             prop_assert!((energy - left - outcome.energy_loss).abs() <= ROUNDINGS * f64::EPSILON * energy);
         }
@@ -184,8 +185,8 @@ proptest! {
         }
     }
 
-    /// Two legs of five bars, one behind the other: the order of the loops and of their ends is the order and the sign
-    /// of their impulses and nothing else.
+    /// Two five-bar legs, one behind the other: the order of loops and of their ends changes only the order and the
+    /// sign of their impulses.
     #[test]
     fn loop_impulses_follow_order_and_ends((q, v) in case()) {
         let mechanism = with_leg(cut_at_the_pin(), "hind_", 0.7);
@@ -201,7 +202,7 @@ proptest! {
         }
     }
 
-    /// An impulse on the loop acts through it: it leaves the velocity that the leg without the loop has.
+    /// An impulse on a link of the loop leaves the velocity that it gives the closed leg in reduced coordinates.
     #[test]
     fn applied_impulses_act_through_the_loop((q, v) in case(), push in prop::array::uniform2(-2.0..2.0f64)) {
         let mechanism = cut_at_the_pin();
@@ -220,7 +221,7 @@ proptest! {
         prop_assert_eq!(loop_impulses(&found)[0].len(), 1);
     }
 
-    /// With a stance the rates that a loop needs are taken from the joints, and the foot stays at rest.
+    /// With a stance, the rates that close a loop are taken from the joints, and the foot stays at rest.
     #[test]
     fn a_stance_rests_although_its_leg_is_closed((q, mut v) in case(), noise in -1e-4..1e-4f64) {
         let mechanism = cut_at_the_pin();

@@ -27,12 +27,12 @@ pub const WIDTH: f64 = 0.8;
 
 pub const CRANKS: [(&str, f64); 2] = [("front", 0.0), ("rear", WIDTH)];
 
-/// With a rod of mass M and length L.
+/// Adds a rod of mass M and length L.
 fn rod(mechanism: Mechanism, name: &str, parent: &str, origin: Point) -> Mechanism {
     mechanism.with(name, parent, origin, M, [0.0, -0.5 * L]).but(|rod| rod.moment = M * L * L / 12.0)
 }
 
-/// Cranks hang from the root at these places; the coupler on the first, its middle `WIDTH` / 2 in front of that.
+/// Cranks that hang from the root at these places, and a coupler on the first, whose middle is `WIDTH` / 2 ahead of it.
 pub fn parallelogram(cranks: &[(&str, f64)]) -> Mechanism {
     let root = Mechanism::of(1.0, [0.0; 2], 1.0);
     let hung = cranks.iter().fold(root, |mechanism, &(name, x)| rod(mechanism, name, "root", [x, 0.0]));
@@ -43,7 +43,7 @@ pub fn bolted(mechanism: &Mechanism) -> Robot {
     reduced(&mechanism.urdf(0), &Reduction { base: Some(Base::Fixed), ..Reduction::default() })
 }
 
-/// All cranks at q and q', the coupler level; a foot below the coupler's middle.
+/// The state with all cranks at q and q', a level coupler, and a contact point below the coupler's middle.
 pub fn state(mechanism: &Mechanism, q: f64, rate: f64, loops: Value) -> Value {
     let joints = |value: f64| {
         let value = |name: &String| if name == "coupler" { -value } else { value };
@@ -55,12 +55,12 @@ pub fn state(mechanism: &Mechanism, q: f64, rate: f64, loops: Value) -> Value {
         "contacts": [point("coupler", [0.5 * WIDTH, -0.1])]})
 }
 
-/// The coupler's point over the place `x` of a crank's pivot, and the crank's end.
+/// The loop that joins the end of a crank, whose pivot is at `x`, to the coupler.
 pub fn pin(crank: &str, x: f64) -> Value {
     json!({"a": point(crank, [0.0, -L]), "b": point("coupler", [x, 0.0])})
 }
 
-/// G must be d d' times this.
+/// Asserts that G is d d' times `expected`.
 #[track_caller]
 fn assert_delassus(found: &Impact, q: f64, expected: f64) {
     let direction = [-q.cos(), q.sin()];
@@ -71,14 +71,14 @@ fn assert_delassus(found: &Impact, q: f64, expected: f64) {
     }
 }
 
-/// The impulse on the only loop must be this.
+/// Asserts the impulse on the only loop.
 #[track_caller]
 fn assert_loop(found: &Impact, [x, z]: Point) {
     let [[found_x, found_z]] = loop_impulses(found)[0][..] else { panic!("{:?}", loop_impulses(found)) };
     assert!((found_x - x).abs() < 1e-13 && (found_z - z).abs() < 1e-13, "{found_x} {found_z}, not {x} {z}");
 }
 
-/// The outcome's impulse and rates as they must be for `cranks` cranks; gives the normal impulse.
+/// Asserts the impulse and rates of the only outcome for this many cranks, and returns the normal impulse.
 #[track_caller]
 pub fn assert_stops(found: &Impact, q: f64, rate: f64, cranks: f64) -> f64 {
     let mass = (cranks * M / 3.0 + M_COUPLER) * L * L;
@@ -102,7 +102,7 @@ fn a_parallelogram_strikes_the_ground_as_on_paper() {
     let (q, rate) = (0.6, -2.0);
     let found = impact(&robot, &state(&mechanism, q, rate, json!([pin("rear", WIDTH)])));
     let normal = assert_stops(&found, q, rate, 2.0);
-    // On the crank: f of the coupler, both rates go from `rate` to zero.
+    // The impulse f of the coupler on the rear crank. Both rates go from `rate` to zero.
     let change = -rate;
     let f_z = 0.5 * (normal - M_COUPLER * L * change * q.sin());
     let f_x = (M * L * change / 3.0 - f_z * q.sin()) / -q.cos();
@@ -111,8 +111,8 @@ fn a_parallelogram_strikes_the_ground_as_on_paper() {
 
 #[test]
 fn a_rod_pinned_by_a_loop_is_a_pendulum() {
-    // Its joint is free to slide in the tree; the loop holds its upper end to the root. G at the free end, at the angle
-    // q: l^2 d d' / (m l^2 / 3), d as above.
+    // In the tree the rod's hinge can slide; the loop pins its upper end to the root. At its free end, at the angle q,
+    // G = l^2 d d' / (m l^2 / 3) with d as above.
     let mechanism = Mechanism::of(1.0, [0.0; 2], 1.0)
         .with("along", "root", [0.0; 2], 0.0, [0.0; 2])
         .but(|link| link.kind = Axis::Prismatic([1.0, 0.0]))
@@ -124,7 +124,7 @@ fn a_rod_pinned_by_a_loop_is_a_pendulum() {
         "loops": [{"a": point("rod", [0.0; 2]), "b": point("root", [0.0; 2])}], "contacts": [point("rod", [0.0, -L])]});
     let found = impact(&bolted(&mechanism), &state);
     assert_delassus(&found, q, 3.0 / M);
-    // What the rod's middle gains comes from the ground and the pivot together.
+    // The momentum that the rod's middle gains comes from the ground and the pivot together.
     let analysis = found.analysis.as_ref().expect("an answer");
     let normal = analysis.outcomes[0].impulse[0][1];
     let [x, z] = [-q.cos(), q.sin()].map(|along| M * 0.5 * L * -rate * along);

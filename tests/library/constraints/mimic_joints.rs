@@ -1,4 +1,4 @@
-//! Mimic joints: M = T' M_all T and J = J_all T, with q and v of the mimicked joints alone.
+//! Mimic joints: M = T' M_all T and J = J_all T, with q and v of the joints that mimic no other.
 
 use crate::constraints::{assert_near, assert_struck, impact, matrices, try_impact};
 use crate::support::impact::{modes, robot, velocities_after};
@@ -10,11 +10,11 @@ use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
-/// Rounding of sums of some twenty products each, and of their inverses; conditions are below a few hundred.
+/// Tolerance in eps: sums of some twenty products each, and inverses of matrices of condition below a few hundred.
 const ROUNDINGS: f64 = 1e4;
 
-/// A thigh whose shank follows it on the same branch, a toe that follows it too, and a tail that a slide on the other
-/// leg follows, although it comes later.
+/// A thigh that its shank and toe mimic on the same branch, and a tail that a slide on the other leg mimics although
+/// the tail comes later.
 fn mechanism() -> Mechanism {
     Mechanism::of(3.0, [0.05, 0.1], 0.2)
         .with("thigh", "root", [0.1, -0.1], 1.0, [0.0, -0.2])
@@ -30,7 +30,7 @@ fn mechanism() -> Mechanism {
         .but(|tail| tail.kind = Axis::Revolute(-1.0))
 }
 
-/// The state at coordinates of the independent joints, its toe and foot on the ground.
+/// The state at these coordinates of the independent joints, with contacts at toe and foot.
 fn state(mechanism: &Mechanism, q: &[f64], v: &[f64]) -> Value {
     let (all, map) = mechanism.tied(q);
     let mut state = mechanism.state(0, &all, (map * DVector::from_row_slice(v)).as_slice(), &[]);
@@ -98,10 +98,10 @@ fn a_mimic_joint_has_no_coordinate() {
     assert_eq!((error.place(), error.remedy()), (Some("position.joints.shank"), Some("name thigh instead")));
 }
 
-/// Signs are proven for exactly multiplier q + offset, not for its rounding: one mimic joint turns by 3 q, three on it
-/// turn back by q each, so that the last is level for every q. Its point, straight behind the CoG of all, then has no
-/// tangential velocity at all and, since nothing couples t and n there, neither has it after the impact: frictionless,
-/// it sticks.
+/// Signs are proven for exactly multiplier q + offset, not for its rounding. One mimic joint turns by 3 q, and three
+/// joints on it turn back by q each, so that the last link is level for every q. Its contact point, straight behind the
+/// CoG of all, has no tangential velocity. Nothing couples t and n there, so that it has none after the impact: it
+/// sticks without friction.
 #[test]
 fn the_angle_of_a_mimic_joint_is_exact() {
     let angle = 0.1_f64;

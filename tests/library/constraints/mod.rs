@@ -1,5 +1,5 @@
-//! What holds coordinates together: loops, and mimic joints. Every expectation comes from `support::mechanism`, which
-//! knows nothing of the crate, or from paper.
+//! Loops and mimic joints. Every expectation comes from `support::mechanism`, which does not use the crate, or is
+//! worked out by hand.
 
 mod command;
 mod five_bar;
@@ -31,7 +31,7 @@ fn flat(vectors: &[[f64; 2]]) -> DVector<f64> {
     DVector::from_vec(vectors.concat())
 }
 
-/// Asserts that both agree to `parts` eps of the expected one's largest entry.
+/// Asserts that both agree to `parts` eps of the largest expected entry.
 #[track_caller]
 fn assert_near(found: &[Vec<f64>], expected: &DMatrix<f64>, parts: f64) {
     let found = crate::support::scaled::matrix(found);
@@ -40,8 +40,8 @@ fn assert_near(found: &[Vec<f64>], expected: &DMatrix<f64>, parts: f64) {
     assert!(error <= parts * f64::EPSILON, "{error:e}\n{found}\n{expected}");
 }
 
-/// Asserts that M, J, G and the kinetic energy are those of `mass` and `jacobian`, and that impulses change `v` by them,
-/// to so many roundings.
+/// Asserts that M, J, G and the kinetic energy are those of `mass` and `jacobian`, and that impulses change `v`
+/// accordingly. `roundings` is the tolerance of M and J in eps.
 #[track_caller]
 pub fn assert_struck(found: &Impact, mass: &DMatrix<f64>, jacobian: &DMatrix<f64>, v: &DVector<f64>, roundings: f64) {
     let matrices = matrices(found);

@@ -33,7 +33,8 @@ fn a_loop_given_twice_counts_once() {
     assert_eq!(loop_impulses(&twice)[0], [loop_impulses(&once)[0][0], [0.0; 2]]);
 }
 
-/// A third crank guides the coupler no more than two do: of its two rows one is new, its own angle.
+/// A third crank does not guide the coupler more than two do: of its two loop rows only one is new, that of its own
+/// angle.
 #[test]
 fn a_parallelogram_with_a_third_crank_still_moves() {
     let (mechanism, loops) = guided_twice();
@@ -44,7 +45,7 @@ fn a_parallelogram_with_a_third_crank_still_moves() {
     assert_eq!(loop_impulses(&found)[0].iter().flatten().filter(|entry| **entry == 0.0).count(), 1);
 }
 
-/// A pose of six digits leaves the loops open by 1e-7 m; its rows, taken at their word, would lock the mechanism.
+/// A pose of six digits leaves the loops open by 1e-7 m; its loop rows, taken as exact, would lock the mechanism.
 #[test]
 fn a_rounded_pose_does_not_lock_redundant_loops() {
     let (mechanism, loops) = guided_twice();
@@ -56,8 +57,8 @@ fn a_rounded_pose_does_not_lock_redundant_loops() {
     assert!((moving - expected).abs() < 1e-5 * expected, "{moving} {expected}");
 }
 
-/// A rear crank of a millionth of a milligram guides the coupler as a heavy one does, although nearly all that its pin
-/// gives way is its own.
+/// A rear crank of a millionth of a milligram guides the coupler as a heavy one does, although nearly all of the
+/// mobility of its pin is its own.
 #[test]
 fn a_light_link_hides_no_loop() {
     let mut mechanism = parallelogram(&CRANKS);
@@ -67,7 +68,7 @@ fn a_light_link_hides_no_loop() {
     assert_eq!(found.notes, [""; 0]);
     let mass = (M / 3.0 + M_COUPLER) * L * L;
     let delassus = matrices(&found).delassus[1][1];
-    // What the loop takes along the crank is a millionth of what it takes across: that much of the digits is lost.
+    // The loop's impulse along the crank is a millionth of that across it, which costs as many digits.
     assert!((delassus * mass / (L * Q.sin()).powi(2) - 1.0).abs() < 1e6 * 64.0 * f64::EPSILON, "{delassus}");
 }
 
@@ -88,7 +89,8 @@ fn a_braced_parallelogram_is_rigid() {
     assert!(error.reason().to_string().starts_with("the velocities open loops[1] (coupler - root) at "), "{error}");
 }
 
-/// A parallelogram on a coupler that rests: its closing leaves 1e-33 m/s along the rows of the coupler's that are left out.
+/// A parallelogram moves on a coupler that rests. Closing it leaves 1e-33 m/s along the coupler's rows that are left
+/// out.
 #[test]
 fn a_loop_at_rest_may_carry_one_that_moves() {
     let (mechanism, loops) = guided_twice();
@@ -113,8 +115,8 @@ fn a_loop_at_rest_may_carry_one_that_moves() {
     }
 }
 
-/// Two cranks that are pinned together stand still. A wheel on one of them follows an arm beside it, which strikes: the
-/// pin's rounding in the rows of the cranks' feet does not hold the arm.
+/// Two cranks that are pinned together stand still. A wheel on one of them mimics an arm, which strikes: the pin's
+/// rounding in the rows of the cranks' feet does not hold the arm.
 #[test]
 fn what_a_loop_holds_does_not_hold_others() {
     let mechanism = Mechanism::of(1.0, [0.0; 2], 1.0)
@@ -126,7 +128,7 @@ fn what_a_loop_holds_does_not_hold_others() {
     let robot = bolted(&mechanism);
     for step in 0..40 {
         let [front, rear, arm] = [1.0, 2.3, 3.7].map(|way| (way * f64::from(step + 1)).sin());
-        // Where the pin is on the rear crank, whose pivot is 0.6 m ahead.
+        // The pin's place on the rear crank, whose pivot is 0.6 m ahead.
         let [x, z] = turned([0.1, -0.35], front);
         let pinned = json!([{"a": point("front", [0.1, -0.35]), "b": point("rear", turned([x - 0.6, z], -rear))}]);
         let feet = [point("front", [0.0, -0.4]), point("rear", [0.0, -0.4]), point("arm", [0.4, 0.0])];

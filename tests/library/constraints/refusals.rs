@@ -1,4 +1,4 @@
-//! What is refused of loops: names, poses and velocities that leave them open, coordinates that they alone would hold.
+//! Refused loops: wrong names, poses and velocities that leave them open, massless coordinates that only they hold.
 
 use crate::constraints::four_bar::{CRANKS, WIDTH, bolted, parallelogram, pin, state};
 use crate::constraints::try_impact;
@@ -6,7 +6,7 @@ use heelstrike::{Defaults, Options, Pipeline, State};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-/// What stands in a simulation has rates of rounding, which open a loop as wide as they are.
+/// A robot that stands in a simulation has rates of rounding, which open its loops by as much.
 #[test]
 fn rates_below_the_resting_speed_open_no_loop() {
     let mechanism = parallelogram(&CRANKS);
@@ -19,8 +19,8 @@ fn rates_below_the_resting_speed_open_no_loop() {
     assert!(Pipeline::new(&robot, options).impact(&state).is_ok());
 }
 
-/// A braked crank and a free one hold the loop's points at rest, while an arm beside them turns: their rates of a little
-/// noise are taken away, and what rounding leaves of them opens nothing.
+/// A braked crank and a free one hold the loop's points at rest, while an arm turns. The noise of their rates is taken
+/// away, and the rounding that remains does not count as opening the loop.
 #[test]
 fn a_loop_that_is_brought_to_rest_is_closed() {
     let mechanism = parallelogram(&CRANKS).with("arm", "root", [0.0, 0.5], 1.0, [0.0, -0.2]);
@@ -54,10 +54,10 @@ fn state_that_breaks_a_loop_is_refused() {
         ("an offset of two numbers", ends("b", json!({"link": "coupler", "offset": [0, 0]}))),
         ("257 loops", json!({"loops": vec![pin("rear", WIDTH); 257]})),
         ("no list", json!({"loops": {}})),
-        // The rear crank 0.1 rad further: its end is 2 l sin(0.05) away.
+        // The rear crank is 0.1 rad further: its end is 2 l sin(0.05) away.
         ("an open pose", json!({"position": {"joints": {"front": 0.6, "rear": 0.7, "coupler": -0.6}}})),
         ("opening velocities", json!({"velocity": rate})),
-        // The rate of a braked joint is what it is: a loop of braked joints alone must already be kept by them.
+        // Rates of braked joints are not corrected: a loop of braked joints alone must already be closed.
         ("opening braked joints", json!({"velocity": rate, "held": ["front", "rear", "coupler"]})),
     ] {
         let mut state = sound.clone();

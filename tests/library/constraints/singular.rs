@@ -1,5 +1,5 @@
-//! Loops in poses in which they hold less than elsewhere: what counts of K, and when that is known. The expected
-//! Delassus matrix comes from `support::mechanism` and the rows of K as they are on paper.
+//! Loops in singular poses, in which they hold fewer directions: which part of K counts, and when that is proven. The
+//! expected Delassus matrix comes from `support::mechanism` and from rows of K that are worked out by hand.
 
 use crate::constraints::four_bar::bolted;
 use crate::constraints::{assert_near, impact, matrices};
@@ -11,10 +11,10 @@ use nalgebra::DMatrix;
 use serde_json::{Value, json};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// A few dozen roundings of matrices of condition below 1e3.
+/// Tolerance in eps: a few dozen roundings of matrices of condition below 1e3.
 const ROUNDINGS: f64 = 1e5;
 
-/// J M^-1 J' without what rows K let not move.
+/// G = J M^-1 J' less the motions that the rows K prevent.
 fn held(mechanism: &Mechanism, q: &[f64], contact: (&str, Point), rows: &DMatrix<f64>) -> DMatrix<f64> {
     let joints = 3..q.len();
     let inverse = mechanism.mass_matrix(q).view_range(joints.clone(), joints.clone()).try_inverse().expect("regular");
@@ -42,7 +42,7 @@ fn is_proven(found: &Impact) -> bool {
     analysis.proven
 }
 
-/// Asserts that rounding decides how much the loop holds, and that it is taken to hold only what it surely does.
+/// Asserts that rounding decides how many directions the loop holds, and that only the certain one is taken as held.
 #[track_caller]
 fn assert_doubtful(found: &Impact, expected: &DMatrix<f64>) {
     assert!(!is_proven(found));
@@ -54,8 +54,8 @@ fn assert_doubtful(found: &Impact, expected: &DMatrix<f64>) {
     assert!(loop_impulses(found).iter().flatten().flatten().all(|entry| entry.abs() < 10.0));
 }
 
-/// The second link is folded back on the first, of the same length, so that its end is at the first's hinge, whose
-/// column of K is zero. The f64 next to pi makes it 6e-17.
+/// The second link, of the same length as the first, is folded back on it. Its end is at the first's hinge, whose
+/// column of K is zero; with the f64 next to pi it is 6e-17.
 #[test]
 fn a_column_that_rounding_makes_holds_nothing() {
     let crank = Mechanism::of(1.0, [0.0; 2], 1.0).with("one", "root", [0.0; 2], 1.0, [0.0, -0.25]);
@@ -64,7 +64,7 @@ fn a_column_that_rounding_makes_holds_nothing() {
     let ends = json!({"a": point("two", [0.0, -0.5]), "b": point("root", [0.0; 2])});
     let contact = ("one", [0.1, -0.5]);
     let found = strike(&mechanism, &q, &v, (ends, contact));
-    // The second hinge does not move.
+    // The certain row keeps the second hinge from moving.
     assert_doubtful(&found, &held(&mechanism, &q, contact, &DMatrix::from_row_slice(1, 2, &[0.0, 1.0])));
 }
 
@@ -82,11 +82,11 @@ fn a_level_crank_does_not_hold_its_slide_sideways() {
     assert_doubtful(&found, &held(&mechanism, &q, contact, &DMatrix::from_row_slice(1, 2, &[0.5, -1.0])));
 }
 
-/// Links of these lengths from one hinge of the root to another, their sum apart.
+/// The lengths of three links between two hinges of the root that are apart by their sum.
 const LENGTHS: [f64; 3] = [0.25, 0.5, 0.375];
 const CONTACT: (&str, Point) = ("two", [0.1, -0.2]);
 
-/// Two links are on one hinge, the third on the other, which is below the first.
+/// Two links hang from one hinge; the third is on the other hinge, which is below the first.
 fn four_bar() -> Mechanism {
     let [one, two, three] = LENGTHS;
     Mechanism::of(1.0, [0.0; 2], 1.0)
@@ -95,7 +95,7 @@ fn four_bar() -> Mechanism {
         .with("three", "root", [0.0, -(one + two + three)], 0.9, [0.0, 0.15])
 }
 
-/// Bent by an angle at the first hinge, with the pin where it then is.
+/// The impact of the four-bar bent by an angle at the first hinge, with the pin where the links then meet.
 fn bent(angle: f64, rates: [f64; 3]) -> Box<Impact> {
     let [one, two, _] = LENGTHS;
     let mechanism = four_bar();
@@ -104,7 +104,7 @@ fn bent(angle: f64, rates: [f64; 3]) -> Box<Impact> {
     strike(&mechanism, &q, &[&[0.0; 3][..], &rates].concat(), (ends, CONTACT))
 }
 
-/// With which the straight one stays closed: all rates move the pin along x, (l1 + l2) q1' + l2 q2' = -l3 q3'.
+/// Rates that keep the straight four-bar closed: they move the pin along x, (l1 + l2) q1' + l2 q2' = -l3 q3'.
 fn rates() -> [f64; 3] {
     let [one, two, three] = LENGTHS;
     [0.5, -0.3, -((one + two) * 0.5 - two * 0.3) / three]
@@ -126,7 +126,7 @@ fn an_exactly_straight_four_bar_is_proven() {
     assert_eq!(found.notes, [note]);
 }
 
-/// Straight along another direction, which no f64 angle has exactly.
+/// The four-bar is straight along another direction, which no f64 angle has exactly.
 #[test]
 fn a_straight_four_bar_by_rounding_is_not_proven() {
     for turn in [0.7_f64, -1.9, FRAC_PI_2] {
@@ -144,7 +144,7 @@ fn a_straight_four_bar_by_rounding_is_not_proven() {
     }
 }
 
-/// A gap g is as much as a bend by sqrt(g), so that the pose says nothing about a smaller one.
+/// A gap g of the loop amounts to a bend by sqrt(g), so that the pose does not show smaller bends.
 #[test]
 fn a_bend_within_the_root_of_the_gap_is_doubtful() {
     for (angle, certain) in [(1e-2, true), (1e-4, true), (1e-6, true), (1e-9, false), (1e-11, false), (1e-14, false)] {

@@ -84,8 +84,8 @@ fn what_leaves_the_range_of_f64_has_a_remedy() {
     }
 }
 
-/// Two links of 0.5 m hang straight down, and a loop pins their end 1 m below their hinge. Their rates keep it closed,
-/// but their rotation pulls each end toward the knee with 0.5 omega^2.
+/// Two links of 0.5 m hang straight down, and a loop pins their end 1 m below their hinge. Their rates keep the loop
+/// closed, but the rotation of each link pulls the end up with 0.5 omega^2.
 #[test]
 fn a_loop_that_moves_through_its_dead_point_is_refused() {
     let leg = |name: &str, shape: &str| link(name, 1.0, [0.0, -0.25], 0.02, shape);
