@@ -1,5 +1,5 @@
-//! Runs `heelstrike sweep` on a study and reads what it writes; the studies of the paper's models, each pivoting about
-//! its trailing foot at 1 rad/s, against the leg angle `alpha`.
+//! Runs `heelstrike sweep` on a study and reads its output; the studies of the paper's models over the leg angle
+//! `alpha`, each pivoting about its trailing foot at 1 rad/s.
 
 use crate::support::command::{Run, heelstrike_reads};
 use serde::Deserialize;
@@ -7,7 +7,7 @@ use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 
-/// What is written as JSON, as far as the tests read it.
+/// The part of the JSON output that the tests read.
 #[derive(Debug, Clone, Deserialize)]
 pub struct Sweep {
     pub regions: Vec<Region>,
@@ -48,7 +48,7 @@ pub fn run(robot: &str, study: &Value, arguments: &[&str]) -> Run {
     heelstrike_reads(&[&["sweep", robot, "-"], arguments].concat(), study.to_string())
 }
 
-/// What is written of a study that is answered everywhere.
+/// The JSON output for a study that is answered everywhere.
 pub fn written<T: DeserializeOwned>(robot: &str, study: &Value, arguments: &[&str]) -> T {
     let Run { status, stdout, stderr, .. } = run(robot, study, &[&["--format", "json"], arguments].concat());
     assert_eq!(status, 0, "{study}\n{stderr}");
@@ -67,8 +67,8 @@ impl Region {
     }
 }
 
-/// Checks where the regions begin, the first one aside, to `within`, and the set of outcomes of each, in which a bar
-/// parts the outcomes.
+/// Asserts where the regions begin, except for the first one, to `within`, and the set of outcomes of each; a bar
+/// separates outcomes.
 pub fn assert_begins(place: &str, sweep: &Sweep, expected: &[(f64, &str)], within: f64) {
     let found: Vec<_> = sweep.regions.iter().map(|region| (region.from, region.set())).collect();
     assert_eq!(found.len(), expected.len(), "{place}: {found:#?}");
@@ -80,10 +80,10 @@ pub fn assert_begins(place: &str, sweep: &Sweep, expected: &[(f64, &str)], withi
     }
 }
 
-/// From where to where the leg angle goes; at 0 both feet are one point.
+/// The range of the leg angle; at 0 both feet coincide.
 pub const RANGE: [f64; 2] = [0.001, 1.57];
 
-/// Two straight legs; with `inertia`, that of both legs.
+/// The study of a walker with two straight legs; `inertia` replaces the moment of inertia of both.
 pub fn straight(inertia: Option<f64>) -> Value {
     let mut study = json!({
         "parameters": {"alpha": {"from": RANGE[0], "to": RANGE[1], "steps": 50}},
@@ -101,7 +101,7 @@ pub fn straight(inertia: Option<f64>) -> Value {
     study
 }
 
-/// RAMone: knees at a right angle, the main body upright.
+/// The study of RAMone with its knees at a right angle and its main body upright.
 pub fn kneed() -> Value {
     let mut study = straight(None);
     study["constants"] = json!({"upper": 0.2, "lower": 0.2385, "knee": "-pi/2", "bend": "atan2(lower, upper)"});

@@ -1,4 +1,4 @@
-//! Nothing is missed: regions from 50 samples against every place of a dense scan.
+//! Completeness: regions found from 50 samples, compared with every place of a dense scan.
 //!
 //! ```text
 //!     HEELSTRIKE_STUDIES=2000 HEELSTRIKE_SCAN=20000 cargo test --release --test library -- --nocapture dense_scan
@@ -16,7 +16,7 @@ fn environment(name: &str, default: u64) -> u64 {
     std::env::var(name).map_or(default, |value| value.parse().expect("a whole number"))
 }
 
-/// The region of a place, unless it is on a border.
+/// The region of a place; `None` if the place is on a border.
 fn region_at(regions: &[Region], at: f64, range: f64) -> Option<&Region> {
     let within = regions.iter().find(|region| at < region.to).or(regions.last())?;
     let off = 2.0 * RESOLUTION * range;
@@ -24,8 +24,8 @@ fn region_at(regions: &[Region], at: f64, range: f64) -> Option<&Region> {
     inner.then_some(within)
 }
 
-/// Regions of a random study, those that no sample lies in, whether some are refused, and the places of a dense scan
-/// whose regime is not that of their region, as stretches.
+/// Counts of a random study: its regions, those without a sample, 1 if a region is refused, and stretches of the dense
+/// scan whose regime is not that of their region.
 fn compare(subject: &Subject, seed: u64, scan: u64) -> [u64; 4] {
     let text = study(subject, &mut Random::new(seed), STEPS).to_string();
     let study = Study::from_json(&text).expect("a study");
@@ -44,7 +44,7 @@ fn compare(subject: &Subject, seed: u64, scan: u64) -> [u64; 4] {
             _ => stretches.push((k, k)),
         }
     }
-    // A lone place on the border itself is no region: next to it the regime is the region's again.
+    // A single place on a border is no region: next to it the regime is the region's again.
     let near = 4.0 * RESOLUTION * range;
     stretches.retain(|&(first, last)| first != last || differs(place(first) - near) || differs(place(first) + near));
     for &(first, last) in &stretches {

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 const ROBOT: &str = "urdf/ramone_paper.urdf";
 
-/// Checks that both have the same regions, where those of `other` lie at `place` of a parameter of this range.
+/// Asserts that both have the same regions; `place` maps places of `other` to the parameter of `one`, of this range.
 fn assert_same(one: &Sweep, other: &Sweep, place: impl Fn(f64) -> f64, range: f64) {
     assert_eq!(one.regions.len(), other.regions.len());
     for (one, other) in one.regions.iter().zip(&other.regions) {
@@ -19,7 +19,7 @@ fn assert_same(one: &Sweep, other: &Sweep, place: impl Fn(f64) -> f64, range: f6
     }
 }
 
-/// The text of the study with every whole word replaced.
+/// The study with a word replaced everywhere in its text.
 fn renamed(study: &Value, word: &str, by: &str) -> Value {
     serde_json::from_str(&study.to_string().replace(word, by)).expect("JSON")
 }
@@ -58,7 +58,7 @@ fn a_reversed_parameter_has_the_regions_reversed() {
 
 #[test]
 fn threads_do_not_change_a_byte() {
-    // Text and tables are written of what JSON has whole.
+    // JSON has everything that text and tables are written from.
     let with = |threads: &str| run(ROBOT, &kneed(), &["--format", "json", "--threads", threads]).well().stdout;
     assert_eq!(with("1"), with("4"));
 }

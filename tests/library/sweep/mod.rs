@@ -1,6 +1,6 @@
-//! Studies of one parameter: where their regions lie, what turns between them, and what is written of them.
+//! Studies of one parameter: where their regions lie, their transitions, and their output.
 //!
-//! Borders that are known go to `paper`, `thin` and `turns`; `completeness` compares with dense scans of random
+//! Tests of known borders go to `paper`, `thin` and `transitions`; `completeness` compares with dense scans of random
 //! studies.
 
 pub mod command;

@@ -1,11 +1,11 @@
-//! What is written: samples, tables, text, endings, and what happens to refused samples.
+//! Output of studies: samples, tables, text, notes, exit status, and what happens to refused samples.
 
 use crate::support::command::{Run, heelstrike_reads};
 use crate::sweep::command::{assert_begins, kneed, run, straight, sweep, written};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
 
-/// What `impact` writes of a state, as JSON.
+/// The JSON that `impact` writes for a state.
 fn impact(robot: &str, state: &Value, arguments: &[&str]) -> Value {
     heelstrike_reads(&[&["impact", robot, "-", "--format", "json"], arguments].concat(), state.to_string()).line()
 }
@@ -46,7 +46,7 @@ fn samples_begin_at_from_and_end_at_to() {
     }
 }
 
-/// pi/12, pi/6 and 5 pi/12 are borders; the samples on them do not make the regions more, wherever they lie.
+/// Samples on the borders pi/12, pi/6 and 5 pi/12 do not add regions, wherever they lie.
 #[test]
 fn samples_on_borders_make_no_regions_of_their_own() {
     let mut study = straight(None);
@@ -94,7 +94,7 @@ fn cautions_about_a_varied_robot_are_noted() {
     );
 }
 
-/// No impact depends on gravity; what has a period may be the same at the ends and in the middle.
+/// No impact depends on gravity, which is noted. A periodic dependence may be equal at both ends and in the middle.
 #[test]
 fn a_parameter_without_effect_and_a_box_are_noted() {
     let notes = |more: Value| {
@@ -120,7 +120,7 @@ fn a_parameter_without_effect_and_a_box_are_noted() {
     assert_eq!(notes(json!({"uncertainty": {"position": "1e-3*a"}})), [boxes]);
 }
 
-/// Above 0.3 the cone's half-angle has no value; below, nothing touches.
+/// Above p = 0.3 the square root has no value; below, nothing touches.
 fn partly_refused() -> Value {
     json!({
         "parameters": {"p": {"from": 0, "to": 1, "steps": 5}},
@@ -164,7 +164,7 @@ fn samples_refused_outside_regions_are_counted() {
     let Run { status, stderr, .. } = run("urdf/pdw.urdf", &study, &["--format", "json", "--quiet"]);
     assert_eq!(status, 1);
     assert!(stderr.contains("1 of 5 samples are refused\nhint: the `error` of each"), "{stderr}");
-    // The text has no samples.
+    // The text does not list samples.
     let Run { status, stderr, .. } = run("urdf/pdw.urdf", &study, &["--quiet"]);
     assert_eq!(status, 1);
     assert!(stderr.contains("1 of 5 samples are refused\nhint: --format json lists"), "{stderr}");
@@ -172,7 +172,7 @@ fn samples_refused_outside_regions_are_counted() {
 
 #[test]
 fn a_refused_region_says_why_it_is_refused() {
-    // The root has a value above 0.6, and within 1e-7 of 0.3, the middle of what is below.
+    // The square root has a value above 0.6, and within 1e-7 of 0.3, the middle of the range below.
     let study = json!({
         "parameters": {"p": {"from": 0, "to": 1, "steps": 4}},
         "state": {"position": {"base": {"z": "1 + sqrt(max(p - 0.6, 1e-14 - (p - 0.3)^2))"}}, "friction": 1},
@@ -193,7 +193,7 @@ fn tables_add_parameter_and_region_to_those_of_batch() {
     let header = "id,verdict,outcome,margin,proven,mode_left_leg,p_left_leg_t,p_left_leg_n,mode_right_leg,p_right_leg_t,\
                   p_right_leg_n,v_after_base_x,v_after_base_z,v_after_base_pitch,v_after_hip,alpha,region,border,family,families,error,notes";
     assert_eq!(lines.next(), Some(header));
-    // 0.001, 0.524, 1.047 and 1.57; the last one has three outcomes.
+    // The samples are 0.001, 0.524, 1.047 and 1.57; the last one has three outcomes.
     let rows: Vec<&str> = lines.collect();
     let of = |name: &str| -> Vec<&str> {
         let at = header.split(',').position(|known| known == name).expect("a column");

@@ -9,7 +9,7 @@ fn reference_borders_are_found_from_50_samples() {
     let mut borders = 0;
     for Model { name, urdf, inertia, kneed: bends } in MODELS {
         let number = |inertia: &str| inertia.parse().expect("a number");
-        // The inertia of pdw is that of its file, and the same from the study.
+        // The model pdw_j0.04 is asked with the inertia of its file, and with the same inertia given by the study.
         let mut studies = if bends { vec![kneed()] } else { vec![straight(inertia.map(number))] };
         studies.extend((name == "pdw_j0.04").then(|| straight(Some(0.04))));
         for (mut study, (friction, regions)) in
@@ -26,8 +26,8 @@ fn reference_borders_are_found_from_50_samples() {
     assert_eq!(borders, 35);
 }
 
-/// With the center of percussion in the foot all outcomes touch at pi/4: one border, and whatever the result of the
-/// sample on it, no region of its own.
+/// With the center of percussion in the foot all outcomes meet at pi/4. This is one border: the sample on it does not
+/// make a region, whatever its result.
 #[test]
 fn the_degenerate_place_of_the_walker_is_one_border() {
     let mut study = straight(Some(0.24));

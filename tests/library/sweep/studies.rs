@@ -1,5 +1,5 @@
-//! Random studies: robots of this repository, a pose and a velocity that are linear in the parameter, frictions of
-//! every kind, robots that vary.
+//! Random studies: robots of this repository, with poses and velocities that are linear in the parameter, all kinds of
+//! friction, and variations of the robots.
 
 use crate::support::random::Random;
 use crate::support::subject::Subject;
@@ -23,14 +23,14 @@ pub fn subjects() -> Vec<Subject> {
     files.into_iter().map(|(name, text)| Subject::new(name, text)).collect()
 }
 
-/// Asks about the model of a study, in which combinations are explained up to so many contacts.
+/// Calls `ask` with the model of a study; combinations are explained for up to `explain_up_to` contacts.
 pub fn with<T>(urdf: &str, study: &Value, explain_up_to: usize, ask: impl FnOnce(&RobotStudy) -> T) -> T {
     let (subject, text) = (Subject::new("", urdf), study.to_string());
     let study = Study::from_json(&text).expect("a study");
     ask(&RobotStudy { options: Options { explain_up_to, ..Options::default() }, ..subject.model(&study) })
 }
 
-/// A constant, or a line in the parameter p.
+/// A constant, or a linear function of the parameter p.
 fn linear(random: &mut Random, size: f64) -> Value {
     let constant = random.between(-size, size);
     match random.once_in(3) {
@@ -39,7 +39,7 @@ fn linear(random: &mut Random, size: f64) -> Value {
     }
 }
 
-/// A line in the parameter, which runs from -1 to 1, that stays positive and near `value`.
+/// A linear function of the parameter p that is positive and near `value` for p from -1 to 1.
 fn near(random: &mut Random, value: f64) -> Value {
     json!(format!("{}*(1 + {}*p)", value.max(0.01), random.between(-0.8, 0.8)))
 }
@@ -53,7 +53,7 @@ fn friction(random: &mut Random) -> Value {
     }
 }
 
-/// The text of a study with this many samples.
+/// A random study with this many samples.
 pub fn study(subject: &Subject, random: &mut Random, steps: usize) -> Value {
     let robot = &subject.robot;
     let links: Vec<&str> = robot.links().iter().map(|link| link.name.as_str()).collect();
@@ -77,7 +77,7 @@ pub fn study(subject: &Subject, random: &mut Random, steps: usize) -> Value {
     if !standing || random.once_in(2) {
         let mut places: Vec<&str> = if standing { shaped } else { links.clone() };
         if standing {
-            // The stance rests on a contact of its own.
+            // The stance needs a contact of its own.
             places.retain(|link| state["stance"] == **link || random.once_in(2));
         }
         let order = random.permutation(places.len());
@@ -109,7 +109,7 @@ pub fn study(subject: &Subject, random: &mut Random, steps: usize) -> Value {
     study
 }
 
-/// What of a robot varies: numbers of a link that has mass, and where a joint is.
+/// A random variation of the robot: numbers of a link that has mass, and the place of a joint.
 fn variation(subject: &Subject, random: &mut Random) -> Value {
     let massive: Vec<_> = subject.description.links.iter().filter(|link| link.inertial.is_some()).collect();
     let link = random.pick(&massive);

@@ -1,4 +1,4 @@
-//! What turns at a border, where that is known by hand.
+//! Transitions at borders that are known by hand.
 
 use crate::sweep::command::{Border, Turn, straight, sweep};
 use serde_json::json;
@@ -15,9 +15,9 @@ fn turn(contact: &str, inequality: &str, modes: &str, valid: &str) -> Turn {
     Turn { contact, inequality, modes: modes.split('/').map(str::to_owned).collect(), valid }
 }
 
-/// Of the trailing foot, the paper's three cases: lift-off needs c_n+ >= 0, stop L_n >= 0, and a slide without
-/// friction's limit has c_t+ of one sign and L_t of the other. c_n+ of lift-off and L_t of the slide turn together, and
-/// L_n of the stop and c_t+ of the slide.
+/// The paper's three cases of the trailing foot: lift-off needs c_n+ >= 0, a stop L_n >= 0, and a slide with infinite
+/// friction needs c_t+ and L_t of opposite signs. c_n+ of lift-off and L_t of the slide are zero at the same borders,
+/// and so are L_n of the stop and c_t+ of the slide.
 #[test]
 fn borders_of_the_biped_turn_by_the_trailing_foot() {
     let sweep = sweep("urdf/minimalistic.urdf", &straight(None));
@@ -36,8 +36,8 @@ fn borders_of_the_biped_turn_by_the_trailing_foot() {
     }
 }
 
-/// The paper's single body, G = [[2, 1], [1, 2]], struck by L_ext along a direction: it slides where friction does not
-/// suffice, |L_t| = mu L_n.
+/// The paper's single body, G = [[2, 1], [1, 2]], struck by L_ext in one direction, slides if friction is below |L_t| /
+/// L_n of sticking.
 #[test]
 fn a_cone_turns_where_friction_suffices() {
     let study = json!({
@@ -53,7 +53,7 @@ fn a_cone_turns_where_friction_suffices() {
     assert_eq!(sorted(border), expected);
 }
 
-/// Lifted off the ground, a contact leaves the set; the sample's contacts decide, so the border lies at the tolerance.
+/// A contact that is lifted off the ground leaves the set of contacts at the contact tolerance, which is the border.
 #[test]
 fn a_border_where_a_contact_opens_names_it() {
     let study = json!({
@@ -72,8 +72,8 @@ fn a_border_where_a_contact_opens_names_it() {
     assert_eq!((&border.opening, &border.closing, &border.turns), (&block(), &vec![], &vec![]));
 }
 
-/// A block that slides has the same modes where it does not move into the ground, which is said of the region only if it
-/// is so everywhere. Rounding is no border.
+/// A block that slides has the same modes where it does not move into the ground. A region has the verdict `no_impact`
+/// only if this is so everywhere in it. Rounding makes no border.
 #[test]
 fn a_region_is_without_impact_only_as_a_whole() {
     let verdicts = |z: &str, steps: u32| -> Vec<Option<String>> {
@@ -86,7 +86,7 @@ fn a_region_is_without_impact_only_as_a_whole() {
     for (z, verdict) in [
         ("-a^2", "unique"),
         ("min(a, 0)", "unique"),
-        // At the first of all samples, and at that alone.
+        // It strikes at the first sample only.
         ("min(a + 0.999, 0)", "unique"),
         ("-(1 - cos(a))", "unique"),
         ("-abs(a*3/3 - a) - 1e-300", "unique"),
