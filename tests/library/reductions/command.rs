@@ -1,4 +1,4 @@
-//! `--no-reduction` on the command line, and what results say of it.
+//! The option `--no-reduction`, and what results say about reductions.
 
 use crate::support::command::heelstrike_reads;
 use crate::support::impact::{impact, robot};
@@ -58,7 +58,7 @@ fn reductions_are_switched_off_together_or_by_name() {
 
 #[test]
 fn inner_points_are_reported_and_listed_ones_kept() {
-    // A foot with a plate welded on, both level, and another with other friction.
+    // A plate and a piece of rubber are welded to a foot at the same level; the rubber has another friction.
     let foot = |name: &str, width: f64| {
         urdf::link(name, 1.0, [0.0; 2], 0.1, &urdf::collision([0.0; 2], &format!("box size=\"{width} 0.1 0.2\"")))
     };
@@ -78,7 +78,7 @@ fn inner_points_are_reported_and_listed_ones_kept() {
     assert!(left_out.iter().any(|left| [&*left.what, &*left.why] == merged), "{left_out:?}");
     state["contacts"] = json!([-0.2, 0.0, 0.2].map(|x| json!({"link": "foot", "offset": [x, 0.0, -0.1]})));
     assert_eq!(names(&impact(&robot, &state)), ["foot/0", "foot/1", "foot/2"]);
-    // What stands stays.
+    // The contact of a stance is not merged.
     let standing = impact(&robot, json!({"stance": "plate", "friction": 0.5}));
     assert_eq!((names(&standing).join(" "), standing.stance), ("foot/0 foot/1 plate".to_owned(), Some(2)));
 }

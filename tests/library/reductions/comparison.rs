@@ -1,4 +1,4 @@
-//! Two answers to one question.
+//! Comparison of two answers to one state.
 
 use crate::support::impact::{outcomes, reduced, try_impact};
 use crate::support::scaled::{largest, near};
@@ -8,16 +8,16 @@ use heelstrike::pipeline::{Impact, Options};
 use heelstrike::reductions::Reductions;
 use heelstrike::robot::{Base, Plane, Reduction};
 
-/// Of scale.
+/// The tolerance, relative to scale.
 const TOLERANCE: f64 = 1e-12;
 
-/// By how much two reductions round the robot's numbers differently.
+/// The relative difference of a robot's numbers between two reductions, which round differently.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// Of scale, the most that two numbers may be apart that are each right to 1e-10.
+/// The largest difference, relative to scale, of two numbers that are each right to 1e-10.
 const PROMISED: f64 = 2e-10;
 
-/// Without any reduction, and without each alone.
+/// None of the reductions, and all but one. `merge.rs` compares answers with and without `merge`.
 pub const FEWER: [Reductions; 7] = [
     Reductions::NONE,
     Reductions { weld: false, ..Reductions::ALL },
@@ -39,9 +39,9 @@ pub fn answer(robot: &Robot, state: &serde_json::Value, reductions: Reductions) 
     try_impact(robot, Options { reductions, matrices: true, ..Options::default() }, state)
 }
 
-/// What differs between two answers: contacts, verdict, modes, or numbers beyond 1e-12 of scale, or beyond
-/// what impulses far above it make of the robot's rounding. Velocities by
-/// coordinate are compared where both have the same coordinates: `rate` is the largest of them before the impact.
+/// Returns an error if two answers differ in contacts, verdict or modes, or in numbers by more than 1e-12 of scale, or
+/// by more than what impulses far above it make of the robot's rounding. Velocities by coordinate are compared if both
+/// have the same coordinates: `rate` is then the largest of them before the impact.
 pub fn difference(one: &Impact, other: &Impact, rate: Option<f64>) -> Result<(), String> {
     let names = |impact: &Impact| impact.contacts.iter().map(|contact| contact.name.clone()).collect::<Vec<_>>();
     if names(one) != names(other) {
@@ -56,7 +56,7 @@ pub fn difference(one: &Impact, other: &Impact, rate: Option<f64>) -> Result<(),
         return Err(format!("verdict, rank and index sum {found:?} and {expected:?}"));
     }
     if let (Some(one), Some(other)) = (a.condition, b.condition) {
-        // It reports how many of its own digits are lost.
+        // A condition tells how many of its own digits are lost.
         compare(TOLERANCE, "conditions", &[one.recip()], &[other.recip()], 1.0)?;
     }
     let [a, b] = [one, other].map(sorted);
@@ -67,9 +67,9 @@ pub fn difference(one: &Impact, other: &Impact, rate: Option<f64>) -> Result<(),
     let delassus = &one.matrices.as_ref().expect("asked for").delassus;
     let mobility: Vec<f64> = (0..delassus.len()).map(|row| delassus[row][row].max(0.0).sqrt()).collect();
     let most = largest(&mobility).max(f64::MIN_POSITIVE);
-    // A row that nothing moves has no size of its own.
+    // A row with G_ii = 0 has no scale of its own.
     let mobility: Vec<f64> = mobility.into_iter().map(|own| if own > 0.0 { own } else { most }).collect();
-    // sqrt J, as margins are measured.
+    // The largest |c_i| / sqrt(G_ii), in sqrt J, as in the scale of margins.
     let speeds = one.velocity_before.iter().flatten().zip(&mobility);
     let speed = speeds.map(|(c, mobility)| c.abs() / mobility).fold(f64::MIN_POSITIVE, f64::max);
     for (a, b) in a.into_iter().zip(b) {
@@ -77,7 +77,7 @@ pub fn difference(one: &Impact, other: &Impact, rate: Option<f64>) -> Result<(),
             rows.iter().flatten().zip(&mobility).map(|(entry, mobility)| entry * mobility.powi(power) / speed).collect()
         };
         let impulses = scaled(&a.impulse, 1);
-        // Contacts that pull against each other: in the scale impulses are no greater than the condition of G.
+        // Contacts that push against each other: relative to scale, impulses are no greater than the condition of G.
         let tolerance = (ROUNDING * largest(&impulses)).clamp(TOLERANCE, PROMISED);
         let compare = |what, a: &[f64], b: &[f64], least| compare(tolerance, what, a, b, least);
         compare("impulses", &impulses, &scaled(&b.impulse, 1), 1.0)?;
@@ -109,7 +109,7 @@ fn compare(tolerance: f64, what: &str, a: &[f64], b: &[f64], least: f64) -> Resu
     Err(format!("{what} {far:.1e} of scale apart: {a:?} and {b:?}"))
 }
 
-/// Outcomes in the order of their modes, each with its place.
+/// Outcomes, sorted by their modes.
 fn sorted(impact: &Impact) -> Vec<&Outcome> {
     let mut outcomes: Vec<_> = outcomes(impact).iter().collect();
     outcomes.sort_by(|a, b| a.modes.cmp(&b.modes));

@@ -23,12 +23,12 @@ struct Case {
     rate: f64,
 }
 
-/// Up to which height points of the cases touch \[m\].
+/// The contact tolerance of the cases \[m\].
 const TOLERANCE: f64 = 0.1;
 
-/// Three links, the root of which stands with three to five points, at times another with one. They are on level ground
-/// exactly or on a tilted line, or inner ones are off it: as far as their cones let them act through the outer two, or
-/// farther.
+/// A random robot of three links, whose root stands with three to five points, and at times its shin with one. The
+/// points are exactly on level ground or on a tilted line, or inner ones are off it: as far as their friction cones let
+/// them act through the outer two, or farther.
 fn case(seed: u64) -> Case {
     let mut random = Random::new(seed);
     let mut point = |size: f64| -> Point { [random.between(-size, size), random.between(-size, size)] };
@@ -59,7 +59,7 @@ fn case(seed: u64) -> Case {
         })
         .collect();
     if random.once_in(3) {
-        // What of the shin lies in the world at (x, -height).
+        // The point of the shin that is at (x, -height) in the world.
         let (link, x) = (2, random.between(-0.3, 0.3));
         let [origin, along, up] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|own| mechanism.point(&q, link, own));
         let at = |end: Point| (end[0] - origin[0]) * (x - origin[0]) - (end[1] - origin[1]) * (height + origin[1]);
@@ -75,8 +75,9 @@ fn case(seed: u64) -> Case {
     Case { robot: floating(&mechanism.urdf(0), Reductions::ALL), feet, state, rate: largest(&v) }
 }
 
-/// What differs between the answers with and without merging: the verdict, the modes of the contacts that remain, or
-/// velocities after the impact and the sum of all impulses by more than 1e-12 of scale. And how many points are merged.
+/// Returns how many points are merged, or an error if the answers with and without merging differ: in the verdict, the
+/// modes of the contacts that remain or, by more than 1e-12 of scale, velocities after the impact or the sum of all
+/// impulses.
 fn compare(Case { robot, feet, state, rate }: Case) -> Result<usize, String> {
     let answer = |merge: bool| -> Box<Impact> {
         let reductions = Reductions { merge, ..Reductions::ALL };
@@ -87,7 +88,7 @@ fn compare(Case { robot, feet, state, rate }: Case) -> Result<usize, String> {
     let [merged, whole] = [true, false].map(answer);
     let inner = merged.left_out.iter().map(|left| if let LeftOut::Merged(own) = left { own.inner } else { 0 }).sum();
     assert_eq!((merged.contacts.len() + inner, whole.contacts.len()), (feet.len(), feet.len()));
-    // The places of those that remain.
+    // The places of the remaining contacts among all.
     let remain: Vec<usize> = (merged.contacts.iter())
         .map(|own| whole.contacts.iter().position(|other| own.center == other.center && own.link == other.link))
         .collect::<Option<_>>()
@@ -116,7 +117,7 @@ fn compare(Case { robot, feet, state, rate }: Case) -> Result<usize, String> {
     if counts[0] == counts[1] { Ok(inner) } else { Err(format!("{counts:?} outcomes")) }
 }
 
-/// `HEELSTRIKE_STATES=20000 cargo test --release --test library -- --nocapture outer_points` for more.
+/// `HEELSTRIKE_STATES=20000 cargo test --release --test library -- --nocapture outer_points` checks more states.
 #[test]
 fn outer_points_act_for_all() {
     let states = std::env::var("HEELSTRIKE_STATES").ok().and_then(|states| states.parse().ok());
@@ -136,7 +137,7 @@ fn outer_points_act_for_all() {
     assert_eq!(wrong, 0);
 }
 
-/// Where the body bounces and turns, c_t differs along a tilted line: the point between the ends may stick while both slide.
+/// If a body bounces and turns, c_t differs along a tilted line: a point between the ends may stick while both slide.
 #[test]
 fn points_on_a_tilted_line_stay_where_they_bounce() {
     let foot = |x: f64| collision([x, 0.0], POINT);

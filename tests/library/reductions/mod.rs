@@ -1,4 +1,4 @@
-//! What is left out changes nothing: the same outcomes, velocities and impulses to 1e-12 of scale with every reduction
+//! Reductions change nothing: outcomes, velocities and impulses are the same to 1e-12 of scale with every reduction
 //! off, each alone off, and all on; and with any other link as the root.
 
 mod command;

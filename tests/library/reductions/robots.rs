@@ -1,4 +1,4 @@
-//! The robots of other people's projects (`data/robots`), with and without what their scenes need.
+//! The robots of other projects (`data/robots`), with and without reductions.
 
 use crate::support::command::read;
 use crate::support::parallel::total;
@@ -24,8 +24,8 @@ struct Config {
     v: Vec<f64>,
 }
 
-/// The states that a robot's reference has, with one contact and with all, three kinds of friction, joints held and
-/// not.
+/// The states of a robot's reference, each with one contact and with up to four, three kinds of friction, and joints
+/// braked or not.
 fn states(variant: &Variant, base: usize, joints: &[String]) -> Vec<Value> {
     let named = |values: &[f64]| by_name(&variant.coordinates, base, values);
     let held: Vec<&String> = joints.iter().step_by(2).collect();
@@ -52,7 +52,7 @@ fn compare(name: &str, variant: &str) {
     let reduced = robot(Reductions::ALL);
     let joints: Vec<String> = reduced.joints().iter().map(|joint| joint.name.clone()).collect();
     let mut states = states(&variant, reduced.base_dofs(), &joints);
-    // Feet that are found: each link with shapes stands once.
+    // States with detected feet: up to six links with shapes are each the stance of one.
     for link in reduced.links().iter().filter(|link| !link.shapes.is_empty() && reduced.base_dofs() > 0).take(6) {
         let mut standing = states[2].clone();
         standing.as_object_mut().expect("an object").remove("contacts");
@@ -72,7 +72,8 @@ fn compare(name: &str, variant: &str) {
                     let difference = difference(&one, &other, Some(largest_rate(state)));
                     differences.extend(difference.err().map(|what| format!("{fewer}: {what}\n  {state}")));
                 }
-                // A foot that stands while another is in the ground; a joint that moves nothing.
+                // Both refuse for the same reason: a foot is in the ground while another stands, or a joint moves
+                // nothing.
                 (Err(one), Err(other)) if one.to_string() == other.to_string() => {}
                 (one, other) => differences.push(format!("{fewer}: {:?} and {:?}\n  {state}", one.err(), other.err())),
             }

@@ -14,7 +14,7 @@ use crate::support::mechanism::{Link, Mechanism, Point, mechanism, motion};
 use crate::support::scaled::{largest, near};
 use std::collections::BTreeSet;
 
-/// A mechanism on its way to the ground.
+/// A mechanism with a motion, contacts and frictions.
 #[derive(Debug, Clone)]
 pub struct Case {
     pub mechanism: Mechanism,
@@ -29,7 +29,7 @@ fn friction() -> impl Strategy<Value = Value> {
     prop_oneof![Just(json!(0.0)), Just(json!("infinite")), (0.1..2.0f64).prop_map(|mu| json!(mu))]
 }
 
-/// A mechanism, a motion, contacts and friction by link.
+/// A random case.
 pub fn case() -> impl Strategy<Value = Case> {
     mechanism().prop_flat_map(|mechanism| {
         let links = mechanism.links.len();
@@ -57,12 +57,12 @@ impl Case {
         state
     }
 
-    /// The coordinates of the robot among those of all joints.
+    /// The robot's coordinates among those of all joints.
     fn moving(&self) -> Vec<usize> {
         (0..self.q.len()).filter(|&k| k < 3 || self.mechanism.links[k - 2].moves()).collect()
     }
 
-    /// The same state over ground at the height of its lowest sphere, whose link is then found to touch.
+    /// The same state with its lowest sphere on the ground, whose contact is then detected; `None` without spheres.
     fn landing(&self) -> Option<Value> {
         let links = self.mechanism.links.iter().enumerate();
         let heights = links.flat_map(|(link, own)| {
@@ -93,12 +93,12 @@ proptest! {
         }
     }
 
-    /// By velocities of points, without recursion.
+    /// M, J and G against sums over the bodies by velocities of points, without recursion.
     #[test]
     fn matrices_are_sums_over_the_bodies(mut case in case()) {
         case.held.clear();
         case.contacts.iter_mut().for_each(|(.., radius)| *radius = 0.0);
-        // What has no mass has no inertia in the file.
+        // The file has no inertia for links without mass.
         case.mechanism.links.iter_mut().filter(|link| link.mass == 0.0).for_each(|link| link.moment = 0.0);
         let moving = case.moving();
         let Case { mechanism, q, v, contacts, .. } = &case;
@@ -115,7 +115,7 @@ proptest! {
         assert_struck(&found, &mass, &jacobian, &v, 1e6);
     }
 
-    /// Powers of two change no digit of what is given.
+    /// Units change by powers of two, which change no digit of the numbers given.
     #[test]
     fn units_change_no_outcome(case in case(), exponents in prop::array::uniform3(prop_oneof![Just(0), Just(20), Just(-20)])) {
         let [mass, length, time] = exponents.map(|exponent| f64::exp2(f64::from(exponent)));
@@ -139,7 +139,7 @@ proptest! {
             let own: Vec<f64> = one.velocity().collect();
             let units = case.moving().into_iter().map(|k| units_of_q[k] / time);
             let found: Vec<f64> = other.velocity().zip(units).map(|(rate, unit)| rate / unit).collect();
-            // All may stop, and what is left then is rounding of the motion before.
+            // If all stops, only rounding of the motion before is left.
             let size = largest(&own).max(largest(&case.v));
             prop_assert!(near(&found, &own, 1e-12 * size), "{found:?} {own:?}");
             for (own, unit, found) in [
@@ -149,7 +149,7 @@ proptest! {
                 (one.margin.into_iter().collect(), 1.0, other.margin.into_iter().collect()),
             ] {
                 let own: Vec<f64> = own.iter().map(|entry| entry * unit).collect();
-                // As many digits as are promised: which decimals a state has depends on its units.
+                // The promised 1e-10 only: which decimals a state has depends on its units.
                 prop_assert!(near(&found, &own, 1e-10 * largest(&own)), "{found:?} {own:?}");
             }
         }
@@ -168,14 +168,14 @@ proptest! {
         state["loops"] = json!([case.mechanism.meeting(0, &case.q, (link, point), other)]);
         let urdf = case.mechanism.urdf(0);
         let one = answer(&floating(&urdf, Reductions::ALL), &state, Reductions::ALL).expect("an answer");
-        // The same f64 numbers of the robot: what a loop holds may lie on a border, where one rounding leads to other
-        // modes.
+        // Only reductions that leave the robot's f64 numbers as they are: with a loop a state may be on a border, where
+        // another rounding leads to other modes.
         let reductions = Reductions { weld: true, massless: true, ..Reductions::NONE };
         let other = answer(&floating(&urdf, Reductions::ALL), &state, reductions).expect("an answer");
         prop_assert_eq!(difference(&one, &other, Some(largest_rate(&state))), Ok(()), "{}", state);
     }
 
-    /// Which link is the root is a matter of writing.
+    /// The choice of the root changes nothing.
     #[test]
     fn every_link_may_be_the_root(case in case()) {
         let answer = |root: usize| {
@@ -186,7 +186,7 @@ proptest! {
         for root in 1..case.mechanism.links.len() {
             let other = answer(root);
             for (a, b) in one.contacts.iter().zip(&other.contacts) {
-                // Sums of a few lengths of order one.
+                // Tolerance: sums of a few lengths of order one.
                 prop_assert!((a.point - b.point).length() < 1e-13 * 16.0, "root {root}: {:?} and {:?}", a.point, b.point);
             }
             prop_assert_eq!(difference(&one, &other, None), Ok(()), "root {}\n{}", root, case.state(root));

@@ -1,5 +1,6 @@
 //! Touchdowns in recorded gaits: those of the rabbit as the command prints them (here; all gaits are in
-//! `tests/reference/gaits.rs`); what decides what is a touchdown, on a foot that moves up and down (`motion`); of recordings with noise (`noise`) and without (`simulated`); and how motions in three dimensions are projected (`sagittal`).
+//! `tests/reference/gaits.rs`), what counts as a touchdown of feet that move up and down (`motion`), recordings with
+//! noise (`noise`), simulations (`simulated`), and the projection of motions in three dimensions (`sagittal`).
 
 mod motion;
 mod noise;
@@ -18,7 +19,7 @@ use std::collections::BTreeMap;
 const RABBIT: &str = "tests/data/robots/rabbit/five_link_walker.urdf";
 const WALK: &str = "tests/data/gaits/rabbit_walk.csv";
 
-/// The samples of a table, known by their lines.
+/// The samples of a table, with the numbers of their lines.
 fn samples(table: &str, robot: &Robot, from: Rates) -> Vec<Sampled<usize>> {
     let mut lines = (1..).zip(table.lines());
     let (_, first) = lines.next().unwrap();
@@ -35,7 +36,7 @@ fn samples(table: &str, robot: &Robot, from: Rates) -> Vec<Sampled<usize>> {
         .collect()
 }
 
-/// The touchdowns of samples of which none is refused.
+/// The touchdowns of samples, none of which may be refused.
 fn touchdowns(
     heights: Heights,
     robot: &Robot,
@@ -82,8 +83,8 @@ fn velocities_from_the_time_stop_short_of_the_impact() {
             let (computed, recorded) = (computed.as_ref().unwrap(), recorded.as_ref().unwrap());
             assert_eq!(computed.source, recorded.source);
             for (computed_rate, rate) in computed.state.velocity.iter().zip(&recorded.state.velocity) {
-                // One-sided over 2 ms, of joints that speed up at up to 100 rad/s^2; across an impact it would be 5
-                // rad/s.
+                // Tolerance: one-sided differences over 2 ms, with joint accelerations of up to 100 rad/s^2. Across an
+                // impact they would be off by 5 rad/s.
                 assert!((computed_rate - rate).abs() < 0.3, "line {}: {computed_rate} {rate}", computed.source);
             }
         }
@@ -108,7 +109,7 @@ fn touching_is_read_as_it_is_written() {
     }
 }
 
-/// What the command prints of them; which they are is compared with the reference.
+/// Checks the output of the command; `tests/reference/gaits.rs` compares the touchdowns with the reference.
 #[test]
 fn the_command_prints_line_and_foot_of_a_touchdown() {
     let feet = ["--contact", "right_shin:0,0,0.4", "--contact", "left_shin:0,0,0.4"];

@@ -1,4 +1,4 @@
-//! What is a touchdown and which state is taken, on feet that move up and down.
+//! What counts as a touchdown, and which state is taken, for feet that move up and down.
 
 use super::{samples, touchdowns};
 use crate::support::impact::robot;
@@ -11,7 +11,7 @@ use heelstrike::read::table::Rates;
 use std::f64::consts::TAU;
 use std::sync::Mutex;
 
-/// A block and two feet, at x = 0 and x = 1, that slide along z on joints of their own; in a unit of length of which
+/// A block and two feet, at x = 0 and x = 1 m, that slide along z on joints of their own, in a unit of length of which
 /// `scale` make a meter.
 pub fn lift(scale: f64) -> Robot {
     let ball = collision([0.0; 2], &format!("sphere radius=\"{}\"", 0.1 * scale));
@@ -22,17 +22,17 @@ pub fn lift(scale: f64) -> Robot {
     robot(&urdf::robot(&[link("block", 1.0, [0.0; 2], 1.0, ""), foot("a", 0.0), foot("b", scale)]))
 }
 
-/// The height that counts as touching.
+/// The height above its level up to which a foot counts as touching.
 fn above() -> f64 {
     Thresholds::of(&lift(1.0), &[]).above
 }
 
-/// The samples of a table without velocities.
+/// The samples of a table without velocities, which are computed as differences.
 fn differences(table: &str, robot: &Robot, difference: Difference) -> Vec<Sampled<usize>> {
     rates(samples(table, robot, Rates::Time).into_iter(), difference).collect()
 }
 
-/// Angles that a recording keeps within a turn have the rates of those that go on.
+/// Angles that a recording wraps into one turn have the same rates as angles that go on.
 #[test]
 fn a_turn_that_wraps_goes_on() {
     let robot = robot(&urdf::body(0.5, ""));
@@ -51,7 +51,7 @@ fn a_turn_that_wraps_goes_on() {
     }
 }
 
-/// The touchdowns of both feet: rows of time, height of a, height of b.
+/// The touchdowns of rows [time, height of a, height of b].
 fn lifted(rows: &[[f64; 3]], at: At, touching: Touching) -> Vec<Sample<usize>> {
     lifted_at(1.0, rows, at, touching)
 }
@@ -60,7 +60,7 @@ fn lifted_at(scale: f64, rows: &[[f64; 3]], at: At, touching: Touching) -> Vec<S
     touchdowns(Heights::Recorded, &lift(scale), &[], lifting(scale, rows), at, touching)
 }
 
-/// The samples of both feet.
+/// The samples of rows [time, height of a, height of b].
 fn lifting(scale: f64, rows: &[[f64; 3]]) -> Vec<Sampled<usize>> {
     let mut table = "time,q_base_z,q_ja,q_jb\n".to_owned();
     // The sphere's lowest point is its radius below its link.
@@ -91,7 +91,7 @@ fn the_state_is_the_last_row_above_the_level_of_rest() {
     assert_eq!(striking, "a");
     assert_near(*shift_z, -0.01, 1e-15);
     assert_near(state.position[1], 0.09, 1e-15);
-    // Backward: 10 mm in 10 ms.
+    // The backward difference: 10 mm in 10 ms.
     assert_near(state.velocity[3], -1.0, 1e-12);
 }
 
@@ -101,17 +101,17 @@ fn crossing_goes_on_as_the_foot_fell() {
     let touchdowns = lifted(&rows, At::Crossing, Touching::Strike);
     let [touchdown @ Sample { time, state, .. }] = &touchdowns[..] else { panic!("{touchdowns:?}") };
     let Landing { row: 4, shift_z, .. } = landing(touchdown) else { panic!("{touchdown:?}") };
-    // At 1 m/s from 10 mm down to where it is stopped at once.
+    // The foot falls at 1 m/s from 10 mm to where it is stopped at once.
     assert_near(*time, 0.04 + (0.01 - 0.004), 1e-12);
     assert_near(state.position[3], 0.004, 1e-12);
     assert_near(*shift_z, -0.004, 1e-12);
-    // Not that of the row which is stopped.
+    // The rate of the fall, not that of the row in which the foot is stopped.
     assert_near(state.velocity[3], -1.0, 1e-12);
 }
 
 #[test]
 fn a_foot_that_slows_down_touches_above_its_level() {
-    // At 10 m/s^2, in rows of 1 ms; it rests after 48 ms, and falls more slowly than counts from 5 ms before that on.
+    // It slows down at 10 m/s^2, in rows of 1 ms, and rests after 48 ms. In the last 5 ms it falls too slowly to count.
     let rows: Vec<[f64; 3]> = (0..60)
         .map(|row| f64::from(row) * 1e-3)
         .map(|time| [time, 5.0 * (0.048_f64 - time).max(0.0).powi(2) + 0.003, 0.0])
@@ -120,13 +120,14 @@ fn a_foot_that_slows_down_touches_above_its_level() {
     let touchdowns = lifted(&[&high[..], &rows].concat(), At::Crossing, Touching::Strike);
     let [touchdown @ Sample { state, time, .. }] = &touchdowns[..] else { panic!("{touchdowns:?}") };
     assert!(landing(touchdown).is_early);
-    // Too few rows show no noise, and no lack of it.
+    // Too few rows show neither noise nor that there is none.
     let few: Vec<[f64; 3]> = high.into_iter().chain(rows.into_iter().step_by(8)).collect();
     let short = lifted(&few, At::Crossing, Touching::Strike);
     assert!(short.iter().all(|touchdown| !landing(touchdown).is_early) && short.len() == 1, "{short:?}");
     let level = 5.0 * 0.005_f64.powi(2) + above();
     assert_near(state.position[3], level + 0.003, 1e-12);
-    // Between rows a line is a parabola to 1.25 um, here at 0.2 m/s; backward differences are half a row late.
+    // Tolerances: a line between rows is 1.25 um off the parabola, here at 0.2 m/s; backward differences are half a row
+    // late.
     let later = (level / 5.0).sqrt();
     assert_near(*time, 0.048 - later, 1e-5);
     assert_near(state.velocity[3], -10.0 * later, 1e-4);
@@ -134,7 +135,7 @@ fn a_foot_that_slows_down_touches_above_its_level() {
 
 #[test]
 fn a_foot_that_is_stopped_at_once_touches_its_level() {
-    // At 0.5 m/s, then at 0.2 m/s in rows of 1 ms, until it stays at 0 between two of them.
+    // The foot falls at 0.5 m/s, then at 0.2 m/s in rows of 1 ms, until it stays at 0 between two of them.
     let rows: Vec<[f64; 3]> = (0..40)
         .map(|row| f64::from(row) * 1e-3)
         .map(|time| [time, (0.0057 - 0.2 * time + 0.3 * (0.012_f64 - time).max(0.0)).max(0.0), 0.0])
@@ -150,7 +151,7 @@ fn a_foot_that_is_stopped_at_once_touches_its_level() {
 
 #[test]
 fn rates_before_another_foots_impact_are_not_used() {
-    // Foot b has struck at 20 ms, which slows foot a to 1 m/s; it is stopped at 4 mm.
+    // Foot b strikes at 20 ms, which slows foot a to 1 m/s. Foot a is stopped at 4 mm.
     let robot = lift(1.0);
     let rows = [[0.0, 0.06, -2.0], [0.01, 0.04, -2.0], [0.02, 0.02, -2.0], [0.02, 0.02, -1.0], [0.03, 0.01, -1.0]];
     let stopped = [[0.04, 0.004, 0.0], [0.05, 0.004, 0.0]];
@@ -166,8 +167,8 @@ fn rates_before_another_foots_impact_are_not_used() {
 /// Gravity of the test's drop \[m/s^2\].
 const G: f64 = 9.81;
 
-/// A ball that is let go 1 m above the ground and stays there: rows of 10 Hz, the first `phase` \[s\]
-/// after it was let go; with its velocities and without.
+/// The tables, with velocities and without, of a ball that is dropped from 1 m and stays on the ground: rows at 10 Hz,
+/// the first one `phase` \[s\] after the drop.
 fn drop(phase: f64) -> [String; 2] {
     let mut tables = ["time,q_base_z,v_base_z\n", "time,q_base_z\n"].map(str::to_owned);
     for row in 0..8 {
@@ -204,7 +205,7 @@ fn the_velocity_at_the_crossing_is_that_of_the_fall() {
 
 #[test]
 fn small_robots_touch_down_as_large_ones_do() {
-    // One foot touches down, one is scuffed over the ground, one comes down too little: all near a threshold.
+    // Swings near a threshold: feet that touch down, scuff over the ground or come down too little.
     let swings = [
         &[0.05, 0.04, 0.03, 0.02, 0.01, 0.005, 0.005, 0.05][..],
         &[0.05, 0.04, 0.03, 0.0215, 0.0215, 0.03],
@@ -222,11 +223,11 @@ fn small_robots_touch_down_as_large_ones_do() {
     };
     let expected = found(1.0, 1.0);
     assert!(expected.iter().any(Vec::is_empty) && expected.iter().any(|rows| !rows.is_empty()), "{expected:?}");
-    // However large the robot is, feet float as recorded.
+    // Feet are recorded as far above the ground on large robots as on small ones, so that thresholds do not grow.
     for scale in [10.0, 1e3, 1e6] {
         assert_eq!(found(scale, 1.0), expected, "{scale}");
     }
-    // The foot at x = 1 with its radius makes the size.
+    // The robot's size, from the foot at x = 1 and its radius.
     let size = 1.1;
     for scale in [0.1, 1e-3, 1e-6] {
         assert_eq!(found(scale, scale * size / SMALL), expected, "{scale}");
@@ -235,12 +236,12 @@ fn small_robots_touch_down_as_large_ones_do() {
 
 #[test]
 fn a_point_that_the_foot_keeps_up_does_not_strike() {
-    // A sole of 0.2 m, 20 mm thick, with a ball of 15 mm inside of its front end; it turns on its heel.
+    // A sole 0.2 m long and 20 mm thick, with a sphere of radius 15 mm inside its front end, turns on its heel.
     let sole =
         collision([0.1, 0.01], r#"box size="0.2 0.1 0.02""#) + &collision([0.18, 0.018], r#"sphere radius="0.015""#);
     let robot = robot(&urdf::body(1.0, &sole));
-    // The heel stands where it was recorded, and the toe comes down from 60 mm until the sole is level or, as recorded,
-    // not.
+    // The heel stands at its recorded height. The toe comes down from 60 mm until the sole is level or, as in
+    // recordings, not quite level.
     for rest in [-0.02, 0.0, 0.02_f64] {
         let mut table = "time,q_base_z,q_base_pitch\n".to_owned();
         let pitch = |row: u32| -(0.3 - 0.03 * f64::from(row)).max(rest);
@@ -286,7 +287,7 @@ fn a_clip_may_end_with_the_touchdown() {
     assert_eq!(ends(&swing, At::Row), [(5, 0.05)]);
     assert_eq!(ends(&swing, At::Crossing), [(5, 0.05)]);
     assert_eq!(ends(&swing[..5], At::Row), [], "it ends in the air");
-    // Beyond the ground: where the foot crosses it.
+    // The last row is below the ground: the touchdown is where the foot crosses it.
     let through = [0.05, 0.04, 0.03, 0.02, 0.01, -0.01];
     assert_eq!(ends(&through, At::Row), [(4, 0.04)]);
     let [(4, time)] = ends(&through, At::Crossing)[..] else { panic!("one touchdown after row 4") };
@@ -295,7 +296,7 @@ fn a_clip_may_end_with_the_touchdown() {
 
 #[test]
 fn who_touches_is_asked_of_every_other_foot() {
-    // b stands 5 mm high, or 30 mm, or comes down as well.
+    // b stands at 5 mm or at 40 mm, or comes down as well.
     let swing = [0.05, 0.04, 0.03, 0.02, 0.01, 0.0, 0.0, 0.0];
     let with = |b: fn(f64) -> f64, touching: &str| {
         let rows: Vec<[f64; 3]> = one_foot(&swing).iter().map(|[time, a, _]| [*time, *a, b(*a)]).collect();
@@ -367,7 +368,7 @@ fn numbers_beyond_all_measure_are_refused_and_end() {
 
 #[test]
 fn a_foot_in_soft_ground_is_slowed() {
-    // At 1 m/s down to 0 after 50 ms.
+    // It falls at 1 m/s and is at 0 after 50 ms.
     let is_slowed = |step: f64, sinks: &dyn Fn(f64) -> f64| {
         let height = |time: f64| if time < 0.05 { 0.05 - time } else { -sinks(time - 0.05) };
         let times = (0..).map(|row| f64::from(row) * step).take_while(|&time| time < 0.3);
@@ -380,7 +381,7 @@ fn a_foot_in_soft_ground_is_slowed() {
     for step in [1e-3, 1e-2, 2e-2] {
         assert!(!is_slowed(step, &|_| 0.0), "it stops at once");
         for brakes in [10.0, 20.0] {
-            // Until it rests.
+            // The foot brakes until it rests.
             let sinks = |time: f64| time.min(1.0 / brakes) * (1.0 - 0.5 * brakes * time.min(1.0 / brakes));
             assert!(!is_slowed(step, &sinks), "{brakes} m/s^2 are those of a leg, every {step} s");
         }
@@ -411,7 +412,7 @@ fn a_ground_that_is_not_at_zero_is_noted() {
 
 #[test]
 fn a_foot_does_not_rebound_faster_than_twice_as_it_fell() {
-    // It falls by 4 mm from row to row, to this height, and is there in the next row.
+    // The foot falls by 4 mm from row to row to the height `last`, and is at `next` in the next rows.
     let found = |last: f64, next: f64| {
         let heights = (0..9).rev().map(|row| last + 4e-3 * f64::from(row)).chain([next, next]);
         let rows: Vec<[f64; 3]> =

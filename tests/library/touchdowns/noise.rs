@@ -10,15 +10,15 @@ use std::fmt::Write;
 
 /// Gravity \[m/s^2\].
 const G: f64 = 9.81;
-/// A foot swings for so long \[s\], on a parabola, and stands for the rest of a stride.
+/// The duration of a swing \[s\], on a parabola; the foot stands for the rest of a stride.
 const SWING: f64 = 0.35;
 const STRIDE: f64 = 0.8;
-/// How fast it strikes \[m/s\].
+/// The speed at which it strikes \[m/s\].
 const STRIKES: f64 = 0.5;
-/// Every foot has so many strides.
+/// The number of strides of each foot.
 const STRIDES: u32 = 6;
 
-/// When and with which foot.
+/// The time \[s\] and the foot.
 type Strike = (f64, &'static str);
 
 fn height(time: f64) -> f64 {
@@ -26,13 +26,13 @@ fn height(time: f64) -> f64 {
     if time < SWING { STRIKES * (SWING - time) * time / SWING } else { 0.0 }
 }
 
-/// Normal to three digits: the sum of twelve uniform ones.
+/// A normally distributed number, to three digits, from the sum of twelve uniform ones.
 fn normal(random: &mut Random) -> f64 {
     (0..12).map(|_| random.uniform()).sum::<f64>() - 6.0
 }
 
-/// A table of the walk with rows of so many Hz, of which the base has a noise of this standard deviation \[m\], and its
-/// strikes.
+/// A table of the walk with rows at this rate, with noise of this standard deviation \[m\] in the height of the base,
+/// and its strikes.
 fn walk(hertz: u32, noise: f64, seed: u64) -> (String, Vec<Strike>) {
     let mut random = Random::new(seed);
     let (step, level) = (1.0 / f64::from(hertz), random.between(-0.01, 0.01));
@@ -53,7 +53,7 @@ fn walk(hertz: u32, noise: f64, seed: u64) -> (String, Vec<Strike>) {
     (table, strikes.filter(|(time, _)| *time < end - 0.1).collect())
 }
 
-/// Of the touchdowns found by default the errors of time \[s\] and speed \[m/s\], after their order was compared.
+/// The errors of time \[s\] and speed \[m/s\] of the touchdowns that are found by default; asserts their order.
 fn errors(hertz: u32, noise: f64, seed: u64) -> Vec<[f64; 2]> {
     let (table, strikes) = walk(hertz, noise, seed);
     let robot = super::motion::lift(1.0);
@@ -72,7 +72,7 @@ fn errors(hertz: u32, noise: f64, seed: u64) -> Vec<[f64; 2]> {
 
 #[test]
 fn noise_leaves_every_touchdown() {
-    // Twice the errors that were measured on 400 touchdowns: 90 % of moments, the mean speed.
+    // Limits are twice the errors measured on 400 touchdowns: the time that 90 % keep, and the mean speed.
     for (hertz, noise, moment, speed) in [
         (100, 1e-4, 1.6e-3, 0.02),
         (100, 1e-3, 10e-3, 0.12),
@@ -96,7 +96,7 @@ fn noise_leaves_every_touchdown() {
 fn recorded_velocities_show_an_impact_that_noise_hides() {
     for (hertz, noise, bounces) in [(500, 3e-4, false), (200, 1e-3, false), (100, 3e-3, false), (500, 3e-4, true)] {
         let mut random = Random::new(5);
-        // A ball is thrown up so fast, and then again and again after it has stopped, or bounces.
+        // A ball is thrown up at these speeds, each time after it has stopped, or bounces.
         let throws: Vec<f64> = (0..40).map(|_| random.between(1.5, 2.5)).collect();
         let mut table = "time,q_base_z,v_base_z\n".to_owned();
         let (mut row, mut start) = (0, 0.0);
@@ -116,7 +116,7 @@ fn recorded_velocities_show_an_impact_that_noise_hides() {
         let samples = samples(&table, &robot, Rates::Columns);
         let found = touchdowns(Heights::Recorded, &robot, &[], samples, At::Crossing, Touching::Strike);
         let case = format!("{hertz} Hz, {noise} m");
-        // The last one may end the clip.
+        // The last touchdown may be missing, because it ends the clip.
         assert!(found.len() + 1 >= throws.len() && found.len() <= throws.len(), "{case}: {} found", found.len());
         for (touchdown, speed) in found.iter().zip(&throws) {
             let rate = touchdown.state.velocity[1];
@@ -128,7 +128,7 @@ fn recorded_velocities_show_an_impact_that_noise_hides() {
 /// A ball that is slowed on its way, as by a knee that is stopped, has not touched down there.
 #[test]
 fn a_fall_that_is_slowed_goes_on() {
-    // It falls at 1 m/s, and from so much before it strikes at half of that.
+    // It falls at 1 m/s, and for the last `slowed` \[s\] before it strikes at half of that.
     for slowed in [0.02, 0.04, 0.06] {
         let height = |left: f64| if left < 0.0 { 0.0 } else { 0.5 * left + 0.5 * (left - slowed).max(0.0) };
         let mut table = "time,q_base_z,v_base_z\n".to_owned();

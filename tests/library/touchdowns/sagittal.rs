@@ -51,7 +51,7 @@ fn positions(table: &str) -> Vec<Vec<f64>> {
 }
 
 fn close(found: &[Vec<f64>], expected: &[Vec<f64>]) {
-    // Digits of sums of up to ten meters.
+    // Tolerance: rounding of sums of up to ten meters.
     assert!(near(&found.concat(), &expected.concat(), 1e-13), "{found:?} {expected:?}");
 }
 
@@ -62,7 +62,7 @@ fn each_clip_has_a_heading_of_its_own() {
     let (found, dropped) = projected(&table(&[ahead, back].concat()), &body());
     let x: Vec<f64> = found.iter().map(|sampled| sampled.as_ref().unwrap().state.position[0]).collect();
     close(&[x], &[vec![0.0, 1.0, 0.0, -3.0_f64.cos()]]);
-    // The line through the middle of the first clip lies at y = 0.25; in the second one half of sin 3 is off it.
+    // The first clip is 0.25 m to the sides of the line through its middle, the second only half of sin 3.
     close(&[vec![dropped.roll, dropped.yaw, dropped.sideways]], &[vec![0.3, 0.2, 0.25]]);
 }
 
@@ -105,7 +105,7 @@ fn recorded_robots_match_the_reduced_tables() {
     }
 }
 
-/// A walk that leans and turns a little.
+/// A random motion with yaw, pitch and roll.
 fn walk() -> impl Strategy<Value = Vec<Row>> {
     let row = (-1.0..1.0, -1.0..1.0, 0.5..1.5, -0.6..0.6, -1.0..1.0, -0.5..0.5);
     prop::collection::vec(row, 2..12).prop_map(|rows| {
@@ -126,7 +126,7 @@ proptest! {
 
     #[test]
     fn stepping_aside_changes_nothing(rows in walk(), aside in -5.0..5.0_f64) {
-        // The heading of rows that all look along x is x.
+        // All rows look along x, which is therefore the heading.
         let straight = |aside: f64| -> Vec<Row> {
             rows.iter().map(|&[time, x, y, z, _, pitch, _]| [time, x, y + aside, z, 0.0, pitch, 0.0]).collect()
         };

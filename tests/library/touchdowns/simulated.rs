@@ -1,4 +1,4 @@
-//! Touchdowns of simulations, whose heights are true: motions whose moment of contact is known in closed form.
+//! Touchdowns of simulations, whose heights are exact: motions whose moment of contact is known in closed form.
 
 use super::{samples, touchdowns};
 use crate::support::command::{file, heelstrike, heelstrike_reads};
@@ -20,9 +20,9 @@ struct Motion {
     /// Columns of q after the time, and of v.
     columns: [&'static str; 2],
     strikes: f64,
-    /// q and v before the touchdown.
+    /// q and v before the touchdown, at this time.
     before: fn(f64) -> [Vec<f64>; 2],
-    /// After it, so much later than the touchdown.
+    /// q and v after the touchdown, at this time since then.
     after: fn(f64) -> [Vec<f64>; 2],
 }
 
@@ -45,7 +45,7 @@ fn ball() -> Motion {
     }
 }
 
-/// A rod of 1 m that spins at 3 rad/s while it falls; it is where its front end strikes after 0.4 s, and stays.
+/// A rod of 1 m spins at 3 rad/s while it falls. Its front end strikes after 0.4 s, and the rod stays where it then is.
 fn rod() -> Motion {
     let fall = |time: f64| {
         let height = 0.5 * G * 0.16 + 0.5 * 1.4_f64.sin() - 0.5 * G * time * time;
@@ -60,8 +60,8 @@ fn rod() -> Motion {
     }
 }
 
-/// A compass walker with legs of 1 m at the absolute angles a = 0.1 + 0.8 t and -(0.5 - 0.4 t - 0.3 t^2), the hip at (sin
-/// a, cos a): both feet are on the ground when the angles are opposite. It stays there.
+/// A compass walker with legs of 1 m at the absolute angles a = 0.1 + 0.8 t and -(0.5 - 0.4 t - 0.3 t^2) and the hip at
+/// (sin a, cos a). Both feet are on the ground when the angles are opposite; the walker then stays there.
 fn walker() -> Motion {
     let swing = |time: f64| {
         let (a, rate) = (0.1 + 0.8 * time, 0.8);
@@ -146,7 +146,7 @@ fn the_moment_is_that_of_the_motion() {
                     }
                 };
                 near(0, &touchdown.state.position, &q, 1e-6 * step * 10.0);
-                // The rate of a polynomial of fifth degree, one step beyond its points.
+                // Tolerance: the rate of a polynomial of fifth degree, up to one step beyond its points.
                 near(1, &touchdown.state.velocity, &v, 1e-6);
                 let state = touchdown.state.to_json(&motion.robot);
                 for contact in impact(&motion.robot, state).contacts {
@@ -162,7 +162,7 @@ fn accelerations_may_jump_at_every_row() {
     let step = 0.002;
     for seed in 0..40 {
         let mut random = Random::new(seed);
-        // A ball that controllers push and turn, each row anew.
+        // A ball that controllers push and turn, with new accelerations in each row.
         let [mut height, mut turn, mut falls, mut turns] = [0.5, 0.0, 0.0, random.between(-1.0, 1.0)];
         let mut table = "time,q_base_z,q_base_pitch,v_base_z,v_base_pitch\n".to_owned();
         let mut row = 0;
@@ -186,7 +186,7 @@ fn accelerations_may_jump_at_every_row() {
         let samples = samples(&table, &ball, Rates::Columns);
         let found = touchdowns(Heights::True, &ball, &[], samples, At::Crossing, Touching::Strike);
         let [touchdown] = &found[..] else { panic!("{} touchdowns of seed {seed}", found.len()) };
-        // Within a row a velocity changes by so much at most.
+        // The most by which a velocity changes from row to row.
         let most = (G + 20.0) * step;
         for (own, truth) in touchdown.state.velocity[1..].iter().zip([speed, rate]) {
             assert!((own - truth).abs() < 2.0 * most, "{own} is not {truth}, seed {seed}");
@@ -225,8 +225,8 @@ fn a_body_may_rest_a_rounding_above_the_ground() {
     }
 }
 
-/// Integrators that stop at the impact have a row there, before it, after it or both, a rounding above or below the
-/// ground.
+/// Integrators that stop at an impact write rows there with the velocity before it, after it or both, at a height up to
+/// a rounding above or below the ground.
 #[test]
 fn a_row_at_the_impact_may_be_before_or_after_it() {
     let motion = ball();
@@ -237,7 +237,7 @@ fn a_row_at_the_impact_may_be_before_or_after_it() {
     for z in [0.1, 0.1_f64.next_up(), 0.1_f64.next_down(), 0.1 + 1e-9, 0.1 - 1e-9, 0.1 - 5e-7] {
         let [before, after] = [row(time, z, -speed), row(time, z, 0.5 * speed)];
         let bounced = after.clone() + &row(time + 0.03, 0.1 + 0.03 * (0.5 * speed - 0.015 * G), 0.5 * speed - 0.03 * G);
-        // At rest it sinks by drift, or jitters.
+        // At rest the ball sinks by drift, or jitters.
         let stays = |lower: fn(f64) -> f64| -> String {
             let rests = (0..60).map(f64::from).map(|at| row(time + 1e-3 * at, z + lower(at), 0.0));
             rests.collect()
@@ -256,7 +256,7 @@ fn a_row_at_the_impact_may_be_before_or_after_it() {
             let [Sample { time: found, state, .. }] = &found[..] else { panic!("{case} {z:?}: {}", found.len()) };
             assert!((found - time).abs() < 1e-8, "{case} {z:?}: {found}");
             assert!((state.velocity[1] + speed).abs() < 1e-7, "{case} {z:?}: {}", state.velocity[1]);
-            // Of two rows on the ground the first is taken as it is.
+            // If both rows are on the ground, the first is taken as it is.
             let is_given = case != "both" || z < 0.1 - 1e-8 || state.velocity[1] == -speed;
             assert!(is_given, "{z:?}: {:?}", state.velocity[1]);
         }
@@ -265,7 +265,7 @@ fn a_row_at_the_impact_may_be_before_or_after_it() {
 
 #[test]
 fn a_standing_heel_takes_part_when_its_toe_strikes() {
-    // On the ground, or sunk into it by a third of a millimeter.
+    // The heel is on the ground, or sunk into it by a third of a millimeter.
     [0.1, 0.1003].into_iter().for_each(strike_with_a_toe);
 }
 
@@ -299,7 +299,7 @@ fn a_simulation_that_ends_aloft_has_no_touchdown() {
     let step = end / 100.0;
     let table = motion.table(step, 0.0, true, end + 0.5 * step);
     assert!(motion.found(&table, true, At::Crossing).is_empty());
-    // One row more, and it has.
+    // With one more row it touches down.
     assert_eq!(motion.found(&motion.table(step, 0.0, true, end + 1.5 * step), true, At::Crossing).len(), 1);
 }
 
@@ -334,7 +334,7 @@ fn a_touchdown_can_be_asked_again() {
     };
     let again = ["batch", &robot, "-", "--input-format", "csv", "--friction", "0.7", "--contact-tolerance", "1e-9"];
     let again = heelstrike_reads(&again, kept(&names) + &kept(&cells)).well().line();
-    // The foot that stood is detected, too, and lifts off without an impulse.
+    // The foot that stood is also detected, and lifts off without an impulse.
     let after = |result: &Value| result["outcomes"][0]["joint_velocity_after"].clone();
     assert_eq!(after(&again), after(&result));
 }

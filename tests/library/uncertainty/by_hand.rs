@@ -1,4 +1,4 @@
-//! Cases whose box is worked out on paper.
+//! Uncertain states whose boxes are worked out by hand.
 
 use crate::support::impact::{impact, ramone, robot, try_impact};
 use crate::support::urdf::{self, HINGE, collision, joint, link};
@@ -13,7 +13,7 @@ fn ball() -> Robot {
     robot(&urdf::body(1.0, &collision([0.0; 2], "sphere radius=\"0.5\"")))
 }
 
-/// The ball falls at 1 m/s and goes at 0.6 m/s, which needs a friction of 0.4.
+/// The ball falls at 1 m/s and moves forward at 0.6 m/s; it sticks if friction is at least 0.4.
 fn falling(friction: impl Into<Value>, uncertainty: Value) -> Value {
     json!({"position": {"base": {"z": 0.5}}, "velocity": {"base": {"x": 0.6, "z": -1.0}},
         "friction": friction.into(), "uncertainty": uncertainty})
@@ -37,14 +37,14 @@ fn ball_holds_within_its_friction_and_speed() {
         (json!(0.5), json!({"friction": 0.099}), true),
         (json!(0.5), json!({"friction": 0.101}), false),
         (json!(0.5), json!({"friction": 0.3}), false),
-        // A slide stays one down to no friction at all, where friction ends.
+        // A slide remains one down to friction 0, where the box ends.
         (json!(0.0), json!({"friction": 0.1}), true),
         (json!(0.05), json!({"friction": 0.1}), true),
         (json!(0.25), json!({"friction": 0.1}), true),
         (json!(0.35), json!({"friction": 0.1}), false),
         // No number is uncertain where friction is infinite.
         (json!("infinite"), json!({"friction": 100.0}), true),
-        // The base's place does nothing. The ball slides from 0.75 m/s on, and leaves the ground from 0 m/s on.
+        // The place of the base has no effect. The ball slides from 0.75 m/s on, and leaves the ground from 0 m/s on.
         (json!(0.5), json!({"position": {"base": {"x": 1e9, "z": 1e9}}}), true),
         (json!(0.5), velocity(json!({"x": 0.14})), true),
         (json!(0.5), velocity(json!({"x": 0.16})), false),
@@ -77,7 +77,7 @@ fn no_impact_holds_on_the_whole_box() {
 
 #[test]
 fn dependent_or_unproven_answer_stays_unknown() {
-    // Both contacts are at one place.
+    // Both contacts are at one place, so that they are redundant.
     let twice = json!([{"link": "left_foot"}, {"link": "left_foot"}]);
     let state = json!({"velocity": {"base": {"z": -1.0}}, "friction": 0.8, "contacts": twice,
         "uncertainty": {"position": 1e-6}});
@@ -89,7 +89,7 @@ fn dependent_or_unproven_answer_stays_unknown() {
 
 #[test]
 fn many_uncertain_numbers_are_taken_together() {
-    // A body with 24 arms has 76 of them, more than any affine number has slopes.
+    // A body with 24 arms has 76 uncertain numbers, more than an affine number has slopes.
     let links = (0..25).map(|k| link(format!("l{k}"), 1.0, [0.0, -0.05], 0.01, ""));
     let joints = (1..25).map(|k| joint(format!("j{k}"), HINGE, ["l0", &format!("l{k}")], [0.0, -0.1], ""));
     let star = robot(&urdf::robot(&links.chain(joints).collect::<Vec<_>>()));

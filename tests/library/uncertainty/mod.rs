@@ -1,6 +1,6 @@
-//! States whose numbers are known to an interval each: does the verdict hold on the whole box?
+//! States whose numbers are known up to an interval each: does the verdict hold on the whole box?
 //!
-//! Random states, whose answers are tried at many states of their boxes; small cases that are worked out by hand.
+//! Random states, compared with many states of their boxes; small cases that are worked out by hand.
 
 mod by_hand;
 mod states;
@@ -30,7 +30,7 @@ impl std::fmt::Display for Shares {
 }
 
 impl Shares {
-    /// Those of so many random states; the result for each box must hold at corners and inside.
+    /// Counts the results of `seeds` random states, and asserts that each is true at corners of its box and inside.
     fn of(seeds: u64, robot: &Robot, state: impl Fn(&Robot, &mut Random) -> State) -> Self {
         let mut shares = Self::default();
         for seed in 0..seeds {

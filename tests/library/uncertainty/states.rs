@@ -1,4 +1,4 @@
-//! Random states of RAMone on both feet, and what their boxes may hold.
+//! Random states with uncertainties, mostly of RAMone on both feet, and states of their boxes.
 
 use crate::support::impact;
 use crate::support::random::Random;
@@ -39,7 +39,7 @@ pub fn on_both_feet(robot: &Robot, random: &mut Random, width: f64) -> State {
     read(robot, &state)
 }
 
-/// One foot stands on a slope while the other strikes, with whatever else a state may have.
+/// One foot stands on a slope while the other strikes, with most other fields of a state.
 pub fn walking(robot: &Robot, random: &mut Random) -> State {
     let (positions, rates) = (joints(robot, random, 1.2), joints(robot, random, 2.0));
     let held: &[&str] = if random.once_in(2) { &["left_knee"] } else { &[] };
@@ -63,7 +63,7 @@ pub fn walking(robot: &Robot, random: &mut Random) -> State {
     read(robot, &state)
 }
 
-/// RAMone whose right knee bends with the left one.
+/// RAMone whose right knee mimics the left one.
 pub fn with_coupled_knees() -> Robot {
     let urdf = include_str!("../../../urdf/ramone.urdf");
     let knee = urdf.find(r#"<joint name="right_knee""#).expect("a right knee");
@@ -80,7 +80,7 @@ pub fn on_coupled_knees(robot: &Robot, random: &mut Random) -> State {
     state
 }
 
-/// A closed chain of five links whose joint touches, and a point of a shank; any motion that keeps it closed, and an
+/// The five-bar leg with contacts at its pin and at a point of its torso, any motion that keeps it closed, and an
 /// impulse on its torso.
 pub fn five_bar(robot: &Robot, random: &mut Random) -> State {
     let mut state: Value = serde_json::from_str(include_str!("../../../examples/five_bar.json")).expect("an example");
@@ -104,13 +104,13 @@ pub fn modes(found: &Impact) -> Vec<Vec<Mode>> {
     modes
 }
 
-/// A state of the box whose place in each interval, from -1 to 1, is given by `place`.
+/// A state of the box; `place` gives the place in each interval, from -1 to 1.
 pub fn in_the_box(robot: &Robot, state: &State, mut place: impl FnMut() -> f64) -> State {
     let mut other = state.clone();
     let known = other.uncertainty.take().expect("an uncertain state");
     let placed = state.scene.stance.is_some();
     for (coordinate, (position, width)) in other.position.iter_mut().zip(&known.position).enumerate() {
-        // Detected contacts must not lose the ground.
+        // x and z of the base stay, so that detected contacts keep touching.
         if coordinate >= robot.base_dofs().min(2) {
             *position += width * place();
         }
@@ -134,7 +134,7 @@ pub fn in_the_box(robot: &Robot, state: &State, mut place: impl FnMut() -> f64) 
     other
 }
 
-/// The other state must lie in the first one's box, up to a rounding of its ends.
+/// Asserts that the other state is in the box of the first one, up to a rounding of its ends.
 pub fn assert_in_the_box(state: &State, other: &State) {
     let known = state.uncertainty.as_ref().expect("an uncertain state");
     let within = |a: &[f64], b: &[f64], widths: &[f64]| {
