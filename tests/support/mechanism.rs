@@ -124,7 +124,7 @@ impl Mechanism {
         }
     }
 
-    /// The same mechanism in other units, of which `mass` and `length` make one of the old units.
+    /// The same mechanism in other units; `mass` and `length` are the sizes of the old units in the new ones.
     pub fn in_units(&self, mass: f64, length: f64) -> Self {
         let mut other = self.clone();
         other.map_points(|point| point.map(|entry| entry * length));

@@ -69,7 +69,7 @@ fn closed(pitch: f64, left: f64, right: f64) -> Vec<f64> {
     vec![0.3, 0.9, pitch, left, angle(a) - left, right, angle(b) - right]
 }
 
-/// K = J_a - J_b.
+/// The rows K = J_a - J_b of the loop.
 fn loop_rows(mechanism: &Mechanism, q: &[f64], [a, b]: Ends) -> DMatrix<f64> {
     mechanism.point_rates(q, a.0, a.1) - mechanism.point_rates(q, b.0, b.1)
 }

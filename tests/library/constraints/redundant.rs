@@ -83,7 +83,7 @@ fn a_braced_parallelogram_is_rigid() {
     let delassus = &matrices(&found).delassus;
     assert!(delassus.iter().flatten().all(|entry| entry.abs() < 1e-14), "{delassus:?}");
     assert_eq!(velocities_after(&found)[0], [0.0; 3]);
-    // And moving it is refused.
+    // Velocities that move it are refused.
     let error =
         try_impact(&bolted(&mechanism), &state(&mechanism, Q, RATE, still["loops"].clone())).expect_err("refused");
     assert!(error.reason().to_string().starts_with("the velocities open loops[1] (coupler - root) at "), "{error}");

@@ -35,7 +35,7 @@ fn survey(study: &Value) -> Survey {
     })
 }
 
-/// p = 1 + 3 cos(theta) (cos(theta) - mu sin(theta)) is zero here.
+/// The friction at which p = 1 + 3 cos(theta) (cos(theta) - mu sin(theta)) is zero.
 fn friction_at_pole(theta: f64) -> f64 {
     let (sin, cos) = theta.sin_cos();
     (1.0 + 3.0 * cos * cos) / (3.0 * cos * sin)

@@ -11,8 +11,8 @@ use heelstrike::read::table::Rates;
 use std::f64::consts::TAU;
 use std::sync::Mutex;
 
-/// A block and two feet, at x = 0 and x = 1 m, that slide along z on joints of their own, in a unit of length of which
-/// `scale` make a meter.
+/// A block and two feet, at x = 0 and x = 1 m, that slide along z on joints of their own; `scale` is the size of a
+/// meter in the unit of length.
 pub fn lift(scale: f64) -> Robot {
     let ball = collision([0.0; 2], &format!("sphere radius=\"{}\"", 0.1 * scale));
     let foot = |name: &str, x: f64| {

@@ -70,7 +70,7 @@ fn no_impact_holds_on_the_whole_box() {
     let answer = impact(&ramone(), state);
     assert_eq!(answer.analysis.as_ref().map(|analysis| analysis.verdict), Some(Verdict::NoImpact));
     assert_eq!(holds(&answer), Some(true));
-    // In the air.
+    // A ball in the air.
     let state = json!({"position": {"base": {"z": 1.0}}, "friction": 0.8, "uncertainty": {"velocity": 5.0}});
     assert_eq!(holds(&impact(&ball(), state)), Some(true));
 }
