@@ -4,13 +4,13 @@ use super::{each, heelstrike, heelstrike_reads, list, place, read, result};
 
 const RAMONE: [&str; 5] = ["accuracy", "urdf/ramone.urdf", "examples/ramone.json", "--time", "0"];
 
-/// The arguments for cases of the suite.
+/// The arguments for the cases of the suite whose names contain `name`.
 fn cases(name: &str) -> [&str; 5] {
     ["accuracy", "--case", name, "--time", "0"]
 }
 
-/// The text with times masked, the advice that depends on them, and blanks as wide as they happen to be made one; so
-/// are steps of an integration and what its tolerance leaves.
+/// The text without what differs between runs: times, the advice that depends on them, widths of blanks, steps of an
+/// integration and the small errors that its tolerance leaves.
 fn masked(text: &str) -> String {
     let word = |word: &str| match word {
         "ns" | "µs" | "ms" | "s" => "TIME".to_owned(),
@@ -28,13 +28,14 @@ fn masked(text: &str) -> String {
             words[at] = "<time>".to_owned();
             words.remove(at - 1);
         }
-        // Steps at a tolerance.
+        // The number of integration steps at a tolerance.
         if let [first, steps, ..] = words.as_mut_slice()
             && first.starts_with("1e-")
         {
             *steps = "<steps>".to_owned();
         }
-        // On so soft ground the robot moves so far that rounding decides where to: 1e-15 in the input changes a tenth.
+        // On ground this soft the robot moves so far that rounding decides where to: a change of 1e-15 in the input
+        // changes the result by a tenth.
         if let ["1e4", "N/m", ..] = *words.iter().map(String::as_str).collect::<Vec<_>>() {
             words[2..].fill("<far>".to_owned());
         }
@@ -43,7 +44,7 @@ fn masked(text: &str) -> String {
     text.lines().map(line).collect::<Vec<_>>().join("\n")
 }
 
-/// A run of compliant contact that is given up, as from this state, takes nothing else along.
+/// If the integration of the compliant contact is given up, as from this state, the rest of the report remains.
 #[test]
 fn a_report_is_there_without_its_compliant_contact() {
     let state = read("examples/ramone.json").replace("0.3729729102424726", "0.3729729102424722");
@@ -99,7 +100,7 @@ fn the_json_holds_errors_times_and_conditions() {
         assert!(at("median") <= at("upper_quartile"), "{method}");
     }
     let error = |at: usize| methods[at]["error"]["delassus"].as_f64().expect("a number");
-    // Digits of f32, f64 and double-double, less two for the few dozen roundings.
+    // The bounds are the precision of f32, f64 and double-double, less two digits or more for a few dozen roundings.
     assert!((1e-9..1e-5).contains(&error(0)) && error(4) < 1e-14 && error(6) < 1e-28, "{study}");
     assert_eq!(accuracy["compliant"]["groups"][0]["runs"], 72);
 }

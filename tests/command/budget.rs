@@ -1,9 +1,9 @@
-//! `--budget`, and what is refused before any work because of its size.
+//! `--budget`, and inputs that are refused before any work because of their size.
 
 use super::*;
 use support::nearly::nearly_dependent;
 
-/// A run ends soon if it says so itself.
+/// Runs the command, which must end within 240 s.
 fn ends(arguments: &[&str], stdin: &str) -> Run {
     finished(command().args(arguments).write_stdin(stdin).timeout(std::time::Duration::from_secs(240)))
 }
@@ -15,7 +15,7 @@ fn ten_nearly_singular_contacts_end_with_little_text() {
     assert!(run.stdout.len() < 40_000, "{} bytes", run.stdout.len());
     let sentence = "Undecided: the budget of work ended (--budget), and ";
     assert!(run.stdout.contains(sentence) && run.stdout.contains(" of 1048576 combinations of modes are open"));
-    // What is not known has no numbers, and nothing is said to fail.
+    // Undecided combinations have no numbers, and none of them is said to fail.
     let whole = ends(&["solve", "-", "--budget", "0.2"], &problem).well().stdout;
     assert!(
         whole.contains(", not excluded\n  what it would be is not known\n")
@@ -30,7 +30,7 @@ fn ten_nearly_singular_contacts_end_with_little_text() {
 
 #[test]
 fn feet_in_the_ground_end_within_the_budget() {
-    // Within 2 cm, most links of the quadruped touch the ground at once.
+    // At these tolerances most links of the quadruped count as touching the ground.
     let rows: Vec<String> = read("tests/data/gaits/a1_walk.csv").lines().take(3).map(str::to_owned).collect();
     let arguments = ["batch", "tests/data/robots/a1/a1.urdf", "-", "--input-format", "csv", "--friction", "0.7"];
     for tolerance in ["0.02", "0.05"] {
@@ -40,7 +40,8 @@ fn feet_in_the_ground_end_within_the_budget() {
     }
 }
 
-/// A plank at rest on points that are all given: merging would leave two. Any modes come near to its zero velocities.
+/// The block at rest on twelve named contacts along a line, which merging would reduce to two. Because all velocities
+/// are zero, every combination of modes is close to an outcome.
 fn resting_on_many_points() -> Value {
     let points: Vec<Value> =
         (0..12).map(|at| json!({"link": "block", "offset": [0.01 * f64::from(at), 0, -0.1]})).collect();
@@ -52,7 +53,7 @@ fn a_rank_that_is_not_known_is_not_printed() {
     let arguments = ["impact", BLOCK, "-", "--no-reduction=merge", "--format", "json", "--budget"];
     let rank = |budget| ends(&[&arguments[..], &[budget]].concat(), &resting_on_many_points().to_string()).line();
     assert!(rank("0")["rank"].is_null());
-    // A rigid body in the plane.
+    // A rigid body in the plane has three degrees of freedom.
     assert_eq!(rank("infinite")["rank"], json!(3));
 }
 
@@ -72,7 +73,7 @@ fn a_batch_of_hard_states_ends_as_a_whole() {
         run.stderr
     };
     let less = "answers beyond --budget took so long together that one had";
-    // Eleven sixths less than the first.
+    // Each answer may take a sixth of the remaining total: the twelfth one gets 0.01 s * (5/6)^11.
     assert!(run(&[]).contains(&format!("{less} 1.35e-3 s: see --budget-total")), "{}", run(&[]));
     assert!(run(&["--budget-total", "0.03"]).contains(less));
     for enough in ["1", "infinite"] {
@@ -131,7 +132,7 @@ fn a_study_with_too_many_samples_is_refused_at_once() {
     let large = walker(json!({"alpha": parameter(400_000), "b": parameter(2)})).to_string();
     let refusal = ends(&["sweep", WALKER, "-"], &large).refusal(1);
     assert!(refusal.contains("parameters.alpha.steps") && refusal.contains("MB of memory"), "{refusal}");
-    // As many as are accepted, and more than there is time for.
+    // The largest number of samples that is accepted; there is no time for all of them.
     let study = walker(json!({"alpha": parameter(1_000_000)})).to_string();
     ends(&["sweep", WALKER, "-", "--budget", "0.1"], &study)
         .refusal_with(1, "take fewer than 1000000 samples of alpha");

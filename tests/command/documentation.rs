@@ -1,4 +1,4 @@
-//! README and docs against the tool: it prints what they show, links lead somewhere, and every field has its line.
+//! README and docs against the tool: the tool prints what they show, links have targets, and every field is named.
 
 use super::{RAMONE, Run, Value, WALKER, finished, heelstrike, parsed, place, read};
 use std::collections::{BTreeMap, BTreeSet};
@@ -14,7 +14,7 @@ fn pages(folders: &[&str]) -> BTreeMap<PathBuf, String> {
     paths.map(|path| (path.clone(), fs::read_to_string(&path).expect("a page"))).collect()
 }
 
-/// The fenced blocks of a page as language and content, or the text between them.
+/// The fenced blocks of a page as language and content, or, unless `fenced`, the text between them.
 fn blocks(page: &str, fenced: bool) -> impl Iterator<Item = (&str, &str)> {
     page.split("\n```").skip(usize::from(fenced)).step_by(2).map(|block| block.split_once('\n').unwrap_or((block, "")))
 }
@@ -24,7 +24,7 @@ fn prose(page: &str) -> String {
     blocks(page, false).flat_map(|(first, rest)| [first, "\n", rest]).collect()
 }
 
-/// What links to the headings of a page on a code host.
+/// The anchors of a page's headings, as a code host derives them.
 fn anchors(page: &str) -> BTreeSet<String> {
     let letters = |heading: &str| {
         let kept = heading.chars().filter(|letter| letter.is_alphanumeric() || " -_".contains(*letter));
@@ -52,7 +52,7 @@ fn links_of_pages_lead_somewhere() {
     }
 }
 
-/// What a shell prints that runs this in `folder`, where `heelstrike` is the command under test.
+/// Runs a bash script in `folder`, where `heelstrike` is the command under test.
 fn shell(script: &str, folder: &Path) -> Run {
     let tool = Path::new(env!("CARGO_BIN_EXE_heelstrike")).parent().expect("a folder");
     let paths = env::split_paths(&env::var_os("PATH").unwrap_or_default()).collect::<Vec<_>>();
@@ -61,7 +61,7 @@ fn shell(script: &str, folder: &Path) -> Run {
     finished(bash.args(["-euc", script]).current_dir(folder).env("PATH", paths).env_remove("CLICOLOR_FORCE"))
 }
 
-/// Whether the lines are those that are shown, in which a line `...` stands for any number of lines.
+/// Whether the printed lines match the shown ones, in which a line `...` stands for any number of lines.
 fn are_shown(shown: &[&str], printed: &[&str]) -> bool {
     match shown.split_first() {
         None => printed.is_empty(),
@@ -72,8 +72,8 @@ fn are_shown(shown: &[&str], printed: &[&str]) -> bool {
     }
 }
 
-/// Runs the blocks `sh` and `console` of README and docs and the commands in their text, each page in a folder of its
-/// own; what builds or installs is left to `.ci/run`.
+/// Runs the `sh` and `console` blocks of README and docs and the commands in their text, each page in a folder of its
+/// own. Blocks that build or install are left to `.ci/run`.
 #[test]
 #[cfg(unix)]
 fn commands_of_pages_print_what_is_shown() {
@@ -124,7 +124,7 @@ fn fields(schema: &Value) -> Vec<&str> {
     own.chain(parts.flat_map(fields)).collect()
 }
 
-/// How a page writes the name of a column.
+/// The name of a column in docs/formats.md, such as `mode_CONTACT` for `mode_left_foot`.
 fn column(name: &str) -> String {
     let (kind, rest) = name.split_once('_').unwrap_or((name, ""));
     match kind {
@@ -155,7 +155,7 @@ fn formats_name_every_field_and_column() {
     ] {
         let table = place("table.csv");
         heelstrike(&[arguments, &["-o", &table]].concat()).well();
-        // The study's parameter is a column, too.
+        // The table also has a column for the study's parameter, alpha.
         for name in read(&table).lines().next().expect("a header").split(',').filter(|name| *name != "alpha") {
             assert!(words.contains(column(name).as_str()), "{arguments:?}: {name}");
         }

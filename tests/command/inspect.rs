@@ -1,4 +1,4 @@
-//! `inspect`, and what options and cautions make of a robot.
+//! `inspect`: the robot that it shows, options that change the robot, and cautions about it.
 
 use super::support::urdf;
 use super::{RAMONE, WALKER, each, file, heelstrike, heelstrike_reads, list, place, read, result};
@@ -29,13 +29,13 @@ fn inspect_shows_everything_if_asked() {
     let whole = heelstrike(&["inspect", A1, "--all"]).text();
     assert!(cut.lines().count() == 40 && cut.ends_with("The rest: --all\n"), "{cut}");
     assert!(whole.lines().count() > 40 && !whole.contains("--all") && !whole.contains(" more lines"), "{whole}");
-    // Without the lines that stand for others, each line of the one is in the other.
+    // Each line of the short text is in the long one, except for the lines about omitted lines.
     let own = cut.lines().filter(|line| !line.contains(" more lines") && !line.contains("--all"));
     assert!(
         own.clone().count() > 30 && own.clone().all(|line| whole.lines().any(|other| other == line)),
         "{cut}{whole}"
     );
-    // A foot of several alike shapes is listed once.
+    // Equal shapes of one link are listed once, with their number.
     let shapes = "<collision><geometry><sphere radius='0.1'/></geometry></collision>".repeat(3);
     let file = file("shapes.urdf", urdf::body(1.0, &shapes));
     assert!(heelstrike(&["inspect", &file]).text().contains("feet         3 of body (circle of radius 0.1 m)\n"));
@@ -48,7 +48,7 @@ fn plane_hold_and_base_shape_the_robot() {
     assert_eq!((&yz["plane"], &yz["plane_because"]), (&"yz".into(), &"as asked; plane xz would keep 8 joints".into()));
     let names = each(&yz["joints"], "name");
     assert_eq!(names, ["FR_hip_joint", "FL_hip_joint", "RR_hip_joint", "RL_hip_joint"]);
-    // Their axis is +x, the plane's normal -x.
+    // The joints' axis is +x and the plane's normal is -x.
     assert!(list(&yz["joints"]).iter().all(|joint| joint["sign"] == -1.0));
 
     let held = inspect(&["--hold", "FR_calf_joint=-1.5", "--hold", "FL_calf_joint=-1.5", "--base", "fixed"]);
@@ -108,7 +108,7 @@ fn a_state_poses_the_robot_in_its_picture() {
     };
     let at = |state: serde_json::Value| drawn(&["--state", "-"], &state.to_string());
     assert_eq!(at(json!({})), drawn(&[], ""));
-    // The axes reach where the base is, and the lowest point of a stance is the origin.
+    // The picture's axes include the base at x = 40 m. With a stance, the stance's lowest point is the origin.
     assert!(at(json!({"position": {"base": {"x": 40}}})).contains(">40.0</text>"));
     let high = json!({"position": {"joints": {"hip": 0.4}}, "stance": "left_leg"});
     let low = json!({"position": {"base": {"pitch": -1.4}, "joints": {"hip": -2.8}}, "stance": "left_leg"});

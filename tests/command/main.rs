@@ -1,7 +1,8 @@
-//! The command line, run as a user runs it: what is written where, in which form, and the exit status.
+//! The command line as a user runs it: which output goes where, in which format, and the exit status.
 //!
-//! Texts for people are kept as snapshots (`INSTA_UPDATE=always cargo test --test command` renews them, then read the
-//! difference); the JSON contract is checked field by field; refusals are in tables. Numbers are checked elsewhere.
+//! Snapshots keep the text for people word for word: `INSTA_UPDATE=always cargo test --test command` renews them, then
+//! read the difference. Snapshots of JSON keep its fields; tables of cases check refusals. Other test crates check
+//! numbers.
 
 use serde_json::{Value, json};
 use std::fs;
@@ -26,7 +27,7 @@ const RAMONE: &str = "urdf/ramone.urdf";
 const WALKER: &str = "urdf/minimalistic.urdf";
 const BLOCK: &str = "urdf/block.urdf";
 
-/// The only result of a run, which must have ended well.
+/// The only line of JSON from a run, which must succeed.
 #[track_caller]
 fn result(arguments: &[&str], stdin: &str) -> Value {
     heelstrike_reads(&[arguments, &["--format", "json"]].concat(), stdin).well().line()
@@ -46,7 +47,8 @@ fn each(list: &Value, field: &str) -> Vec<Value> {
     self::list(list).iter().map(|entry| entry[field].clone()).collect()
 }
 
-/// A study of a walker that turns about its trailing foot, with these parameters; alpha is the legs' angle.
+/// A study of the minimalistic walker, which turns about its trailing left foot. The parameter alpha is half the angle
+/// between its legs.
 fn walker(parameters: Value) -> Value {
     json!({
         "parameters": parameters,
@@ -66,7 +68,7 @@ fn texts_are_kept_word_for_word() {
     let problems = r#"
         {"id": "cone edge", "delassus": [[1, 0], [0, 1]], "velocity_before": [[-0.5, -1]], "friction": 0.5, "names": ["tip"]}
         {"id": "family", "delassus": [[2, 1], [1, 2]], "velocity_before": [[1, 0]], "friction": 2, "names": ["tip"]}"#;
-    // A point between floor and ceiling, of which the floor alone throws back.
+    // A point mass that touches floor and ceiling at once; only the floor has restitution.
     let walls = r#"{"id": "walls", "mass_matrix": [[1, 0], [0, 1]], "velocity": [0, -1], "friction": 0,
         "contact_jacobian": [[1, 0], [0, 1], [-1, 0], [0, -1]], "restitution": [0.5, 0], "names": ["floor", "ceiling"]}"#;
     for (name, arguments, stdin) in [
@@ -92,14 +94,14 @@ fn texts_are_kept_word_for_word() {
 
 const IN_THE_AIR: &str = r#"{"position": {"base": {"z": 1}}, "velocity": {"base": {"x": 2}}, "friction": 0.5}"#;
 
-/// The example with half-widths ten times as wide.
+/// `examples/ramone_measured.json` with ten times the half-widths of uncertainty.
 fn badly_measured() -> String {
     read("examples/ramone_measured.json").replace("1e-3", "1e-2")
 }
 
 #[test]
 fn many_rejections_are_listed_nearest_first() {
-    // Three contacts on their own, and three at one point, of which some combinations have no margin.
+    // Three uncoupled contacts (G is the identity), and three at one point, where some combinations have no margin.
     let rows = |row: [i32; 2]| (0..3).flat_map(|_| [[row[0], 0], [0, row[1]]]).collect::<Vec<_>>();
     let unit = |at: usize| (0..6).map(|other| i32::from(at == other)).collect::<Vec<_>>();
     let alone = json!({"delassus": (0..6).map(unit).collect::<Vec<_>>(), "friction": 0.8,
@@ -121,7 +123,7 @@ fn many_rejections_are_listed_nearest_first() {
         let nearest = all.iter().filter_map(|rejection| rejection["margin"].as_f64()).fold(f64::NEG_INFINITY, f64::max);
         assert!((nearest - margins[0]).abs() < 1e-5 && all.len() > 40, "{nearest} {text}");
         assert!(more.starts_with(&format!("{} more, none closer to zero", all.len() - 20)), "{more}");
-        // Of what each would have been the same 20, per contact.
+        // The table of what each combination would have been has a header and the same 20 rows.
         let after = more.split("what each would have been").nth(1).and_then(|rest| rest.split("\n\n").nth(1));
         assert_eq!(after.map(|table| table.lines().count()), Some(1 + 20), "{text}");
     }
@@ -132,7 +134,7 @@ fn a_counterexample_can_be_fed_back() {
     let impact = |state: &str| heelstrike_reads(&["impact", RAMONE, "-", "--format", "json"], state).line();
     let first = impact(&badly_measured());
     assert_eq!(first["holds"], false);
-    // A table has no column for it.
+    // A table has no column for the counterexample, so the summary counts it.
     let lines = format!("{}\n", parsed(&badly_measured())).repeat(2);
     let summary = heelstrike_reads(&["batch", RAMONE, "-", "--output-format", "csv"], lines).well().stderr;
     assert!(summary.contains("outcomes that do not hold within the state's uncertainty: 2\n"), "{summary}");
@@ -146,7 +148,7 @@ fn a_counterexample_can_be_fed_back() {
 
 // The JSON contract.
 
-/// The JSON with every number as 0: what is left are the fields, their order and their shapes.
+/// The JSON with every number replaced by 0, so that only fields, their order and their nesting remain.
 fn shape(json: &str) -> String {
     let mut shape = String::new();
     for (at, part) in json.split('"').enumerate() {

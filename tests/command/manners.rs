@@ -110,12 +110,12 @@ fn a_full_disk_is_reported_by_every_command() {
     }
 }
 
-/// `NO_COLOR` wins where both variables are set.
+/// `NO_COLOR` overrides `CLICOLOR_FORCE`.
 #[test]
 fn colors_come_only_where_they_are_wanted() {
     for arguments in [
         &["impact", BLOCK, "examples/block.json"][..],
-        // Errors, with a line and without.
+        // Errors that quote a line of the file, and errors that do not.
         &["inspect", "Cargo.toml"],
         &["inspect", "nobody.urdf"],
         &["impact", BLOCK, "Cargo.toml"],

@@ -1,5 +1,5 @@
-//! Mesh files as a user meets them: how the command finds them by name, what it says of those that are missing, broken
-//! or hostile, and the feet that they give. Readers and hulls are tested next to their code.
+//! Mesh files through the command: how it finds them by name, its messages about missing, broken or hostile files, and
+//! the feet that result. Unit tests next to their code cover mesh readers and hulls.
 
 use super::support::urdf;
 use super::{command, each, finished, fs, heelstrike, list, place};
@@ -7,7 +7,7 @@ use assert_cmd::Command;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
-/// A folder of the running test, without what an earlier run has left.
+/// A folder for the running test, removed if an earlier run left it.
 fn folder() -> PathBuf {
     let folder = PathBuf::from(place("meshes"));
     let _ = fs::remove_dir_all(&folder);
@@ -39,7 +39,7 @@ fn inspect(command: &mut Command, urdf: &Path) -> Value {
     finished(command.args(["--format", "json"]).arg(urdf)).well().line()
 }
 
-/// The corners of the robot's only foot; else why it has none.
+/// The corners of the robot's only foot, or the reason why it has none.
 #[track_caller]
 fn foot(command: &mut Command, urdf: &Path) -> Result<Value, String> {
     let inspection = inspect(command, urdf);
@@ -50,7 +50,7 @@ fn foot(command: &mut Command, urdf: &Path) -> Result<Value, String> {
     }
 }
 
-/// A box of half sizes 0.1, 0.05, 0.02 as OBJ.
+/// A box with half sizes 0.1, 0.05 and 0.02 m, as OBJ.
 fn sole() -> String {
     let sign = |at: usize, bit: usize| if at >> bit & 1 == 0 { "-" } else { "" };
     let vertex = |at: usize| format!("v {}0.1 {}0.05 {}0.02\n", sign(at, 0), sign(at, 1), sign(at, 2));
@@ -109,8 +109,8 @@ fn packages_are_found_by_option_variable_and_folder() {
     found(inspecting().env("ROS_PACKAGE_PATH", &share));
     found(inspecting().env("AMENT_PREFIX_PATH", &elsewhere));
 
-    // A package there, but without the file; then the file. The folder above is named otherwise, but its manifest says
-    // so.
+    // First a folder with the package's name but without the file. Then the file, in a folder of another name whose
+    // manifest gives the package's name.
     fs::create_dir(folder.join("robots/a_description")).expect("a folder");
     assert_eq!(foot(&mut inspecting(), &urdf), Err("no such file in package a_description".to_owned()));
     write(&folder.join("robots/package.xml"), "<package><name> a_description </name></package>");
@@ -213,7 +213,8 @@ fn the_feet_of_solo_are_the_hulls_of_their_meshes() {
     );
     assert_eq!(each(&inspection["feet"], "link"), ["FL_FOOT", "FR_FOOT", "HL_FOOT", "HR_FOOT"]);
     for foot in list(&inspection["feet"]) {
-        // A drum of 16 mm about (0, -0.16), 106 sides: within their bulge of 16 mm (1 - cos(pi / 106)).
+        // The mesh is a prism of 106 sides about (0, -0.16). Its corners lie on a circle of 16 mm, to less than the
+        // bulge of a side, 16 mm (1 - cos(pi / 106)) = 7e-6 m.
         assert_eq!(foot["mesh"], "solo_foot.obj");
         let corners = list(&foot["corners"]);
         assert_eq!(corners.len(), 106);

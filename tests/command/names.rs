@@ -1,15 +1,15 @@
-//! Names and ids of files that hold what a terminal obeys.
+//! Names and ids with control characters: text output escapes them, so that no terminal obeys them.
 
 use super::*;
 
-/// A line break, the introducer of terminal commands as C1, and a turn of the writing direction, as XML holds them.
+/// A line break, the C1 control sequence introducer and a right-to-left override, as XML writes them.
 const NAME: &str = "a&#10;b&#x9b;2J&#x202e;c";
-/// The same as JSON.
+/// [`NAME`] as JSON writes it.
 const KEY: &str = "a\\nb\\u009b2J\\u202ec";
-/// The same as people read it.
+/// [`NAME`] as text output shows it.
 const SHOWN: &str = "a\\nb\\u{9b}2J\\u{202e}c";
 
-/// A block with this name, as are its link and a sphere below it.
+/// The path of a URDF of the block whose robot and link are named [`NAME`].
 fn robot() -> String {
     let urdf = read(BLOCK).replace("name=\"block\"", &format!("name=\"{NAME}\""));
     file("names.urdf", urdf)
@@ -45,7 +45,7 @@ fn names_that_a_terminal_obeys_are_escaped() {
     let batch = heelstrike_reads(explained[1], format!("{state}\n{state}\n")).well();
     assert_shown(&batch.stderr, "the summary");
     assert!(batch.stderr.contains(&format!("k\\u{{1b}}[31m{SHOWN} (line 1)")), "{}", batch.stderr);
-    // JSON has the names themselves.
+    // JSON output keeps the names themselves.
     assert!(batch.lines()[0]["contacts"][0]["name"].as_str().expect("a name").contains('\u{9b}'));
 }
 
@@ -71,7 +71,7 @@ fn refusals_of_hostile_names_are_escaped() {
         read(BLOCK).replace("</robot>", &joint(NAME)),
         read(BLOCK).replace("<sphere radius=\"0\"/>", &mesh),
         "<robot name=\"r\"><\u{9b}\u{202e}></robot>".to_string(),
-        // XML has no such character; JSON may hold it escaped.
+        // XML does not allow U+001B; JSON allows it as an escape.
         "<robot name=\"r\"><link name=\"a\"/><link name=\"\u{1b}[2J\"/></robot>".to_string(),
     ] {
         let run = heelstrike(&["inspect", &file("refused.urdf", urdf)]);

@@ -1,7 +1,7 @@
-//! `--plot`: pictures of robots and studies as snapshots, always the same bytes and never large; what is not drawn and
-//! why.
+//! `--plot`: snapshots of pictures of robots and studies, whose bytes are reproducible and few; and the messages where
+//! no picture is drawn.
 //!
-//! The snapshots have a line per element. Look at a changed picture itself before its snapshot is accepted.
+//! The snapshots have one line per element. Look at a changed picture itself before you accept its snapshot.
 
 use super::support::urdf;
 use super::{RAMONE, WALKER, file, fs, heelstrike, heelstrike_reads, place, read, walker};
@@ -10,10 +10,10 @@ use std::path::Path;
 
 const MINIMALISTIC: [&str; 3] = ["sweep", WALKER, "examples/paper/figures_3_and_6.json"];
 
-/// No SVG is larger \[bytes\].
+/// The largest size of any SVG \[bytes\].
 const LARGEST: usize = 500_000;
 
-/// The SVG, an element per line.
+/// The SVG that the command plots, one element per line.
 fn svg(args: &[&str], name: &str) -> String {
     let path = place(&format!("{name}.svg"));
     heelstrike(&[args, &["--plot", &path]].concat()).text();
@@ -32,10 +32,10 @@ fn robots_outcomes_and_regions_are_drawn() {
     map["robot"] = json!({"links": {"left_leg": leg, "right_leg": leg}});
     let map = file("inertia.json", map.to_string());
     for (name, arguments) in [
-        // A slide too slow for an arrow has its number.
+        // The velocity of a slide that is too slow for an arrow is written as a number.
         ("picture_ramone", &["impact", RAMONE, "examples/ramone.json"][..]),
         ("picture_stairs", &["impact", RAMONE, "examples/stairs.json"]),
-        // A velocity along an impulse stands aside.
+        // A velocity arrow along an impulse arrow is drawn next to it.
         ("picture_five_bar", &["impact", "urdf/five_bar.urdf", "examples/five_bar.json"]),
         ("picture_inspect_ramone", &["inspect", RAMONE]),
         ("picture_inspect_a1", &["inspect", "tests/data/robots/a1/a1.urdf"]),
@@ -56,7 +56,8 @@ fn every_robot_can_be_drawn() {
     }
 }
 
-/// Where a sole lands level its corners push 1e12 times as hard, in a region too thin to be seen.
+/// Where a sole lands level, its corners push 1e12 times as hard, in a region too thin to be seen. The panels must
+/// still show the impulses elsewhere.
 #[test]
 fn a_thin_region_hides_no_panel() {
     let robot = urdf::body(0.1, &urdf::collision([0.5, -0.5], "box size=\"0.4 0.1 0.2\""));
@@ -220,7 +221,8 @@ fn touchdowns_are_marks_by_foot_and_mode() {
     let path = place("touchdowns.svg");
     assert_eq!(heelstrike(&["batch", WALKER, &states, "--plot", &path]).status, 0);
     let svg = read(&path);
-    // One outcome, then three: the marks of two feet in each, and two keys. Who sticks needs friction, twice the same.
+    // Discs are feet that stick. The first state has one outcome, the second three; the counts are of margins, of
+    // friction needed (of which two coincide) and of the key.
     let discs = |color: &str| svg.matches(&format!(r##"r="4" fill="{color}"/>"##)).count();
     assert_eq!([discs("#0072b2"), discs("#d55e00")], [1 + 1 + 1, 4 + 3 + 1], "{svg}");
     for text in ["minimalistic: 2 of 2 states have impulses", "margin", "slides backward", "lifts off"] {
@@ -234,7 +236,7 @@ fn contacts_at_one_place_are_told_apart() {
     let joints =
         feet.map(|leg| [(format!("{leg}_thigh_joint"), json!(0.8)), (format!("{leg}_calf_joint"), json!(-1.6))]);
     let joints: serde_json::Map<_, _> = joints.into_iter().flatten().collect();
-    // The leg's speed differs, not its place.
+    // The speed of the front left leg varies, its place does not.
     let drawn = |left: f64| {
         let velocity = json!({"base": {"x": 0.5, "z": -0.6}, "joints": {"FL_calf_joint": left}});
         let position = json!({"joints": joints});
@@ -249,7 +251,7 @@ fn contacts_at_one_place_are_told_apart() {
         [1, 1, 2],
         "{alike}"
     );
-    // At its place, and at the tips of the arrows that differ.
+    // FL_foot is named at its place and at the tips of the arrows that differ.
     let apart = drawn(10.0);
     assert_eq!(["FL_foot", "FR_foot", "2 \u{d7}"].map(|text| count(&apart, text)), [2, 1, 1], "{apart}");
 }
@@ -283,7 +285,7 @@ fn a_mirror_reverses_what_is_forward() {
     let [ahead, behind] = [svg(&sweep, "ahead"), svg(&[&sweep[..], &["--mirror"]].concat(), "behind")];
     let [forward, backward] = ["B, E: left_foot slides forward", "B, E: left_foot slides backward"];
     assert!(ahead.contains(forward) && behind.contains(backward) && !behind.contains(forward));
-    // The slide is drawn below zero.
+    // The mirrored slide is drawn below zero.
     assert!(ahead.contains(">10<") && behind.contains(">\u{2212}5<") && !behind.contains(">10<"));
     assert_eq!(heelstrike(&["impact", RAMONE, "examples/ramone.json", "--mirror"]).status, 2, "it needs a picture");
 }

@@ -1,4 +1,4 @@
-//! Tables whose columns have types: the same answers as those to text, and what a column may hold.
+//! Parquet and Arrow: they are answered as text is; and the types that their columns may have.
 
 use super::table::{WALK_QUESTIONS, walk};
 use super::*;
@@ -20,7 +20,7 @@ use std::sync::Arc;
 
 const ENDINGS: [&str; 3] = ["parquet", "arrow", "arrows"];
 
-/// The file of that ending with these columns, in batches of 40 rows.
+/// Writes these columns, in batches of 40 rows, in the format of the name's ending; returns the path.
 fn written(name: &str, columns: &[(&str, ArrayRef)]) -> String {
     let nullable = columns.iter().map(|(name, array)| (*name, Arc::clone(array), true));
     let whole = RecordBatch::try_from_iter_with_nullable(nullable).expect("columns of one length");
@@ -59,7 +59,7 @@ fn batches(path: &str) -> Vec<RecordBatch> {
     }
 }
 
-/// The rows of a file as those of the same CSV.
+/// The table of a Parquet or Arrow file as CSV.
 fn as_csv(path: &str) -> String {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for (at, batch) in batches(path).iter().enumerate() {
@@ -78,7 +78,7 @@ fn as_csv(path: &str) -> String {
     String::from_utf8(writer.into_inner().expect("memory")).expect("text")
 }
 
-/// The walk's columns: text, or else numbers.
+/// The columns of the walk: numbers if every cell is one, otherwise text.
 fn walk_columns() -> Vec<(String, ArrayRef)> {
     let table = walk().0;
     let mut reader = csv::Reader::from_reader(table.as_bytes());
@@ -95,7 +95,7 @@ fn walk_columns() -> Vec<(String, ArrayRef)> {
 
 #[test]
 fn columns_are_answered_as_flat_lines_are() {
-    // A flat line has the number of its row, too.
+    // Without their leading blank line, the number of each JSON line is that of its row.
     let lines = file("walk.ndjson", walk().1.trim_start());
     let columns = walk_columns();
     let columns: Vec<(&str, ArrayRef)> = columns.iter().map(|(name, array)| (&**name, Arc::clone(array))).collect();
@@ -122,7 +122,7 @@ fn columns_are_answered_as_flat_lines_are() {
     let always = ["batch", RAMONE, "-", "--friction", "0.6", "--input-format", "arrow"];
     let expected = heelstrike(&["batch", RAMONE, &lines, "--friction", "0.6"]).well();
     assert!(heelstrike_reads(&always, stream.clone()).well().stdout == expected.stdout);
-    // Of two streams that were joined the second one would be lost.
+    // Two concatenated streams are an error, because the second one is not read.
     let joined = heelstrike(&["batch", RAMONE, &file("joined.arrows", stream.repeat(2)), "--friction", "0.6"]);
     assert_eq!((joined.status, &joined.stdout), (1, &expected.stdout));
     assert!(joined.stderr.contains("more follows the end of the stream"), "{}", joined.stderr);
@@ -143,7 +143,7 @@ fn feet_rest_in_columns_of_f32_as_in_those_of_f64() {
     let [double, single] =
         [("d.parquet", DataType::Float64), ("s.parquet", DataType::Float32)].map(|(file, to)| verdicts(file, to));
     let differing = double.iter().zip(&single).filter(|(double, single)| double != single).count();
-    // Those of f32 are farther from rest than their digits say in few.
+    // In few states the velocities of f32 are farther from rest than their precision explains.
     assert!(double.len() > 100 && differing < 5, "{differing} of {}", double.len());
 }
 
@@ -151,7 +151,7 @@ fn texts(texts: &[Option<&str>]) -> ArrayRef {
     Arc::new(StringArray::from(texts.to_vec()))
 }
 
-/// A disc that strikes the ground, as columns of many types; rows 3 to 7 are broken.
+/// States of a disc that strikes the ground, as columns of many types; rows 3 to 7 are broken.
 fn strikes() -> Vec<(&'static str, ArrayRef)> {
     let dictionary = |texts: [Option<&str>; 8]| Arc::new(texts.into_iter().collect::<DictionaryArray<Int8Type>>());
     let z = [Some(0.5), Some(0.5), None, Some(f64::NAN), Some(0.5), Some(0.5), Some(0.5), Some(0.5)];
@@ -292,7 +292,7 @@ fn columns_that_do_not_fit_are_refused_as_a_whole() {
         refusals += &stderr.replace(&input, name);
     }
     insta::assert_snapshot!("columns_that_do_not_fit", refusals);
-    // An engine may have an empty part, whose answers have all columns.
+    // A query engine may write an empty part; the answers to it still have all columns.
     let output = place("empty-answers.parquet");
     batch(&[&place("empty.parquet"), "--refused", "ok", "-o", &output], "").well();
     let read = ParquetRecordBatchReaderBuilder::try_new(File::open(output).expect("a file")).expect("Parquet");
@@ -317,7 +317,7 @@ fn damaged_tables_are_refused() {
         }
         bytes.truncate(if at % 4 == 0 { bytes.len() * at / 40 } else { bytes.len() });
         let run = batch(&[&file(&format!("damaged.{ending}"), bytes), "--friction", "1"], "");
-        // A panic of the reader's own is heard and ends nothing.
+        // A panic within the reader of the format is caught, so that the status never is 101.
         assert!((0..=2).contains(&run.status), "{at} {ending} {}", run.stderr);
     }
 }

@@ -1,8 +1,8 @@
-//! Memory does not grow with the number of lines.
+//! The memory of a batch does not grow with the number of lines.
 
 use super::*;
 
-/// The most memory that a batch of so many lines had resident \[kB\], by the kernel's own count.
+/// Peak resident memory of a batch of this many lines, as the kernel counts it \[kB\].
 #[cfg(target_os = "linux")]
 fn peak(lines: usize, arguments: &[&str]) -> u64 {
     let mut command = batching(&["-", "--friction", "0.5", "--threads", "4"]);
@@ -26,7 +26,7 @@ fn peak(lines: usize, arguments: &[&str]) -> u64 {
     });
     let answers = BufReader::new(child.stdout.take().expect("piped")).lines().take(lines).count();
     assert_eq!(answers, lines);
-    // It still waits for more: its end of input is not given yet.
+    // The process still waits for input, because its standard input is open.
     let status = std::fs::read_to_string(format!("/proc/{}/status", child.id())).expect("Linux has it");
     let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:")?.strip_suffix("kB")?.trim().parse().ok());
     drop(writer.join().expect("it ends"));
@@ -39,7 +39,8 @@ fn peak(lines: usize, arguments: &[&str]) -> u64 {
 fn ten_times_the_lines_take_no_more_memory() {
     for arguments in [&[][..], &["--input-format", "csv"]] {
         let [few, many] = [20_000, 200_000].map(|lines| peak(lines, arguments));
-        // Blocks wait for each other by chance, a few hundred kB; kept lines would take 20 MB and more.
+        // Blocks of lines that wait for each other make a difference of a few hundred kB by chance. If lines were kept,
+        // they would take 20 MB and more.
         assert!(many < few * 3 / 2 + 4000, "{arguments:?}: {few} kB for 20,000 lines, {many} kB for 200,000");
     }
 }

@@ -1,4 +1,4 @@
-//! `heelstrike batch` as a stream: order, line numbers, threads, pipes, ends; and its summary.
+//! `heelstrike batch` as a stream: order, line numbers, threads, pipes, ends of input and output; and its summary.
 
 use super::support::urdf;
 use super::{RAMONE, Run, WALKER, file, heelstrike, heelstrike_reads, parsed, place, read};
@@ -15,7 +15,7 @@ mod resume;
 mod summary;
 mod table;
 
-/// A disc of 2 kg, 1 kg m^2 and radius 0.5 m.
+/// The path of a URDF of a disc of 2 kg, 1 kg m^2 and radius 0.5 m.
 fn disc() -> String {
     let sphere = urdf::collision([0.0; 2], "sphere radius=\"0.5\"");
     file("disc.urdf", urdf::robot(&[urdf::link("disc", 2.0, [0.0; 2], 1.0, &sphere)]))
@@ -26,20 +26,20 @@ fn batch(arguments: &[&str], stdin: impl Into<Vec<u8>>) -> Run {
     heelstrike_reads(&[&["batch", &disc()], arguments].concat(), stdin)
 }
 
-/// The same, as a process of its own.
+/// The command `heelstrike batch` on a disc, ready to spawn.
 fn batching(arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_heelstrike"));
     command.args(["batch", &disc()]).args(arguments);
     command
 }
 
-/// A disc that strikes the ground with the tangential speed `x`.
+/// A line with a state in which the disc strikes the ground with the tangential velocity `x` \[m/s\].
 fn strike(id: usize, x: f64) -> String {
     let state = json!({"id": id, "position": {"base": {"z": 0.5}}, "velocity": {"base": {"x": x, "z": -1}}});
     format!("{state}\n")
 }
 
-/// Many lines, none on a border, of which every tenth is broken and every seventh is followed by a blank one.
+/// 2000 lines, none on a border. Every tenth is broken, and every seventh is followed by a blank line.
 fn many() -> String {
     let line = |id: usize| match id {
         _ if id % 10 == 9 => format!("{{\"id\": {id}, oops\r\n"),
@@ -97,7 +97,7 @@ fn refused_lines_are_no_failure_if_asked() {
 
 #[test]
 fn many_refusals_do_not_flood_standard_error() {
-    // Of each kind the first three are shown, of all kinds twenty.
+    // The first three of each kind are shown, and twenty in total.
     let kind = |at: usize| format!("{{\"position\": {{\"x{at}\": 0}}}}\n");
     let others: String = (0..30).map(kind).collect();
     let run = batch(&["-"], "oops\n".repeat(1000) + &kind(0) + &others);
@@ -195,7 +195,7 @@ fn an_answer_does_not_wait_for_the_next_line() {
     }
 }
 
-/// The first rows of a file are read twice, and those of standard input are not, whatever the folder holds.
+/// The first rows of a file are read twice, but standard input only once, even if the folder has a file named `-`.
 #[test]
 fn standard_input_is_read_once_where_a_file_has_its_name() {
     let folder = place("folder");
@@ -249,7 +249,7 @@ fn a_silent_batch_sees_that_its_output_has_ended() {
     for (threads, output) in ["1", "4"].into_iter().flat_map(|threads| outputs.iter().map(move |own| (threads, *own))) {
         let (mut child, mut stdin) = spawned(threads, output);
         drop(child.stdout.take());
-        // Processes that other tests are just starting hold the pipe for a moment.
+        // A process that another test is just starting holds the pipe for a moment.
         std::thread::sleep(std::time::Duration::from_millis(300));
         stdin.write_all(strike(1, 0.0).as_bytes()).expect("it reads");
         let (status, stderr) = ended(&mut child);
@@ -261,7 +261,7 @@ fn a_silent_batch_sees_that_its_output_has_ended() {
     }
 }
 
-/// Exit status and standard error of a process that must not wait for its input, which is still open.
+/// Exit status and standard error of a process that must end although its input is still open.
 fn ended(child: &mut Child) -> (Option<i32>, String) {
     let mut stderr = child.stderr.take().expect("piped");
     let (sent, received) = std::sync::mpsc::channel();
@@ -284,7 +284,7 @@ fn no_input_or_other_output_is_replaced() {
     for arguments in [[&states, "-o", &states], [&states, "--summary", &states]] {
         assert_eq!(batch(&arguments, "").status, 1, "{arguments:?}");
     }
-    // Nor through what is written next to the output until it is whole.
+    // An input is not replaced either if it has the name of a temporary file next to the output.
     for ending in [".part", ".run"] {
         let input = file(&format!("whole.ndjson{ending}"), strike(1, 0.0));
         let output = place("whole.ndjson");
@@ -325,7 +325,7 @@ fn standard_input_is_not_replaced_under_any_name() {
         let mut command = batching(&["-", "--friction", "1"]);
         command.args(arguments).stdin(std::fs::File::open(&states).expect("it is there"));
         if arguments.is_empty() {
-            // As `cat f >> f`, which would go on for ever.
+            // As with `cat f >> f`, the batch would read its own output without end.
             command.stdout(std::fs::File::options().append(true).open(&states).expect("it is there"));
         }
         let output = command.output().expect("it runs");

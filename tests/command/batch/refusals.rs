@@ -1,5 +1,5 @@
-//! What is refused, as a person sees it: the line with the place marked, short also where the line is not; and inputs
-//! that are no lines and no tables.
+//! How refused lines are shown: with the place marked, and shortened if long; and inputs that are neither lines nor
+//! tables.
 
 use super::*;
 
@@ -16,7 +16,7 @@ fn a_refused_row_is_shown_with_its_place() {
     let run = batch(&["-", "--input-format", "csv"], table);
     assert_eq!(run.status, 1);
     insta::assert_snapshot!("row", run.stderr);
-    // Rows that follow each other in time are refused on another way, and shown alike.
+    // Rows of a recording take another path through the code; their refusals look the same.
     let timed = table.replace("note", "time").replace("\"two\nlines\"", "\"0\n\"").replace(",x,", ",1,");
     let run = batch(&["-", "--input-format", "csv", "--touchdowns", "--friction", "1"], timed);
     assert!(run.stderr.contains("3 | \",0.5,oops\n  |       ^^^^ v_base_z\n"), "{}", run.stderr);
@@ -66,7 +66,7 @@ fn a_long_id_is_cut_in_messages_and_whole_in_results() {
     assert!(run.stderr.len() < 2000, "{} bytes", run.stderr.len());
 }
 
-/// Input, its form and the message.
+/// Input, its format, and the start of the message.
 const FOREIGN: [(&[u8], &str, &str); 11] = [
     (b"\x1f\x8b\x08\x00", "csv", "error: <stdin>: the input is packed by gzip\nhint: unpack it: gunzip -c FILE"),
     (b"\x1f\x8b\x08\x00", "ndjson", "error: <stdin>: the input is packed by gzip\nhint: unpack it: gunzip -c FILE"),
@@ -135,7 +135,7 @@ fn carried_json_is_copied_as_it_stands() {
     let row = format!(r#"{{"q_base_z":0.5,"v_base_z":-1,{}"#, &carried[1..]);
     let run = batch(&["-", "--friction", "1"], format!("{row}\n")).well();
     assert!(run.stdout.contains(&format!(r#""carried":{carried}"#)), "{}", run.stdout);
-    // But for what some readers take as the end of a line.
+    // A carriage return is replaced, because some readers take it as the end of a line.
     let run = batch(&["-", "--friction", "1"], "{\"q_base_z\":0.5,\"v_base_z\":-1,\"list\":[1,\r2]}\n").well();
     assert!(run.stdout.contains(r#""carried":{"list":[1, 2]}"#), "{}", run.stdout);
 }
@@ -165,7 +165,7 @@ fn quotes_around_several_rows_cost_only_their_own() {
         130 => "130,0.5,-1,note\"\n".to_owned(),
         150 => "150,0.5,-1,\"note\n".to_owned(),
         180 => "180,0.5,-1,note\"\n".to_owned(),
-        // Text of two lines is no row.
+        // A quoted cell of two lines is not two rows.
         _ if id % 50 == 40 => format!("{id},0.5,-1,\"a note,\nof two lines\"\n"),
         _ => format!("{id},0.5,-1,note\n"),
     };
@@ -195,7 +195,7 @@ fn a_column_that_resembles_a_missing_one_is_refused() {
         let given = if columns == "pitch" { "v_base_z" } else { given };
         batch(&arguments, table(&format!("{given},{columns}"))).refusal_with(1, &format!("\nhint: {hint}"));
     }
-    // It is near no column that the table lacks, or said to be foreign.
+    // These columns resemble no missing one, or are given as foreign.
     for (columns, more) in [
         ("v_base_z,base_z,a_base_z,tau_base_z,phase", &[][..]),
         ("v_base_z,Time", &["--foreign", "Time"]),
@@ -203,14 +203,14 @@ fn a_column_that_resembles_a_missing_one_is_refused() {
     ] {
         batch(&[&arguments, more].concat(), table(&format!("{given},{columns}"))).text();
     }
-    // In brief what was named is copied alone.
+    // With `--brief` only the columns given as foreign are copied.
     for (brief, carried) in [(&[][..], json!({"Time": "0.5", "phase": "0.5"})), (&["--brief"], json!({"Time": "0.5"}))]
     {
         let asked = [&arguments[..], &["--foreign", "Time"], brief].concat();
         let line = &batch(&asked, table(&format!("{given},v_base_z,Time,phase"))).lines()[0];
         assert_eq!(line["carried"], carried, "{line}");
     }
-    // An acceleration and a force are not the velocity that the table lacks.
+    // An acceleration and a force are not taken for the missing velocity.
     batch(&arguments, table(&format!("{given},a_base_z,tau_base_z"))).well();
     batch(&[&arguments[..], &["--foreign", "nobody"]].concat(), table(given))
         .refusal_with(1, "column \"nobody\", given as foreign, is missing");

@@ -1,14 +1,14 @@
-//! Outputs of runs that were killed, cut off or refused: they are continued to the same bytes, or stay as they were.
+//! Outputs of runs that were killed, cut off or refused: `--resume` continues them to the same bytes or leaves them.
 
 use super::*;
 use crate::support::random::Random;
 use std::fs;
 
-/// The inputs and formats that are interrupted, and the options for each.
+/// The runs that are interrupted: the output's name, the input and the options.
 fn cases() -> [(&'static str, String, &'static [&'static str]); 4] {
     let lines: String = many().lines().take(200).map(|line| format!("{line}\n")).collect();
     let table: String = table::many().lines().take(200).map(|line| format!("{line}\n")).collect();
-    // A disc that falls and stops, again and again.
+    // A disc that falls and stops repeatedly.
     let fall = |row: usize| format!("{row},0,{},0\n", 0.5 + 0.1 * (9 - (row % 20).min(9)) as f64);
     let falls = "time,q_base_x,q_base_z,q_base_pitch\n".to_owned() + &(0..400).map(fall).collect::<String>();
     [
@@ -34,7 +34,7 @@ fn a_cut_output_is_continued_to_the_same_bytes() {
         assert!(expected.len() > 1000, "{name}: {}", expected.len());
         for round in 0..8 {
             let end = if round < 2 { 0 } else { random.whole(0, expected.len() as i64) as usize };
-            // What was written before the end is in a part, unless the input ended early.
+            // A run that was stopped leaves a `.part` file; a run whose input ended early leaves the output itself.
             let there = if round % 2 == 0 { format!("{cut}.part") } else { cut.clone() };
             fs::write(&there, &expected[..end]).expect("a file");
             let run = into(&cut, &input, &[options, &["--resume"]].concat());
@@ -48,7 +48,7 @@ fn a_cut_output_is_continued_to_the_same_bytes() {
 
 #[test]
 fn rows_of_one_state_are_continued_together() {
-    // Three outcomes each.
+    // Each state has three outcomes, so three rows.
     let state: serde_json::Value = serde_json::from_str(&read("examples/minimalistic.json")).expect("JSON");
     let (states, output) = (file("three.ndjson", format!("{state}\n").repeat(5)), place("three.csv"));
     let run = |more: &[&str]| heelstrike(&[&["batch", WALKER, &states, "-o", &output], more].concat()).well();
@@ -140,7 +140,7 @@ fn answers_of_another_run_are_not_continued() {
     let output = place("other.ndjson");
     into(&output, input, &[]);
     let before = read(&output);
-    // Shorter answers, longer ones, and those to another state.
+    // The other runs have shorter answers, longer ones, or answers to another state.
     for (input, options) in [
         (input.as_str(), &["--brief", "--resume"][..]),
         (input.as_str(), &["--explain", "--resume"]),
@@ -152,7 +152,7 @@ fn answers_of_another_run_are_not_continued() {
     assert_eq!(batch(&["-", "--resume"], "").status, 2, "an output is needed");
 }
 
-/// A strike, and more states at rest than are answered again.
+/// A strike and 149 states at rest, more than `--resume` answers again.
 fn strike_and_rest(speed: f64) -> String {
     strike(0, speed) + &(1..150).map(|id| strike(id, 0.0).replace("-1", "0")).collect::<String>()
 }
@@ -186,7 +186,7 @@ fn a_killed_run_is_continued_by_the_same_alone() {
         run.refusal_with(1, &format!("{part}: it was begun {what}: give what it was begun with"));
         assert!(read(&part) == begun && !fs::exists(&output).expect("known"), "{what}");
     };
-    // Each differs in the first answer, or in none, and the last hundred are those of states at rest.
+    // The other runs differ in the first answer or in none; the last hundred answers are of states at rest.
     let over = |input: &str, options: &[&str]| into(&output, input, &[&["--resume"], options].concat());
     refused(over(&strike_and_rest(2.0), &[]), "over another input");
     refused(over(&input.replacen("0.5", "0.50", 1), &[]), "over another input");
@@ -216,7 +216,7 @@ fn answers_without_a_record_are_all_compared() {
     into(&output, &strike_and_rest(2.0), &["--resume"])
         .refusal_with(1, &format!("{output}: it was begun with other answers"));
     assert_eq!(read(&output), whole);
-    // The record of a part does not stand for a whole file next to it.
+    // The record of a `.part` file does not count for a whole file next to it.
     killed(&output, &strike_and_rest(2.0), &[]);
     fs::remove_file(format!("{output}.part")).expect("a part");
     fs::write(&output, &whole).expect("a file");
@@ -241,12 +241,12 @@ fn a_refused_input_replaces_no_old_result() {
         assert_eq!((run.status, read(&kept).as_str()), (1, "an old result"), "{arguments:?}");
         assert!(!fs::exists(format!("{kept}.part")).expect("known"), "{arguments:?}");
     }
-    // Refusals that are answers replace it.
+    // With `--refused ok` refusals are answers, which replace the old result.
     batch(&["-", "-o", &kept, "--refused", "ok"], "oops\n").well();
     assert!(read(&kept).starts_with("{\"line\":1,\"error\""));
 }
 
-/// The limit on a file's size makes writing fail as a full disk does.
+/// A limit on the size of files makes writing fail as on a full disk.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_leaves_the_old_result_and_a_part() {
@@ -266,7 +266,7 @@ fn a_full_disk_leaves_the_old_result_and_a_part() {
     assert_eq!(batch(&[&states, "--friction", "0.5", "-o", &output, "--resume"], "").status, 1);
     assert!(read(&output) == whole);
     assert!(batch(&[&states, "--friction", "0.5", "-o", "-", "--resume"], "").stdout == whole);
-    // Columns cannot be continued.
+    // Columnar output cannot be continued, so no part is left.
     #[cfg(feature = "columnar")]
     {
         let output = place("disk.parquet");

@@ -2,8 +2,8 @@
 
 use super::*;
 
-/// At friction 0.5, G = diag(0.75, 0.5) 1/kg: to hold a disc that strikes with c = [x, -1] takes L = [-x / 0.75, 2],
-/// and friction x / 1.5.
+/// Strikes with c = [x, -1], a state at rest, one in the air and a broken line. With G = diag(0.75, 0.5) 1/kg, sticking
+/// takes the impulse L = [-x / 0.75, 2], so a friction of |x| / 1.5; the disc has 0.5.
 fn discs() -> String {
     let at_rest = json!({"id": "at rest", "position": {"base": {"z": 0.5}}});
     let aloft = json!({"position": {"base": {"z": 1}}});
@@ -18,11 +18,11 @@ fn the_summary_counts_and_names() {
     let mut summary = parsed(&read(&path));
     let near = summary["smallest_margins"].as_array_mut().expect("a list").iter_mut();
     let margins: Vec<f64> = near.map(|near| near["margin"].take().as_f64().expect("a number")).collect();
-    // The holding cone's (0.5 L_n - |L_t|) / (S sqrt(0.25 / G_nn + 1 / G_tt)) with S = 1 / sqrt(G_nn); then c_t+ = 0.75
-    // of S = 1.5 / sqrt(G_tt); then L_n sqrt(G_nn) / S with S = 3 / sqrt(G_tt).
+    // With S = max |c_i| / sqrt(G_ii): state 1 (cone) (0.5 L_n - |L_t|) / (S sqrt(0.25 / G_nn + 1 / G_tt)), S = 1 /
+    // sqrt(G_nn); state 3 L_n sqrt(G_nn) / S, S = 3 / sqrt(G_tt); state 2 c_t+ / (S sqrt(G_tt)) = 0.75 / 1.5.
     let expected = [0.6 / (2.0_f64.sqrt() * (11.0_f64 / 6.0).sqrt()), 2.0 * 0.375_f64.sqrt() / 3.0, 0.5];
     for (margin, expected) in margins.iter().zip(expected) {
-        // A few roundings of numbers of order one.
+        // The tolerance allows for a few roundings of numbers of order one.
         assert!((margin - expected).abs() < 1e-14, "{margin} {expected}");
     }
     let count = |modes: &[&str], outcomes: u64| {
@@ -78,7 +78,7 @@ fn a_batch_in_which_nothing_touches_says_so() {
     assert!(!said([0.5, 501.0, 502.0].map(raised).concat()));
 }
 
-/// The disc slows down to the ground at 10 m/s^2.
+/// The disc descends, slowed down at 10 m/s^2, and is at rest on the ground from 0.08 s on.
 #[test]
 fn early_touchdowns_are_counted_of_recorded_heights() {
     let path = place("early.json");
@@ -144,7 +144,7 @@ fn a_single_state_has_a_summary_only_if_asked_for() {
     assert_eq!(parsed(&read(&path))["states"], 1);
 }
 
-/// Walk of the README: a foot that stands rests, although rounding moves it.
+/// The walk of the README. Its standing foot is taken as at rest, although rounding moves it.
 const WALK: [&str; 4] = ["batch", "urdf/ramone.urdf", "--friction", "0.6"];
 
 #[test]
@@ -155,7 +155,8 @@ fn the_walk_at_its_word_is_ambiguous_by_rounding() {
     assert!(!summary.contains("at rest"), "{summary}");
 }
 
-/// Tables with so many decimals are known to half a unit of the last one; with four it may be meant.
+/// A table with six decimals or more is known to half a unit of the last one, so that a foot which moves less rests.
+/// With four decimals the motion may be real.
 #[test]
 fn a_walk_of_six_decimals_has_the_same_touchdowns() {
     let table = read("examples/gait/ramone_walk.csv");

@@ -1,8 +1,8 @@
-//! Tables through the command: which form is chosen, and that a table is a stream like any other.
+//! Tables through the command: which format is chosen, and that a table is a stream like any other.
 
 use super::*;
 
-/// A header and many rows with a carried column, in which line breaks stand in quotes; every tenth row is broken.
+/// A header and 500 rows with a copied column that has line breaks in quotes; every tenth row is broken.
 pub(super) fn many() -> String {
     let row = |id: usize| match id {
         _ if id % 10 == 9 => format!("{id},oops,0.5,0,-1,broken\n"),
@@ -29,7 +29,7 @@ fn rows_are_answered_in_order_for_any_threads() {
     let lines: Vec<usize> = rows.map(|row| row[1].parse().expect("a line")).collect();
     let breaks = |id: usize| (0..id).filter(|id| id % 7 == 3 && id % 10 != 9).count();
     assert_eq!(lines, (0..500).map(|id| 2 + id + breaks(id)).collect::<Vec<_>>());
-    // The header and a row of two lines come before it.
+    // The tenth row is on line 12, after the header and a row of two lines.
     assert!(expected.stderr.contains(&format!("--> {table}:12:3\n")), "{}", expected.stderr);
     assert!(text.contains("line 12: q_base_x: "), "{text}");
 }
@@ -96,7 +96,7 @@ fn joints_alone_are_answered_where_a_foot_is_placed() {
     let options = ["batch", RAMONE, "-", "--input-format", "csv", "--velocity", "central", "--friction", "1"];
     let placed = heelstrike_reads(&[&options[..], &["--place", "lowest"]].concat(), table).well();
     assert!(placed.lines().iter().all(|line| line["contacts"][0]["name"].is_string()), "{}", placed.stdout);
-    // Touchdowns have no heights then.
+    // Touchdowns need the base's height, which this table lacks.
     heelstrike_reads(&[&options[..], &["--touchdowns"]].concat(), table)
         .refusal_with(1, "--place lowest or a column stance, without --touchdowns");
 }
@@ -148,7 +148,7 @@ fn the_note_of_no_touchdown_says_what_would_count() {
 /// The cells of a recorded walk, row by row.
 type Rows = Vec<Vec<String>>;
 
-/// What is done to them.
+/// A change of the walk's cells.
 type Change<'c> = &'c dyn Fn(&mut Rows);
 
 /// The names of the walk's columns, and its rows.
@@ -158,7 +158,7 @@ fn walk_cells() -> (Vec<String>, Rows) {
     (rows.next().expect("a header"), rows.collect())
 }
 
-/// The notes on touchdowns of the walk whose rows are changed.
+/// Standard error of a search for touchdowns in the changed walk.
 fn notes_of(change: impl Fn(&[String], &mut Rows)) -> String {
     let (names, mut rows) = walk_cells();
     change(&names, &mut rows);
@@ -191,7 +191,8 @@ fn recordings_in_other_units_or_axes_are_noted() {
         assert!(note.contains(words), "{note}");
         assert!(!stderr.contains("positions jump"), "of units, not of outliers: {stderr}");
     }
-    // Without touchdowns the first rows of a file say so; poses without an order have no rates.
+    // Without `--touchdowns` the first rows of a file are checked. Poses that are not in the order of time have no
+    // rates to compare with.
     let is_noted = |order: fn(usize) -> usize, factor: f64| {
         let (names, rows) = walk_cells();
         let line = |at: usize| {
@@ -232,7 +233,7 @@ fn lengths_beyond_the_robot_are_noted() {
     }
 }
 
-/// Rows that are missing or out of place take the touchdown next to them along, or give the state after it.
+/// If rows are missing or out of place, the touchdown next to them is lost or has the state after it.
 #[test]
 fn rows_that_are_missing_or_out_of_order_are_noted() {
     let notes = |change: Change| notes_of(|_, rows| change(rows));
@@ -251,7 +252,7 @@ fn rows_that_are_missing_or_out_of_order_are_noted() {
     }
 }
 
-/// Recorders repeat frames and lose track of markers; trials are joined, and rounded; the ground is where it is.
+/// Recordings may repeat frames, lose markers, join trials, round times, or have their ground elsewhere than z = 0.
 #[test]
 fn rows_that_no_robot_moves_through_are_noted() {
     let names = walk_cells().0;
@@ -262,7 +263,7 @@ fn rows_that_no_robot_moves_through_are_noted() {
     let turn = |rows: &mut Rows| {
         let (v_x, v_z) = (place("v_base_x"), place("v_base_z"));
         for row in rows {
-            // As if the robot leaned by half a radian, which changes no velocity in the world.
+            // Leans the robot by half a radian, and gives the base's velocity in the axes of the base.
             let lean = 0.5 + number(&row[pitch]);
             let [along, up] = [v_x, v_z].map(|at| number(&row[at]));
             row[pitch] = lean.to_string();
@@ -298,7 +299,8 @@ fn rows_that_no_robot_moves_through_are_noted() {
         row[time] = (number(&row[time]) + passed).to_string();
         row
     };
-    // What a robot does that stands in the end, what solvers record of events, and two clips, of which each is whole.
+    // Ordinary recordings: unchanged, with a robot that stands at the end, with the extra rows that solvers record at
+    // events, and two whole clips in a row.
     let ordinary: [Change; 4] = [
         &|_| {},
         &|rows| rows.extend((1..9).map(|at| later(&rows[101], 0.01 * f64::from(at))).collect::<Vec<_>>()),
@@ -328,7 +330,7 @@ fn torques_in_a_table_of_forces_are_refused() {
     let options = ["batch", RAMONE, "-", "--input-format", "csv", "--friction", "0.6"];
     let refused = heelstrike_reads(&[&options[..], &["--forces"]].concat(), table).refusal(1);
     assert!(refused.contains("column 5: torque_left_hip is a torque, and tables have no column for it"), "{refused}");
-    // They are nothing to an impact.
+    // Columns of torque do not matter to an impact.
     heelstrike_reads(&options, table).well();
     let foreign = ["--forces", "--foreign", "torque_left_hip", "--foreign", "left_knee_tau"];
     assert!(refused.contains(&format!("{}, {}", foreign[1..3].join(" "), foreign[3..].join(" "))), "{refused}");
@@ -381,7 +383,7 @@ fn formulas_are_text_in_safe_tables() {
     batch(&["-", "--csv-safe"], strike(1, 0.5)).refusal_with(2, "--csv-safe: it is for CSV");
 }
 
-/// A recorded walk, and the same with its rows as flat lines of JSON behind a blank line, so that rows have one line.
+/// A recorded walk as CSV and as flat lines of JSON, behind a blank line so that both have the same line numbers.
 pub(super) fn walk() -> (String, String) {
     let table = read("examples/gait/ramone_walk.csv");
     let mut reader = csv::Reader::from_reader(table.as_bytes());
@@ -397,7 +399,7 @@ pub(super) fn walk() -> (String, String) {
     (table, lines)
 }
 
-/// What to ask of a walk.
+/// Options for questions about a walk.
 pub(super) const WALK_QUESTIONS: [&[&str]; 4] = [
     &["--output-format", "csv"],
     &["--output-format", "csv", "--brief"],
@@ -475,7 +477,7 @@ fn broken_flat_lines_are_refused_in_their_place() {
         .refusal_with(2, "touchdowns and velocities over time need a table");
 }
 
-/// A table of commas with tabs instead.
+/// The table with tabs in place of commas.
 fn with_tabs(table: &str) -> String {
     let mut writer = csv::WriterBuilder::new().delimiter(b'\t').flexible(true).from_writer(Vec::new());
     let mut reader = csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(table.as_bytes());
@@ -504,7 +506,7 @@ fn tabs_separate_columns_as_commas_do() {
     let run = batch(&["-", "--input-format", "tsv", "--friction", "0.5", "--output-format", "tsv"], with_tabs(&many()));
     let expected = batch(&["-", "--input-format", "csv", "--friction", "0.5", "--output-format", "csv"], many());
     assert!(run.status == 1 && run.stdout == with_tabs(&expected.stdout));
-    // Tabs alone are a row of empty cells, and blanks behind a quote are none.
+    // A line of tabs is a row of empty cells, and a blank after a closing quote belongs to the cell.
     let table = "note\tq_base_z\tv_base_z\n\t\t\n\n\"a\tb\" \t0.5\t-1\n";
     let run = batch(&["-", "--input-format", "tsv", "--friction", "1", "--refused", "ok"], table).well();
     let lines = run.lines();

@@ -1,8 +1,7 @@
-//! A headless Chromium: a copy of a page with a script at its end, and what that script found.
+//! Runs a script at the end of a copy of a page in a headless Chromium, and returns what the script found.
 //!
 //! ```text
-//!     page + listener + script --> file --chromium --dump-dom--> DOM --> what the script gave to found(), as JSON
-//! ```
+//!     page + listener + script --> file --chromium --dump-dom--> DOM --> argument of found() in the script, as JSON
 
 use crate::parsed;
 use percent_encoding::percent_decode_str;
@@ -11,19 +10,20 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// What the variable is called that names a browser which must be there.
+/// The environment variable that names a browser, which must then run.
 const VARIABLE: &str = "HEELSTRIKE_BROWSER";
 
-/// Longer than any page takes, on a busy machine.
+/// Time limit of one page, longer than any takes on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// Stands before the page's own script: keeps errors, and whatever the page's policy forbids, as a request would be.
+/// Runs before the page's own script and records errors and violations of the page's policy, such as requests.
 const LISTENER: &str = include_str!("scripts/listener.js");
 
-/// Stands at the page's end, before the test's script.
+/// Helpers at the page's end, for the test's script.
 const TOOLS: &str = include_str!("scripts/tools.js");
 
-/// What `script` finds in the page of this file, in a window of this size; `None`, with a note, without a browser.
+/// Runs `script` in the page of this file, in a window of this size, and returns what it found. `None`, with a note, if
+/// there is no browser.
 pub fn found(page: &Path, window: (u32, u32), script: &str) -> Option<Value> {
     let browser = browser()?;
     let html = std::fs::read_to_string(page).expect("a page");
@@ -37,14 +37,14 @@ pub fn found(page: &Path, window: (u32, u32), script: &str) -> Option<Value> {
     let dom = dumped(&browser, &driven, &profile, window);
     let (_, rest) = dom.split_once(r#"<pre id="found">"#).unwrap_or_else(|| panic!("the script failed:\n{dom}"));
     let (found, _) = rest.split_once("</pre>").expect("its end");
-    // As `encodeURIComponent` writes it.
+    // `found` in tools.js encodes its JSON by `encodeURIComponent`.
     let found = parsed(&percent_decode_str(found).decode_utf8().expect("UTF-8"));
     assert_eq!(found["wrong"], serde_json::json!([]));
     assert_eq!(found["loaded"], 0);
     Some(found)
 }
 
-/// The browser's name.
+/// The name of a browser that runs; `None`, with a note, if there is none.
 fn browser() -> Option<String> {
     if let Some(name) = std::env::var(VARIABLE).ok().filter(|name| !name.is_empty()) {
         assert!(runs(&name), "{VARIABLE} names {name}, which does not run");
@@ -64,7 +64,7 @@ fn runs(name: &str) -> bool {
     command.status().is_ok_and(|status| status.success())
 }
 
-/// The document as it is when the script has run.
+/// The document after the script has run.
 fn dumped(browser: &str, page: &Path, profile: &Path, (width, height): (u32, u32)) -> String {
     let mut child = Command::new(browser)
         .args(["--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-extensions"])

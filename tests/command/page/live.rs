@@ -1,4 +1,4 @@
-//! What a page does: keys, sliders and clicks move the robot, the cursors and the answers.
+//! How a page behaves: keys, sliders and clicks move the robot, the cursors and the answers.
 
 use super::browser::found;
 use super::{RAMONE, SHOWN, WALK, WALKER, data, each, file, five_bar, grid, hostile, list, near_a_border};
@@ -8,10 +8,10 @@ use serde_json::{Value, json};
 
 const WINDOW: (u32, u32) = (1280, 800);
 
-/// Numbers of a list.
+/// The entries of a list as numbers, whether they are numbers or text of the page.
 fn numbers(list: &Value) -> Vec<f64> {
     let number = |entry: &Value| match entry {
-        // As the page writes it.
+        // The page writes the minus sign U+2212.
         Value::String(text) => text.replace('−', "-").parse().expect("a number"),
         entry => entry.as_f64().expect("a number"),
     };
@@ -34,7 +34,7 @@ fn keys_and_slider_move_the_robot_and_the_cursor() {
         assert_eq!(step(name, "stop"), stop, "{name}");
     }
     assert_eq!((step("home", "alpha"), step("end", "alpha")), (0.5, 0.55));
-    // It opens in the middle of the longer region, and buttons and the strip do what keys do.
+    // The page opens in the middle of the longer region; its buttons and strip act as the keys do.
     assert_eq!((&found["opened"]["stop"], &found["opened"]["badge"]), (&json!(6), &json!("B")));
     assert_eq!((&found["clicked"], &found["struck"]), (&json!([4, 5, 4, 3]), &json!(6)));
     let border = std::f64::consts::FRAC_PI_6;
@@ -43,12 +43,12 @@ fn keys_and_slider_move_the_robot_and_the_cursor() {
     assert_eq!((&steps["back"]["badge"], &steps["border"]["badge"]), (&json!("A"), &json!("B")));
     let words = steps["border"]["told"].as_str().expect("words");
     assert!(words.ends_with(", region B, Exactly one outcome."), "{words}");
-    // Legs that spread lower the hip, which on the screen is a greater y.
+    // Spreading legs lower the hip, so that its y on the screen increases.
     let hip = |name: &str| steps[name]["hip"].as_str().and_then(|y| y.parse::<f64>().ok()).expect("a number");
     assert!(hip("start") < hip("slide") && hip("slide") < hip("end"));
     assert_eq!(hip("start"), hip("home"));
 
-    // Region A begins at the first sample and ends at the border: so do its shading and the cursor.
+    // Region A spans the first sample to the border: its shading ends where the cursors of these stops are.
     let regions: Vec<Vec<f64>> = serde_json::from_value(found["regions"].clone()).expect("numbers");
     for (name, side) in [("start", 0), ("back", 1), ("border", 1)] {
         let cursors = numbers(&steps[name]["cursors"]);
@@ -94,10 +94,10 @@ fn outcomes_are_those_of_the_tool() {
         }
     }
     let pressed = ["everything", "second", "none", "third"].map(|step| each(&found[step], "pressed"));
-    // There is no ninth outcome.
+    // The key 9 selects nothing, because there is no ninth outcome.
     let [no, yes] = ["false", "true"];
     assert_eq!(pressed, [[no, no, no], [no, yes, no], [no, no, no], [no, no, yes]]);
-    // The one that is chosen is drawn last.
+    // The selected outcome is drawn last.
     assert_eq!(found["effects"], json!(["effect faded", "effect faded", "effect"]));
     assert!(found["status"].as_str().expect("a text").contains("3: left_leg slides forward, right_leg sticks"));
 }
@@ -162,7 +162,7 @@ fn hostile_names_are_shown_and_not_run() {
     assert_eq!(found["name"], format!("{SHOWN}, line 1"));
     assert_eq!(found["labels"], json!([SHOWN]));
     assert!(found["words"].as_str().expect("words").contains(&format!("{SHOWN} sticks")));
-    // Those of the page, and two of the test.
+    // Two scripts of the page and two of the test.
     assert_eq!(found["scripts"], 4);
 }
 
@@ -170,7 +170,7 @@ fn hostile_names_are_shown_and_not_run() {
 fn a_velocity_along_an_impulse_is_drawn_aside() {
     let Some(found) = found(&five_bar().1, WINDOW, include_str!("scripts/arrows.js")) else { return };
     assert_eq!(found["names"], json!(["right_shank", "left_shank"]));
-    // Its head is next to the contact, and no longer on it; the loop's points up.
+    // The head of the velocity arrow is next to the contact, not on it; the loop's impulse points up.
     let [aside, down] = [&found["aside"], &found["down"]].map(|way| way.as_f64().expect("a number"));
     assert!(close(aside, 12.0, 0.01) && close(down, 0.0, 6.0), "{found}");
     assert_eq!(found["up"], json!(true));

@@ -1,7 +1,7 @@
-//! Interactive pages of `sweep` and `batch`: what stands in the file (here), and what it does in a browser (`live`,
-//! driven through `browser`).
+//! Interactive pages: the files that `sweep` and `batch` write (here), how they behave in a browser (`live`), and the
+//! live page of `web/build` (`web`). `browser` drives a browser.
 //!
-//! Where no Chromium is found the browser's tests say so and pass; HEELSTRIKE_BROWSER names one that must be there.
+//! Without a Chromium the browser's tests print a note and pass; HEELSTRIKE_BROWSER names one that must be there.
 
 mod browser;
 mod live;
@@ -14,10 +14,10 @@ use std::path::{Path, PathBuf};
 
 const WALK: [&str; 5] = ["batch", RAMONE, "examples/gait/ramone_walk.csv", "--friction", "0.6"];
 
-/// The largest page of 400 samples of RAMone \[bytes\].
+/// The largest size of a page with 400 samples of RAMone \[bytes\].
 const LARGEST: usize = 3_000_000;
 
-/// The page that a command writes, and where it is.
+/// Runs a command that writes a page; returns the page and its path.
 fn page(args: &[&str], stdin: &str, name: &str) -> (String, PathBuf) {
     let path = place(name);
     let run = heelstrike_reads(&[args, &["--plot", &path]].concat(), stdin);
@@ -25,24 +25,24 @@ fn page(args: &[&str], stdin: &str, name: &str) -> (String, PathBuf) {
     (page, path.into())
 }
 
-/// The page's data.
+/// The JSON that a page embeds.
 fn data(page: &str) -> Value {
     let (_, rest) = page.split_once(r#"<script type="application/json" id="data">"#).expect("data");
     let (data, _) = rest.split_once("</script>").expect("their end");
     parsed(data)
 }
 
-/// The numbers of an axis.
+/// The parameter values at which an axis of the page stops.
 fn axis(data: &Value, axis: usize) -> Vec<f64> {
     serde_json::from_value(data["axes"][axis]["values"].clone()).expect("numbers")
 }
 
-/// The minimalistic biped next to its border at pi / 6, where its trailing foot stops sliding.
+/// The minimalistic biped around its border at alpha = pi / 6, where its trailing foot stops sliding.
 fn near_a_border() -> Value {
     walker(json!({"alpha": {"from": 0.5, "to": 0.55, "steps": 3}}))
 }
 
-/// The same at several rates of turning.
+/// [`near_a_border`] with the rate of turning as second parameter.
 fn grid(samples: usize, rates: usize) -> Value {
     let mut grid = near_a_border();
     grid["parameters"]["alpha"]["steps"] = json!(samples);
@@ -56,9 +56,9 @@ fn swept(robot: &str, study: &Value, name: &str) -> (String, PathBuf) {
     page(&["sweep", robot, &study], "", name)
 }
 
-/// A robot whose link and study whose parameter do their best to leave their places.
+/// A name of robot, link and state that tries to end the page's script element.
 const HOSTILE: &str = "</script><script>alert(1)</script><!--\u{202e}";
-/// The same as people read it.
+/// [`HOSTILE`] as the page shows it.
 const SHOWN: &str = r"</script><script>alert(1)</script><!--\u{202e}";
 
 fn hostile() -> (String, PathBuf) {
@@ -75,11 +75,11 @@ fn hostile() -> (String, PathBuf) {
 fn the_data_of_a_small_study() {
     let (page, _) = swept(WALKER, &near_a_border(), "small.html");
     let mut data = data(&page);
-    // The result next to a border depends on the last digits of its place.
+    // Results next to the border depend on the last digits of its place, so the snapshot has three other samples.
     let samples = [0, 5, 8].map(|sample| data["frames"][sample].take());
     data["frames"] = json!(samples);
     data["axes"][0]["values"].take();
-    // A line each.
+    // One line per entry.
     let listed = |value: &Value| match value {
         Value::Array(entries) => entries.iter().map(|entry| format!("\n  {entry}")).collect::<String>(),
         value => format!(" {value}"),
@@ -88,7 +88,7 @@ fn the_data_of_a_small_study() {
     insta::assert_snapshot!("small", lines.collect::<String>());
 }
 
-/// Beside poles impulses have no bound, and some stops lie there.
+/// Impulses have no bound near poles, and some stops of the page lie there.
 #[test]
 fn arrows_of_a_study_are_seen_beside_poles() {
     let (page, _) = page(&["sweep", WALKER, "examples/paper/figures_3_and_6.json"], "", "poles.html");
@@ -99,7 +99,7 @@ fn arrows_of_a_study_are_seen_beside_poles() {
     };
     let largest: Vec<f64> = list(&data["frames"]).iter().map(impulses).collect();
     let usual = data["scale"]["impulse"].as_f64().expect("a number");
-    // The usual arrow is a quarter of the view long.
+    // An impulse of the usual size is an arrow as long as a quarter of the view.
     let seen = largest.iter().filter(|impulse| **impulse > 0.05 * usual).count();
     assert!(largest.iter().any(|impulse| *impulse > 100.0 * usual), "a pole: {usual} of {largest:?}");
     assert!(10 * seen > 9 * largest.len(), "{seen} of {} with {usual}", largest.len());
@@ -117,7 +117,8 @@ fn five_bar() -> (String, PathBuf) {
 fn a_loops_impulse_is_on_the_link_that_it_pushes_up() {
     let data = data(&five_bar().0);
     let [link, impulse] = list(&data["frames"][0]["outcomes"][0]["loops"][0]) else { panic!("a link, its impulse") };
-    // As text and JSON have it, the impulse on the left shank is (-0.116, -0.2555).
+    // Text and JSON give the impulse on the left shank, (-0.116, -0.2555). The page gives its opposite on the right
+    // shank.
     assert_eq!(data["texts"][link.as_u64().expect("a number") as usize], "right_shank");
     assert_eq!(impulse, &json!([0.11596, 0.25551]));
 }
@@ -140,7 +141,7 @@ fn a_page_stops_at_samples_and_within_every_region() {
     let data = data(&page);
     let stops = axis(&data, 0);
     let border = std::f64::consts::FRAC_PI_6;
-    // Three samples, and both sides and the middle of two regions.
+    // Three samples, and for each of two regions both ends and the middle.
     assert_eq!(stops.len(), 9);
     assert!(stops.is_sorted());
     for sample in [0.5, 0.525, 0.55] {
@@ -166,14 +167,14 @@ fn nothing_is_loaded() {
 #[test]
 fn names_stay_names() {
     let (page, _) = hostile();
-    // The data and the program.
+    // One script element holds the data and one the program.
     assert_eq!((page.matches("<script").count(), page.matches("</script>").count()), (2, 2));
     assert!(!page.contains("<!--"));
     let data = data(&page);
     assert_eq!(data["title"], format!("{SHOWN}, state by state"));
     assert_eq!(data["frames"][0]["name"], format!("{SHOWN}, line 1"));
     assert!(!page.contains('\u{202e}'));
-    // What is put into the template is not taken for it.
+    // Placeholders within names are not filled in.
     assert_eq!(data["frames"][1]["name"], "{data}, line 2");
     assert!(data["texts"].to_string().contains("{program}"));
 }
@@ -198,7 +199,7 @@ fn a_grid_of_two_parameters_is_thinned_if_too_fine() {
     let [few, many] = [[4, 2], [72, 70]].map(|samples| data(&swept(BLOCK, &study(samples), "grid.html").0));
     assert_eq!((axis(&few, 0).len(), axis(&few, 1).len()), (4, 2));
     assert_eq!(list(&few["frames"]).len(), 8);
-    // The longer one is thinned, to its last sample.
+    // The longer axis is thinned and keeps its last sample.
     assert_eq!((axis(&many, 0).len(), axis(&many, 1).len()), (37, 70));
     assert_eq!((axis(&many, 0)[0], axis(&many, 0)[36]), (0.5, 0.55));
     assert_eq!(many["notes"][0], "this page stops at one of 2 samples of alpha");
@@ -256,7 +257,7 @@ fn commands_without_pages_refuse_to_write_one() {
     }
 }
 
-/// The block of Painleve's paradoxes against its rate of turn: none, and two.
+/// The block with Painlevé's paradoxes at two rates of turning: one has no outcome, the other has two.
 #[test]
 fn pages_and_pictures_of_forces_name_them() {
     let study = json!({"question": "forces", "parameters": {"omega": {"from": 0, "to": 4, "steps": 2}},
@@ -272,7 +273,7 @@ fn pages_and_pictures_of_forces_name_them() {
     let sentence = |frame: &Value| texts[frame["sentence"].as_u64().expect("a number") as usize].clone();
     assert_eq!(sentence(first), "No forces are consistent: velocities jump");
     assert_eq!(sentence(last), "Two outcomes are equally valid.");
-    // It slides at 1 m/s against 18.57 N.
+    // The block slides at 1 m/s against a force of 18.57 N.
     let lost: Vec<&Value> = list(&last["outcomes"]).iter().map(|own| &own["energy_loss"]).collect();
     assert_eq!(lost, [&json!(0.0), &json!(18.57)]);
 
@@ -281,7 +282,7 @@ fn pages_and_pictures_of_forces_name_them() {
     for key in ["force of the ground: 2 N", "acceleration: 10 m/s\u{b2}", "velocity, toward the contact: 0.2 m/s"] {
         assert!(svg.contains(key), "{key}");
     }
-    // The velocity lies along the ground, and is drawn above it.
+    // The velocity is along the ground, and its arrow is drawn above it.
     let height = |sign: &str, of: &str| {
         let line = svg.split("><").find(|line| line.contains(sign)).expect(sign);
         let (_, rest) = line.split_once(of).expect(of);

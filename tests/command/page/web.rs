@@ -1,6 +1,6 @@
-//! The live page: its answers are those of the tool, and what it does in a browser.
+//! The live page: its answers equal those of the tool, and how it behaves in a browser.
 //!
-//! `web/build` makes it and HEELSTRIKE_PAGE names it; without one these tests say so and pass.
+//! `web/build` makes the page and HEELSTRIKE_PAGE names it; without a page these tests print a note and pass.
 
 use super::browser::found;
 use super::{BLOCK, RAMONE, WALKER, list};
@@ -11,15 +11,15 @@ use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_6;
 use std::path::PathBuf;
 
-/// What the variable is called that names the built page.
+/// The environment variable that names the built page.
 const VARIABLE: &str = "HEELSTRIKE_PAGE";
 
 const WINDOW: (u32, u32) = (1280, 800);
 
-/// How many states each robot has.
+/// Number of random states per robot.
 const STATES: usize = 334;
 
-/// A copy of the built page, for this test alone.
+/// A copy of the built page for the running test; `None`, with a note, if there is no page.
 fn page() -> Option<PathBuf> {
     let Some(built) = std::env::var_os(VARIABLE).filter(|name| !name.is_empty()) else {
         eprintln!("skipped: {VARIABLE} names no page; `web/build FILE.html` makes one");
@@ -30,7 +30,7 @@ fn page() -> Option<PathBuf> {
     Some(copy.into())
 }
 
-/// What a script finds that runs when the core answers.
+/// Runs a script once the page's core is ready, and returns what it found; `None` without a page or browser.
 fn driven(window: (u32, u32), script: &str) -> Option<Value> {
     let script = format!("ready.then(async (ask) => {{{script}}}).catch((error) => found({{ failed: error.stack }}));");
     let found = found(&page()?, window, &script)?;
@@ -38,7 +38,7 @@ fn driven(window: (u32, u32), script: &str) -> Option<Value> {
     Some(found)
 }
 
-/// A state that touches the ground in one or two points, often at an edge of what is possible.
+/// A random state that mostly touches the ground in one or two points, often with extreme values.
 fn state(random: &mut Random, robot: &str) -> Value {
     let speeds = |random: &mut Random, most: f64| match random.whole(0, 3) {
         0 => 0.0,
@@ -62,7 +62,7 @@ fn state(random: &mut Random, robot: &str) -> Value {
         WALKER => (-alpha, vec![-2.0 * alpha]),
         _ => (0.0, Vec::new()),
     };
-    // Both feet touch, or one.
+    // In this pose both feet touch; an offset of the pitch leaves one.
     let off = if random.once_in(3) { random.between(-0.5, 0.5) } else { 0.0 };
     state["position"]["base"]["pitch"] = json!(pitch + off);
     for (joint, angle) in joints.iter().zip(own) {
@@ -103,7 +103,7 @@ fn answers_of_the_page_are_those_of_the_tool() {
         let script = format!(
             "const [urdf, states] = [{}, {}];{}",
             json!(read(robot)),
-            // As text, so that the browser reads and writes no number.
+            // The states are texts, so that the browser neither parses nor prints their numbers.
             json!(states.iter().map(Value::to_string).collect::<Vec<_>>()),
             include_str!("scripts/states.js")
         );
@@ -115,7 +115,7 @@ fn answers_of_the_page_are_those_of_the_tool() {
         for ((state, answer), line) in states.iter().zip(answers).zip(native.stdout.lines()) {
             let (answer, result) = (answer.as_str().expect("a text"), parsed(line));
             match result.get("error") {
-                // A page has no lines.
+                // The page's answers have no line numbers.
                 Some(error) if result.get("verdict").is_none() => {
                     assert_eq!(parsed(answer)["error"], *error, "{state}")
                 }
@@ -138,36 +138,36 @@ fn the_page_follows_what_its_reader_does() {
     else {
         return;
     };
-    // RAMone stands on two feet: what no friction holds slides, as the tool has it.
+    // The page opens with RAMone on two feet, one of which slides, with the same answer as the tool.
     let native = heelstrike_reads(&["impact", RAMONE, "examples/ramone.json", "--format", "json"], "").well().line();
     let answer = |result: &Value| (result["verdict"].clone(), result["outcomes"][0]["margin"].clone());
     assert_eq!(answer(&found["opened"]["result"]), answer(&native));
     assert_eq!(found["opened"]["sentence"], "Exactly one outcome. Proven.");
     assert!(found["opened"]["told"].as_str().expect("words").contains("left_foot slides forward, right_foot sticks"));
     assert_eq!(found["unnamed"], json!([]), "every control has a label");
-    // Sliders, numbers, boxes and choices change the state that is asked about.
+    // Sliders, number fields, check boxes and selections change the state.
     assert_eq!((&found["slid"]["rate"], &found["typed"]["rate"]), (&json!(2), &json!(-1.25)));
     assert_ne!(found["slid"]["result"]["outcomes"], found["opened"]["result"]["outcomes"]);
     assert_eq!((&found["finite"], &found["free"]["stance"]), (&json!(0.6), &Value::Null));
-    // Friction of each link has no place among the regions along it.
+    // Friction by link has no cursor in the regions along a single friction.
     assert_eq!(found["by_link"], json!({"shown": "by link", "told": "by link", "cursors": 0}));
-    // The base stays where it was, on both feet.
+    // Without a stance the base stays where it was, so that both feet touch.
     assert!(found["free"]["told"].as_str().expect("words").contains("right_foot"), "{}", found["free"]);
-    // A link that is dragged turns clockwise with the pointer, which is against its joint's axis.
+    // A dragged link turns clockwise with the pointer, which is negative about its joint's axis.
     let [before, after] = ["before", "after"].map(|step| found["dragged"][step].as_f64().expect("an angle"));
     assert!(
         (before - after - found["dragged"]["turn"].as_f64().expect("an angle")).abs() < 0.02,
         "{}",
         found["dragged"]
     );
-    // Regions along the rate of turning, of which a click takes one.
+    // A click in the regions along the rate of turning sets the rate.
     assert!(found["swept"]["regions"].as_u64() >= Some(2), "{}", found["swept"]);
     assert_eq!(found["swept"]["struck"], found["swept"]["state"]);
-    // Pasted, kept in the address, opened from there.
+    // A pasted state is kept in the address and opened from it.
     assert_eq!(found["pasted"]["sentence"], "Three outcomes are equally valid. Proven.");
     assert_eq!(found["pasted"]["chosen"], json!(["false", "true", "false"]));
     assert_eq!(found["reopened"], found["linked"]);
-    // Files.
+    // Dropped files.
     assert_eq!((&found["dropped"]["title"], &found["dropped"]["dials"]), (&json!("heelstrike: block"), &json!(9)));
     let refused = found["refused"].as_str().expect("words");
     assert!(refused.starts_with("Refused: "), "{refused}");
@@ -177,7 +177,7 @@ fn the_page_follows_what_its_reader_does() {
 
 #[test]
 fn the_live_page_fits_into_narrow_windows() {
-    // A headless window is 500 pixels wide or more.
+    // A headless window is at least 500 pixels wide, so the script sets the page's width.
     let script = include_str!("scripts/narrow.js");
     for window in [(390, 844), (1280, 800)] {
         let script = format!("const width = {};{script}", window.0);

@@ -1,4 +1,4 @@
-//! What only the command meets: folders, devices, bytes that are no text, outputs that cannot be written.
+//! Refusals that only the command meets: folders, devices, bytes that are not text, outputs that cannot be written.
 
 use crate::{RAMONE, heelstrike_reads};
 
@@ -52,7 +52,7 @@ fn near_fields_and_odd_endings_are_refused() {
         refused.contains("unknown field \"restituion\"") && refused.contains("did you mean restitution?"),
         "{refused}"
     );
-    // A comment, and short names that are near to others.
+    // These fields are ignored: a comment, and short names that resemble known ones.
     for field in ["notes", "named", "comment"] {
         problem(field).well();
     }

@@ -1,8 +1,8 @@
-//! Input that is wrong, broken, hostile or absurdly large. Each is refused with its place, reason and remedy, kept word
-//! for word as a snapshot, with little memory and time.
+//! Wrong, broken, hostile or absurdly large input. It is refused with little memory and time; snapshots keep the place,
+//! reason and remedy word for word.
 //!
-//! A new case is a line of a table (`robots`, `states`, `studies`, `tables`). `files` holds what only the command
-//! meets: folders, devices, bytes that are no text. `people` holds how refusals look in a terminal.
+//! A new case is a line of a table (`robots`, `states`, `studies`, `tables`). `files` covers what only the command
+//! meets: folders, devices, bytes that are not text. `people` covers how refusals look in a terminal.
 
 use assert_cmd::Command;
 use heelstrike::Error;
@@ -16,14 +16,14 @@ mod states;
 mod studies;
 mod tables;
 
-/// What the command may take of memory, its code and stacks included \[kB\].
+/// Limit on the command's virtual memory, its code and stacks included \[kB\].
 const MEMORY: u32 = 500_000;
 
-/// After so long it counts as hanging; a refusal takes some milliseconds, a second at most.
+/// Time limit of the command; a refusal takes some milliseconds, a second at most.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// Checks that `heelstrike` with the `arguments` refuses `input` on standard input in short words, with status 1,
-/// within memory and time.
+/// Checks that `heelstrike` with the `arguments` refuses `input` on standard input with a short message and status 1,
+/// within [`MEMORY`] and [`PATIENCE`].
 fn assert_refuses(case: &str, arguments: &[&str], input: &str) {
     let mut command = Command::new(env!("CARGO_BIN_EXE_heelstrike"));
     if cfg!(target_os = "linux") {
@@ -35,19 +35,19 @@ fn assert_refuses(case: &str, arguments: &[&str], input: &str) {
     let stderr = String::from_utf8_lossy(&output.stderr);
     let start: String = stderr.chars().take(2000).collect();
     assert_eq!(output.status.code(), Some(1), "{case}: {start}");
-    // A batch shows ten refused lines of thousands, with their excerpts, behind a note.
+    // A batch quotes the first few of many refused lines.
     let most = if arguments[0] == "batch" { 4000 } else { 1500 };
     let is_short = stderr.len() < most && stderr.lines().any(|line| line.starts_with("error: "));
     assert!(is_short, "{case}: {} bytes: {start}", stderr.len());
 }
 
-/// The cases of a table: a line each, in which `\n` is a line break, in place of the template's `@`.
+/// The cases of a table: each line replaces the template's `@`, with `\n` as a line break.
 fn lines(table: &'static str, template: &'static str) -> impl Iterator<Item = String> {
     table.trim().lines().map(|line| template.replace('@', &line.replace("\\n", "\n")))
 }
 
-/// Compares what `read` says of each case with the snapshot of that name, and checks that the command with the
-/// `arguments` refuses each within its limits.
+/// Compares the errors of `read` for all cases with the snapshot of that name, and checks that the command with the
+/// `arguments` refuses each case within its limits.
 fn assert_refused(
     name: &str,
     cases: impl Iterator<Item = String>,

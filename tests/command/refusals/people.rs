@@ -1,4 +1,4 @@
-//! How refusals are shown to people, and what a bolted robot cannot have.
+//! How refusals look in a terminal, and fields that a bolted robot cannot have.
 
 use crate::{RAMONE, WALKER, heelstrike_reads};
 
@@ -33,7 +33,7 @@ fn other_fields_of_a_problem_are_ignored() {
 
 #[test]
 fn a_refusal_shows_people_file_line_and_place() {
-    // Of a long line only what is near the place is shown; line and column are those of the file.
+    // Only the part of a long line near the place is shown; line and column refer to the file.
     let long = &format!("{{\"id\": {}1, \"stanse\": 2}}", " ".repeat(200));
     for (name, arguments, stdin) in [
         ("state", &["impact", RAMONE, "-"][..], "{\"friction\": 1,\n \"stanse\": \"left_foot\"}"),
@@ -47,7 +47,7 @@ fn a_refusal_shows_people_file_line_and_place() {
     ] {
         insta::assert_snapshot!(name, heelstrike_reads(arguments, stdin).refusal(1));
     }
-    // In a list the place is that in the whole file.
+    // For an entry of a list, line and column refer to the whole file as well.
     let second = "[{\"friction\": 1},\n  {\"friction\": 1, \"held\": [\"left_knie\"]}]";
     insta::assert_snapshot!("list", heelstrike_reads(&["impact", RAMONE, "-", "--brief"], second).stderr);
 }

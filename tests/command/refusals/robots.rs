@@ -42,7 +42,7 @@ fn chain(links: usize, kind: &str) -> String {
     robot(&(0..links).map(link).chain((1..links).map(joint)).collect::<String>())
 }
 
-/// Files, a line each.
+/// Whole files, one per line.
 const FILES: &str = r#"
 <!DOCTYPE r [<!ENTITY a "lol"><!ENTITY b "&a;&a;&a;&a;"><!ENTITY c "&b;&b;&b;&b;">]>\n<robot>&c;</robot>
 <!DOCTYPE r [<!ENTITY passwd SYSTEM "file:///etc/passwd">]>\n<robot name="&passwd;"/>
@@ -74,7 +74,7 @@ time,q_base_x\n0,1
 <robot><link name="a">\n<collision><geometry><sphere radius="$(arg r)"/></geometry></collision></link></robot>
 "#;
 
-/// What `<robot>` holds, a line each.
+/// Contents of `<robot>`, one per line.
 const ROBOTS: &str = r#"
 <link name="a"/>\n<link name="a"/>
 <link name="a" name="b"/>
@@ -86,7 +86,7 @@ const ROBOTS: &str = r#"
 <link name="a"/>
 "#;
 
-/// What `<geometry>` holds, a line each.
+/// Contents of `<geometry>`, one per line.
 const SHAPES: &str = r#"
 <sphere radius="-0.1"/>
 <box size="1 -2 3"/>
@@ -96,7 +96,7 @@ const SHAPES: &str = r#"
 <mesh filename="a.stl" scale="0 -0 0e9"/>
 "#;
 
-/// A joint's type and what it holds besides parent a and child b, a line each.
+/// A joint's type and its content besides parent a and child b, one joint per line.
 const JOINTS: &str = r#"
 fixed <origin xyz="1 2 x 3"/>
 fixed <origin xyz="1 2"/>

@@ -7,7 +7,7 @@ use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::read::Problem;
 use heelstrike::state::{Defaults, State};
 
-/// A line each, for RAMone.
+/// States of RAMone, one per line.
 const STATES: &str = r#"
 [1]
 1
@@ -122,7 +122,7 @@ fn states_are_refused_word_for_word() {
     });
 }
 
-/// A line each.
+/// Contact problems, one per line.
 const PROBLEMS: &str = r#"
 [[]]
 {"delassus": [[2, 1], [1

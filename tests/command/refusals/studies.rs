@@ -3,7 +3,7 @@
 use super::{assert_refused, lines};
 use crate::schema::studies::read;
 
-/// Parameters, a line each.
+/// Parameters, one set per line.
 const PARAMETERS: &str = r#"
 "a": {"from": 0, "to": 1, "steps": 5}, "b": {"from": 0, "to": 1, "steps": 5}, "c": {"from": 0, "to": 1, "steps": 5}
 "a": 1
@@ -26,7 +26,7 @@ const PARAMETERS: &str = r#"
 "region": {"from": 0, "to": 1, "steps": 5}
 "#;
 
-/// Friction, a line each.
+/// Values of friction, one per line.
 const FRICTION: &str = r#"
 "beta"
 "sine(a)"
@@ -44,7 +44,7 @@ const FRICTION: &str = r#"
 "-1-a"
 "#;
 
-/// The robot, a line each.
+/// Values of the field `robot`, one per line.
 const ROBOT: &str = r#"
 []
 {"link": {}}
@@ -58,7 +58,7 @@ const ROBOT: &str = r#"
 {"joints": {"left_hip": {"origin": "a"}}}
 "#;
 
-/// All but the parameter, a line each.
+/// Fields besides the parameter, one set per line.
 const FIELDS: &str = r#"
 "state": [], "constants": {}
 "state": {}, "constant": {}

@@ -1,7 +1,7 @@
-//! The schemas that `heelstrike schema` prints against what is really read and written.
+//! The schemas that `heelstrike schema` prints, against the reader of inputs and the writer of results.
 //!
-//! Inputs: a full sample is changed in every place and in every way; schema and reader must agree about each. Results:
-//! every form of result that the command writes must be valid, and not with a field more or less.
+//! Inputs: a full sample is varied in every place, and schema and reader must agree about each variant. Results: every
+//! form of result that the command writes must be valid, and invalid with a field more or less.
 
 use super::support::subject::Subject;
 use super::{heelstrike_reads, list, parsed, read};
@@ -23,7 +23,7 @@ fn read_state(text: &str) -> Result<State, Error> {
     State::from_json(text, &RAMONE.robot, &Defaults::default())
 }
 
-/// What the command writes as JSON, whatever its exit status; it must be valid, but not with another field in the
+/// The command's JSON results, whatever its exit status. Each must be valid, and invalid with an unknown field in the
 /// object at `place`.
 fn assert_valid(schema: &Value, arguments: &[&str], stdin: &str, place: &str) -> Vec<Value> {
     let results = heelstrike_reads(&[arguments, &["--format", "json"]].concat(), stdin).lines();
@@ -36,7 +36,7 @@ fn assert_valid(schema: &Value, arguments: &[&str], stdin: &str, place: &str) ->
     results
 }
 
-/// Checks that the reader of an unknown field names those that the schema has at `pointer`.
+/// Checks that the reader's hint on an unknown field lists exactly the schema's fields at `pointer`.
 fn assert_fields<T>(schema: &Value, read: impl Fn(&str) -> Result<T, Error>, value: &Value, pointer: &str) {
     let properties = schema.pointer(pointer).and_then(Value::as_object).expect("properties");
     let error = read(&value.to_string()).err().expect("an unknown field");
@@ -47,7 +47,7 @@ fn assert_fields<T>(schema: &Value, read: impl Fn(&str) -> Result<T, Error>, val
     assert_eq!(properties.keys().collect::<Vec<_>>(), known, "{value}");
 }
 
-/// The sample, each of its values replaced by each of some others, left out, and each object with an unknown field.
+/// All variants of the sample with one change: a value replaced by one of `OTHERS` or left out, or an unknown field.
 fn variants(sample: &Value) -> Vec<Value> {
     const OTHERS: &str = r#"[null, true, "x", "infinite", -1, 0, 1.5, 2, [], {}, [0, 0], [0, 0, 0], [[0, 0]],
                              ["left_hip", "left_hip"]]"#;
@@ -81,7 +81,8 @@ fn variants(sample: &Value) -> Vec<Value> {
     variants
 }
 
-/// Checks that schema and reader agree about every variant of the sample, except for what only the reader can know.
+/// Checks that schema and reader agree about every variant of the sample, except for the reader's refusals
+/// `beyond_a_schema`.
 fn assert_agreement<T>(
     schema: &Value,
     sample: &Value,
@@ -131,7 +132,7 @@ fn schema_and_reader_of_states_agree() {
     let standing = json!({"id": 1, "stance": "left_foot", "friction": 0.8, "restitution": 0.5,
         "position": {"base": {"pitch": 0.1}}, "ground": {"profile": [[-1, 0], [1, 0.5], [2, 0.5]]},
         "uncertainty": {"friction": 0.1, "rotor_inertia": 0.1}});
-    // Which names the robot has, and that a stance places the base.
+    // A schema knows neither the robot's names nor that a stance places the base.
     let beyond = |reason: &Reason| matches!(reason, Reason::UnknownName { .. } | Reason::Inconsistent(_));
     let shape = |reason: &Reason| matches!(reason, Reason::Inconsistent(text) if text.starts_with("expected"));
     for sample in [scene, standing] {
@@ -147,7 +148,7 @@ fn schema_and_reader_of_problems_agree() {
         "friction": "infinite", "restitution": 0.5});
     let defaults = Defaults { friction: Some(heelstrike::impact::Friction::Infinite), ..Defaults::default() };
     let read = |text: &str| Problem::from_json(text, &defaults);
-    // Whether the matrices fit each other and are those of a body.
+    // A schema does not know whether the matrices fit each other and are those of a mechanism.
     let beyond = |reason: &Reason| match reason {
         Reason::Inconsistent(text) => !text.starts_with("expected") && !text.starts_with("the problem has both"),
         Reason::OutOfRange { what, .. } => what != "friction" && what != "restitution",
@@ -216,7 +217,7 @@ fn every_example_is_valid() {
             let path = path.to_str().expect("UTF-8");
             for value in serde_json::Deserializer::from_str(&read(path)).into_iter::<Value>() {
                 let value = value.unwrap_or_else(|error| panic!("{path}: {error}"));
-                // A figure is of a study or of a state.
+                // A file of a figure holds a study or a state.
                 let is_state = folder == "examples/paper" && value.get("parameters").is_none();
                 let schema = if is_state { &schema::state() } else { &schema };
                 assert!(is_valid(schema, &value), "{path}: {value}");
@@ -274,7 +275,7 @@ fn every_form_of_forces_is_valid() {
                 {"a": {"link": "torso", "offset": [0, 0, 1]}, "b": {"world": [0, 1]}, "force": [3, 0], "moment": 2}]}"#,
         ),
         (&["forces", "urdf/block.urdf", "-"], "{\"friction\": 1, \"velocity\": {\"base\": {\"z\": -1}}}"),
-        // Fields of a flat line that mean nothing here keep their types.
+        // Copied fields of a flat line keep their types.
         (
             &["batch", "urdf/block.urdf", "-", "--forces", "--friction", "1"],
             "{\"q_base_z\": 2, \"v_base_z\": 0, \"phase\": 3, \"left\": true}\n",
@@ -293,7 +294,7 @@ fn every_form_of_a_report_on_accuracy_is_valid() {
         // Regular, and with compliant contact.
         &["urdf/ramone.urdf", "examples/ramone.json"][..],
         &["--no-proof", "--case", "friction infinite, biped"],
-        // Refused, without a condition, given as matrices.
+        // Refused; without a condition number; given as matrices.
         &["--case", "massless feet"],
         &["--case", "coincident feet"],
         &["--case", "Hilbert"],
@@ -322,7 +323,7 @@ fn the_command_prints_every_schema() {
         assert_eq!(printed["$schema"], "https://json-schema.org/draft/2020-12/schema");
     }
     assert_eq!(heelstrike_reads(&["schema", "gait"], "").stdout, "");
-    // A field that may be absent is not null instead.
+    // A field without a value is left out and never null: `holds` does not allow null.
     let mut waiting = vec![schema::result()];
     let mut holds = Vec::new();
     while let Some(value) = waiting.pop() {

@@ -1,4 +1,4 @@
-//! Studies and what `sweep` writes of them.
+//! The schemas of studies and of sweeps.
 
 use super::{RAMONE, assert_agreement, assert_fields, assert_valid, is_valid};
 use heelstrike::sweep::Study;
@@ -6,7 +6,7 @@ use heelstrike::write::schema;
 use heelstrike::{Error, Reason};
 use serde_json::{Value, json};
 
-/// Reads a study of RAMone whole: its state and robot as well, at the ends and in the middle.
+/// Reads a study of RAMone completely: also its states and robots at the ends and in the middle of the range.
 pub fn read(text: &str) -> Result<(), Error> {
     let study = Study::from_json(text)?;
     RAMONE.model(&study).has_own_friction().map(drop)
@@ -39,7 +39,7 @@ fn sample() -> Value {
 
 #[test]
 fn schema_and_reader_of_studies_agree() {
-    // Which names and values there are, and what an expression says.
+    // A schema knows neither the names and values that exist nor the syntax of expressions.
     let beyond = |reason: &Reason| match reason {
         Reason::UnknownName { .. } | Reason::Syntax(_) | Reason::NotFinite { .. } => true,
         Reason::Inconsistent(text) => {

@@ -1,4 +1,4 @@
-//! A JSON Schema validator for the keywords that the schemas use; any other is a failure, so that none is passed over.
+//! A JSON Schema validator for the keywords that the schemas use. Any other keyword panics, so that none is ignored.
 
 use crate::list;
 use serde_json::{Value, json};
@@ -71,7 +71,7 @@ fn is_of_kind(value: &Value, kind: &Value) -> bool {
     }
 }
 
-/// Whether the text has the one pattern that the schemas use.
+/// Whether the text matches the only pattern that the schemas use.
 fn matches(pattern: &Value, text: &str) -> bool {
     assert_eq!(pattern, "^[A-Za-z_][A-Za-z0-9_]*$");
     let letter = |c: char| c == '_' || c.is_ascii_alphabetic();
