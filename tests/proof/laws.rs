@@ -1,5 +1,5 @@
-//! Contact problems given as matrices: the index theorem, what a search of combinations leaves out, and the friction that
-//! is needed.
+//! Properties of contact problems given as matrices: the index theorem, the search against trying all combinations, and
+//! the friction needed.
 
 use crate::support::parallel::total;
 use crate::support::random::Random;
@@ -27,7 +27,7 @@ impl Parts {
         analysis.unwrap_or_else(|error| panic!("{error}\n{}", self.json()))
     }
 
-    /// As `heelstrike solve` reads it.
+    /// The problem as `heelstrike solve` reads it.
     fn json(&self) -> String {
         let friction = self.friction.iter().map(|friction| match friction {
             Friction::Finite(mu) => json!(mu),
@@ -39,7 +39,7 @@ impl Parts {
             .to_string()
     }
 
-    /// A regular problem: G = A A^T with a Gaussian A of 2n rows and as many columns or some more.
+    /// A regular problem: G = A A^T with a Gaussian A of 2n rows and 2n to 2n + 3 columns.
     fn random(random: &mut Random) -> Self {
         let contacts = random.whole(1, 4) as usize;
         let columns = 2 * contacts + random.whole(0, 3) as usize;
@@ -49,7 +49,7 @@ impl Parts {
         let mut velocity_before: Vec<[f64; 2]> =
             (0..contacts).map(|_| [2.0 * gauss(random), gauss(random) - 0.7]).collect();
         if contacts > 1 && random.once_in(4) {
-            // One contact rests exactly and another one strikes, as of a walker.
+            // One contact is exactly at rest and another one strikes, as in walking.
             velocity_before[0] = [0.0, 0.0];
             velocity_before[1][1] = -0.1 - gauss(random).abs();
         }
@@ -72,7 +72,7 @@ impl Parts {
         }
     }
 
-    /// Four or five contacts that often depend on each other, in whole numbers: feet of a robot with few joints.
+    /// Four or five contacts in whole numbers, often redundant, like feet of a robot with few joints.
     fn dependent(random: &mut Random) -> Self {
         let (contacts, columns) = (random.whole(4, 5) as usize, random.whole(2, 9) as usize);
         let few = |random: &mut Random, count| (0..count).map(|_| random.whole(-2, 2) as f64).collect::<Vec<_>>();
@@ -89,7 +89,7 @@ impl Parts {
     }
 }
 
-/// Box and Muller.
+/// A normally distributed number, by Box and Muller.
 fn gauss(random: &mut Random) -> f64 {
     let radius = (-2.0 * (1.0 - random.uniform()).ln()).sqrt();
     radius * (std::f64::consts::TAU * random.uniform()).cos()
@@ -120,13 +120,13 @@ fn indices_of_all_outcomes_sum_to_one() {
     });
     // A random slack rarely lies within its rounding: none of these was undecided when this was written.
     assert!(undecided <= PROBLEMS / 10_000, "{undecided} undecided");
-    // The sum says something only where there are several: 5,186 were ambiguous when this was written.
+    // The sum tests something only for several outcomes: 5,186 problems were ambiguous when this was written.
     assert!(ambiguous > PROBLEMS / 100, "only {ambiguous} ambiguous");
 }
 
 #[test]
 fn a_search_finds_what_trying_all_finds() {
-    // Of few contacts with all reasons every combination is tried; without them a search leaves most out.
+    // If all rejections are listed, every combination is tried; otherwise a search leaves most out.
     let seen = total(160, |seed| {
         let random = &mut Random::new(seed);
         let parts = if random.once_in(4) {
@@ -151,7 +151,7 @@ fn friction_needed_is_the_least_that_holds() {
     let [compared, jammed] = total(600, |seed| {
         let mut parts = Parts::dependent(&mut Random::new(seed));
         let count = parts.friction.len();
-        // Of five contacts each takes as long as three of four.
+        // A problem of five contacts takes as long as three of four contacts.
         if count == 5 && seed % 10 > 0 {
             return [0; 2];
         }
@@ -161,7 +161,8 @@ fn friction_needed_is_the_least_that_holds() {
         let mut found = [0; 2];
         for outcome in outcomes.iter().filter(|outcome| !outcome.impulse_unique && !outcome.family && outcome.proven) {
             let needed = outcome.friction_needed.iter().flatten().copied().fold(0.0, f64::max);
-            // Without a normal impulse only infinite friction holds a contact, which those of others may depend on.
+            // A contact with a tangential impulse alone needs infinite friction, and the impulses of others may depend
+            // on it.
             let is_held =
                 |contact: usize| outcome.friction_needed[contact].is_some() || outcome.impulse[contact] == [0.0; 2];
             if needed < 1e-3 || !(0..count).all(is_held) {
@@ -184,7 +185,7 @@ fn friction_needed_is_the_least_that_holds() {
 
 #[test]
 fn a_contact_that_needs_no_impulse_needs_no_friction() {
-    // G = [[1, 2], [2, 4]] twice: pressed by L_n, a contact resists by L_t = -2 L_n.
+    // G has two blocks [[1, 2], [2, 4]]: an impulse with L_t = -2 L_n changes no velocity.
     let needed = |velocity: [f64; 2]| {
         let jacobian = [[1.0, 0.0], [2.0, 0.0], [0.0, 1.0], [0.0, 2.0]].map(|row| row.to_vec());
         let masses = [vec![1.0, 0.0], vec![0.0, 1.0]];
@@ -196,7 +197,7 @@ fn a_contact_that_needs_no_impulse_needs_no_friction() {
         only.friction_needed.clone()
     };
     assert_eq!(needed([0.0, 0.0]), [None, None]);
-    // L_t + 2 L_n = 1 needs none either, but presses, and the other contact has no part in it.
+    // The second contact needs L_t + 2 L_n = 1, which L_n alone satisfies. The first one takes no part.
     assert_eq!(needed([0.0, -1.0]), [None, Some(0.0)]);
 }
 
@@ -205,7 +206,7 @@ fn of_four(random: &mut Random) -> Parts {
     std::iter::repeat_with(|| Parts::random(random)).find(|parts| parts.friction.len() == 4).expect("one of four")
 }
 
-/// The verdicts with and without all reasons: by trying all combinations and by a search.
+/// Verdict and whether it is proven, by trying all combinations and by a search.
 fn verdicts(problem: &ContactProblem) -> [(Verdict, bool); 2] {
     [ListedRejections::Everything, ListedRejections::Nothing].map(|rejections| {
         let Analysis { verdict, proven, .. } = analyze(problem, rejections).expect("few contacts");
@@ -221,7 +222,7 @@ fn a_search_shows_nothing_by_numbers_that_overflow() {
     assert_eq!(verdicts(&problem), [(Verdict::Unique, true); 2]);
 }
 
-/// In the scale of each contact, f64 does not hold the normal part of the sides of so wide a cone.
+/// In the scale of each contact, the normal component of the sides of so wide a friction cone underflows in f64.
 #[test]
 fn a_search_shows_nothing_by_numbers_that_underflow() {
     for (unit, mu, contacts) in [(1e40, 1e308, 4), (1e50, 1e300, 5), (1e110, 1e270, 4)] {
@@ -240,7 +241,7 @@ fn a_search_shows_nothing_by_numbers_that_underflow() {
 
 #[test]
 fn a_search_trusts_no_velocity_without_a_bound() {
-    // J v cancels: c_n is 0.5, and -0.5 in f64.
+    // J v cancels: c_n is 0.5 exactly, but -0.5 in f64.
     let rows: Vec<Vec<f64>> = (0..4).flat_map(|_| [vec![0.0, 1.0, 0.0, 2.0], vec![1.0; 4]]).collect();
     let mass: Vec<Vec<f64>> = (0..4).map(|i| (0..4).map(|j| f64::from(u8::from(i == j))).collect()).collect();
     let velocity = [1e16, 1.0, -1e16, -0.5];

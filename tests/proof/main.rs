@@ -1,6 +1,5 @@
-//! The crate against arithmetic that does not round, or that knows by how much: rationals (`exact`) and balls of 256 bits
-//! (`balls`); and what holds of every problem (`laws`). Cases are random and seeded; a failing one prints its seed and
-//! itself.
+//! The crate against exact rationals (`exact`) and against balls of 256 bits, which bound their rounding (`balls`); and
+//! properties of every contact problem (`laws`). Cases are random and seeded; a failing case prints its seed and input.
 
 mod balls;
 mod exact;

@@ -1,4 +1,4 @@
-//! The product's answers to many states compared with the oracle's, and counted.
+//! Compares the product's answers to many states with those of the oracle, and counts them.
 
 use crate::balls::oracle::{self, Answer, Index, Outcome};
 use crate::balls::states::{Model, beside_a_border};
@@ -8,23 +8,23 @@ use heelstrike::impact::{self, Analysis, Verdict};
 use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::state::State;
 
-/// How a product's answer stands to the oracle's.
+/// How the product's answer compares with the oracle's.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Finding {
-    /// They are the same and proven.
+    /// The answers are the same, and the product's is proven.
     Proven,
-    /// They are the same, but not proven.
+    /// The answers are the same, but the product's is not proven.
     Same,
     Undecided,
-    /// Something that the product calls proven is not so: the worst that can happen.
+    /// Something that the product calls proven is wrong: the worst that can happen.
     Wrong(String),
-    /// Something that the product decided without calling it proven is not so.
+    /// Something that the product decided without calling it proven is wrong.
     Different(String),
     /// The oracle has no answer.
     Unknown,
 }
 
-/// Compares an analysis with all outcomes.
+/// Compares an analysis with all outcomes of the oracle.
 pub fn compare(answer: &Answer, analysis: &Analysis) -> Finding {
     if answer.open > 0 {
         return Finding::Unknown;
@@ -43,7 +43,7 @@ pub fn compare(answer: &Answer, analysis: &Analysis) -> Finding {
         let found: Vec<_> = decided.iter().map(|outcome| (&outcome.modes, outcome.index)).collect();
         format!("{}, outcomes {found:?}\nnot {:?}", analysis.verdict, answer.outcomes)
     };
-    // An outcome that is proven must be one, whatever the rest is.
+    // A proven outcome must exist, even if the rest is not decided.
     let refuted = decided.iter().any(|outcome| outcome.proven && !is_one(outcome));
     let complete = decided.len() == answer.outcomes.len() && analysis.verdict != Verdict::Undecided;
     let found = |right: &Outcome| decided.iter().any(|outcome| same(right, outcome));
@@ -64,8 +64,8 @@ pub fn compare(answer: &Answer, analysis: &Analysis) -> Finding {
     }
 }
 
-/// What is counted: states, what became of them, those on a border, with several outcomes, and for which the oracle's
-/// first precision was not enough; then combinations, by the layer that settled them.
+/// Counts of states: all, by finding, on a border, with several outcomes, and with more than the oracle's first
+/// precision. Then counts of combinations by the layer of arithmetic that settled them.
 const COLUMNS: [&str; 13] = [
     "number", "proven", "same", "open", "unknown", "refused", "border", "several", "deeper", "bound", "ball", "double",
     "precise",
@@ -77,20 +77,21 @@ pub const KINDS: [&str; 2] = ["random", "near"];
 /// The counts by kind and column.
 pub struct Census([u64; KINDS.len() * COLUMNS.len()]);
 
-/// Where a count is.
+/// The index of a count.
 fn place(kind: &str, column: &str) -> usize {
     let at = |list: &[&str], name: &str| list.iter().position(|own| *own == name).expect("a known name");
     at(&KINDS, kind) * COLUMNS.len() + at(&COLUMNS, column)
 }
 
-/// Random states of a block.
+/// Number of random states in a block.
 const RANDOM_IN_BLOCK: usize = 8;
 
-/// States of a block: two in three are random, four lie next to one border.
+/// Number of states in a block: two in three are random, four lie next to one border.
 const BLOCK: u64 = 12;
 
 impl Census {
-    /// Answers at least `states` states of all robots in turn, the same ones each time; each must be answered rightly.
+    /// Answers at least `states` states, of all robots in turn; they are the same in every run. Panics at a wrong
+    /// answer.
     pub fn of(models: &[Model], states: u64) -> Self {
         Self(total(states.div_ceil(BLOCK), |block| answer_block(&models[block as usize % models.len()], block)))
     }
@@ -135,7 +136,7 @@ fn answer_state(
 ) -> Finding {
     add("number", 1);
     let found = pipeline.impact(state);
-    // What the product takes as exactly at rest is so; that it is slow enough for that is tested elsewhere.
+    // The oracle takes the same contacts as exactly at rest. Other tests check that they are slow enough.
     let resting = found.as_ref().map_or(&[][..], |impact| &impact.resting);
     let Some(answer) = oracle::answer(&model.robot, state, resting) else {
         add("unknown", 1);

@@ -12,7 +12,7 @@ use heelstrike::impact::Friction;
 use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::state::{Named, Scene, State};
 
-/// Compares the outcomes of a random state: how many were compared, and how many are not proven.
+/// Compares the outcomes of a random state; returns the numbers of compared and of unproven outcomes.
 fn compare(model: &Model, random: &mut Random) -> [u64; 2] {
     let mut state = model.random(random);
     state.scene.impulses.clear();
@@ -54,7 +54,7 @@ fn digits_of_states_are_right() {
 fn digits_of_chains_of_unequal_links_are_right() {
     let [compared, marked] = total(environment("HEELSTRIKE_DIGITS", 200), |seed| {
         let mut random = Random::new(seed);
-        // Every third chain is solved by articulated bodies alone.
+        // Every third chain is so long that articulated bodies alone solve it.
         let length = if seed % 3 == 2 { 26 } else { 10 };
         compare(&chain(length, &mut random), &mut random)
     });
@@ -62,7 +62,7 @@ fn digits_of_chains_of_unequal_links_are_right() {
     assert!(compared > 150 && marked * 100 < compared, "{compared} compared, {marked} marked");
 }
 
-/// M (v+ - v-) = J^T L + K^T l, with the velocity before as the loops leave it.
+/// Checks M (v+ - v-) = J^T L + K^T l, where v- is the velocity that the loops leave.
 #[test]
 fn impulses_of_loops_balance_the_momentum() {
     let tied = tied_models(&mut Random::new(5));
@@ -72,7 +72,7 @@ fn impulses_of_loops_balance_the_momentum() {
         let mut random = Random::new(seed);
         let Some(mut state) = model.sustained(&mut random) else { continue };
         (state.scene.torque, state.scene.springs) = (Vec::new(), Vec::new());
-        // The base may move as it will without opening a loop.
+        // No velocity of the base opens a loop.
         state.velocity.iter_mut().take(2).for_each(|rate| *rate += random.between(-2.0, 0.5));
         let mut pipeline = Pipeline::new(&model.robot, Options::default());
         let mut outcomes = |state: &State| {
@@ -92,7 +92,7 @@ fn impulses_of_loops_balance_the_momentum() {
             let mut jump = outcome;
             jump.base_velocity_after = change(&jump.base_velocity_after, &before[0].base_velocity_after);
             jump.joint_velocity_after = change(&jump.joint_velocity_after, &before[0].joint_velocity_after);
-            // Of a jump that is only rounding no part is balanced.
+            // A jump that is only rounding does not balance.
             if jump.loop_impulse.iter().flatten().all(|own| own.length() < 1e-3) {
                 continue;
             }
@@ -104,7 +104,7 @@ fn impulses_of_loops_balance_the_momentum() {
     assert!(balanced > 50, "{balanced}");
 }
 
-/// A check that never fails checks nothing.
+/// The check must report impulses and an energy that are off by 3e-10.
 #[test]
 fn a_digit_that_is_off_is_found() {
     let models = models();

@@ -1,11 +1,11 @@
-//! From a robot's numbers and a state to the contact problem, by absolute poses and a dense mass matrix.
+//! The contact problem of a robot and a state, by absolute poses and a dense mass matrix.
 //!
 //! ```text
 //!     M = sum over bodies of m Jc^T Jc + I w^T w,    M = L D L^T,    Y = L^-1 J^T,    G = Y^T D^-1 Y
 //! ```
 //!
-//! Angles are summed before their cosine is taken, every velocity is that of a point in the world, and nothing is
-//! recursive but the poses.
+//! Angles are summed before their cosine is taken, every velocity is that of a point in the world, and only the poses
+//! are recursive.
 
 use crate::balls::loads::loads;
 use crate::balls::number::Number;
@@ -16,23 +16,23 @@ use heelstrike::robot::Robot;
 use heelstrike::state::{Ground, LinkPoint, NamedContact, State};
 use std::cmp::Ordering;
 
-/// What the contacts need to know; rows 2k (tangential) and 2k + 1 (normal) belong to contact k.
+/// The contact problem; rows 2k (tangential) and 2k + 1 (normal) belong to contact k.
 pub struct Problem<N> {
     /// G \[1/kg\].
     pub delassus: Vec<Vec<N>>,
-    /// Velocities that the contacts had if the ground gave no impulse \[m/s\].
+    /// Contact velocities without an impulse of the ground \[m/s\].
     pub free: Vec<N>,
     /// c_n- of each contact, before any applied impulse \[m/s\].
     pub approach: Vec<N>,
     pub friction: Vec<Friction>,
     pub restitution: Vec<f64>,
-    /// Of contacts that slide already, the mode that they slide on with; forces are asked for then.
+    /// For forces: the mode in which a contact that slides already slides on.
     pub slides: Vec<Option<Mode>>,
-    /// dq/dt before the impact, that of a stance included.
+    /// dq/dt before the impact, as a stance and loops determine it.
     pub velocity: Vec<N>,
-    /// What each row's impulse changes in dq/dt: the columns of M^-1 J^T; empty unless wanted.
+    /// Change of dq/dt per unit of each row's impulse: the columns of M^-1 J^T; empty unless asked for.
     pub responses: Vec<Vec<N>>,
-    /// (M^-1)_ii by coordinate, if wanted; zero of a braked one.
+    /// (M^-1)_ii by coordinate, zero for a braked one; all zero unless asked for.
     pub ease: Vec<N>,
     /// The precision of all numbers.
     pub bits: usize,
@@ -40,13 +40,13 @@ pub struct Problem<N> {
 
 /// A dense factorization M = L D L^T.
 struct Factor<N> {
-    /// Below the diagonal L, on it D.
+    /// L below the diagonal, D on it.
     rows: Vec<Vec<N>>,
     bits: usize,
 }
 
 impl<N: Number> Factor<N> {
-    /// `None` if a pivot is not positive for certain.
+    /// Factorizes M; `None` if a pivot is not certainly positive.
     fn new(mut rows: Vec<Vec<N>>, bits: usize) -> Option<Self> {
         for k in 0..rows.len() {
             let pivot = rows[k][k].clone();
@@ -91,7 +91,7 @@ impl<N: Number> Factor<N> {
         solved
     }
 
-    /// a D^-1 b.
+    /// a^T D^-1 b.
     fn product(&self, a: &[N], b: &[N]) -> N {
         let mut sum = N::new(0.0, self.bits);
         for (k, (a, b)) in a.iter().zip(b).enumerate() {
@@ -103,12 +103,12 @@ impl<N: Number> Factor<N> {
     }
 }
 
-/// What the equations of a state are made of.
+/// The terms of a state's equations.
 pub struct Terms<N> {
     pub poses: Vec<Pose<N>>,
-    /// The coordinates that move, those of braked joints left out.
+    /// The coordinates that move, without those of braked joints.
     pub free: Vec<usize>,
-    /// M of these.
+    /// The mass matrix of these coordinates, its lower triangle.
     pub mass_matrix: Vec<Vec<N>>,
     /// The ground's tangent and normal.
     pub axes: [Pair<N>; 2],
@@ -127,7 +127,7 @@ pub fn in_body<N: Number>(robot: &Robot, link: usize, offset: [f64; 3], bits: us
     })
 }
 
-/// The terms of a state at `position`; `None` of a ground that is not straight.
+/// The terms of a state at `position`; `None` if the ground is not straight.
 pub fn terms<N: Number>(robot: &Robot, state: &State, position: &[N], bits: usize) -> Option<Terms<N>> {
     let number = |value: f64| N::new(value, bits);
     let scene = &state.scene;
@@ -158,8 +158,8 @@ pub fn terms<N: Number>(robot: &Robot, state: &State, position: &[N], bits: usiz
         mass_matrix[at][at] = mass_matrix[at][at].plus(&rotor.times(&ratio).times(&ratio));
     }
 
-    // The ground's tangent and normal; uphill toward +x is a turn against the pitch. Of a profile, here of one segment,
-    // they are the rounded numbers that the product works with.
+    // The ground's tangent and normal. A positive slope, uphill toward +x, turns against the pitch. For a profile, here
+    // of one segment, they are the rounded numbers that the product uses.
     let [cos, sin] = match &scene.ground {
         Ground::Slope(slope) => number(*slope).cos_sin(),
         Ground::Profile(profile) => {
@@ -190,14 +190,14 @@ pub fn terms<N: Number>(robot: &Robot, state: &State, position: &[N], bits: usiz
     Some(Terms { poses, free, mass_matrix, axes, rows, loops })
 }
 
-/// The contact problem of a state whose contacts are named; `None` if the mass matrix is not positive for certain.
+/// The contact problem of a state with named contacts; `None` if the mass matrix is not certainly positive definite.
 ///
-/// A stance must name a link with one contact; those that are `resting` are exactly at rest, too.
+/// A stance must name a link with one contact. Its contact and those that are `resting` are exactly at rest.
 ///
-/// With `slips`, the signs of the contacts' sliding velocities, all have accelerations in place of velocities: those of
-/// points by second differences of their places on the way q + v t, and generalized forces body by body (d'Alembert).
+/// With `slips`, the signs of the contacts' sliding velocities, accelerations replace velocities: those of points by
+/// second differences of their positions along q + v t, and generalized forces body by body (d'Alembert).
 ///
-/// With what impulses do to dq/dt if `rates` are wanted.
+/// With `rates`, also computes how impulses change dq/dt.
 pub fn problem<N: Number>(
     robot: &Robot,
     state: &State,
@@ -221,8 +221,8 @@ pub fn problem<N: Number>(
     let mut velocity: Vec<N> = state.velocity.iter().copied().map(number).collect();
     let stance = scene.stance.and_then(|link| contacts.iter().position(|contact| contact.link == link));
     if let Some(stance) = stance {
-        // x and z go along the world's axes, so that the tangent's and normal's share are to be turned back; both are
-        // as long as the ground's axes, which a profile's rounding leaves not quite at one.
+        // The base moves along the world's axes, so the tangential and normal components are turned back. They are
+        // divided by the squared length of the ground's axes, which is not quite one for a rounded profile.
         let square = dot(axes[0].iter().zip(&axes[0]), bits);
         velocity[..2].fill(number(0.0));
         let [t, n] = rows[stance].each_ref().map(|row| dot(row.iter().zip(&velocity), bits).negative().over(&square));
@@ -230,7 +230,7 @@ pub fn problem<N: Number>(
             velocity[k] = axes[0][k].times(&t).plus(&axes[1][k].times(&n));
         }
     }
-    // The nearest velocity, by kinetic energy, that keeps the loops closed.
+    // The velocity becomes the nearest one, by kinetic energy, that keeps the loops closed.
     let openings: Vec<N> = loops.iter().map(|row| dot(row.iter().zip(&velocity), bits)).collect();
     for (tie, part) in ties.iter().zip(tied.backward(&tied.forward(&openings))) {
         for (&coordinate, entry) in free.iter().zip(factor.backward(tie)) {
@@ -265,7 +265,7 @@ pub fn problem<N: Number>(
     };
     let applied = factor.forward(&applied);
     let half: Vec<Vec<N>> = rows.iter().flatten().map(half).collect();
-    // What the loops take from each row, and what of their own motion they have to take.
+    // The coupling of each row to the loops, and the loops' own motion, by the factor of K M^-1 K^T.
     let held: Vec<Vec<N>> = half.iter().map(|row| tied.forward(&products(row))).collect();
     let pulled = products(&applied).iter().zip(&opening).map(|(own, opening)| own.plus(opening)).collect::<Vec<N>>();
     let pulled = tied.forward(&pulled);

@@ -1,4 +1,4 @@
-//! Linear equations and inequalities, with what is left free.
+//! Linear equations and inequalities with free variables.
 //!
 //! ```text
 //!     A x = b  -->  x = x0 + N s, by elimination with full pivoting;    is there an s with p + Q s >= 0 (or > 0)?
@@ -7,10 +7,10 @@
 use crate::balls::number::Number;
 use std::cmp::Ordering;
 
-/// When a number is zero.
+/// The rule by which a number counts as zero.
 #[derive(Debug, Clone, Copy)]
 pub struct Zero {
-    /// Whether this is the highest precision, where what is below 2^-150 of its scale counts as zero.
+    /// Whether this is the highest precision, at which numbers below 2^-150 of their scale count as zero.
     pub last: bool,
 }
 
@@ -18,14 +18,14 @@ pub struct Zero {
 const SMALL: f64 = 7.006492321624085e-46;
 
 impl Zero {
-    /// How `number` compares with zero; `None` if undecided.
+    /// `number` compared with zero; `None` if undecided.
     pub fn sign<N: Number>(self, number: &N, scale: f64) -> Option<Ordering> {
         let small = || self.last && number.size() < SMALL * scale;
         number.sign().or_else(|| small().then_some(Ordering::Equal))
     }
 }
 
-/// A number that depends on what is free: constant + sum of factors * s.
+/// An affine function of the free variables: constant + sum of factors * s.
 #[derive(Debug, Clone)]
 pub struct Affine<N> {
     pub constant: N,
@@ -33,7 +33,7 @@ pub struct Affine<N> {
 }
 
 impl<N: Number> Affine<N> {
-    /// A number on which the `free` ones have no effect.
+    /// A constant, with zero factors of the `free` variables.
     pub fn constant(constant: N, free: usize, bits: usize) -> Self {
         Self { constant, factors: vec![N::new(0.0, bits); free] }
     }
@@ -51,15 +51,15 @@ impl<N: Number> Affine<N> {
 
 /// All solutions of a system of equations.
 pub struct Solution<N> {
-    /// Every unknown.
+    /// The unknowns as functions of the free variables.
     pub values: Vec<Affine<N>>,
-    /// How many numbers are free; none in a regular system.
+    /// Number of free variables; zero in a regular system.
     pub free: usize,
     /// Sign of the determinant of a regular system.
     pub sign: i8,
 }
 
-/// What becomes of a system of equations.
+/// The result of solving a system of equations.
 pub enum Solved<N> {
     /// Not decided by this precision.
     Open,
@@ -67,7 +67,7 @@ pub enum Solved<N> {
     Solution(Solution<N>),
 }
 
-/// Solves the square system `rows` = [A | b] in `bits` bits; the scales are those of A and b.
+/// Solves the square system `rows` = [A | b] in `bits` bits; `scale` and `scale_right` are the scales of A and b.
 pub fn solve<N: Number>(mut rows: Vec<Vec<N>>, zero: Zero, scale: f64, scale_right: f64, bits: usize) -> Solved<N> {
     let n = rows.len();
     let mut columns: Vec<usize> = (0..n).collect();
@@ -143,18 +143,18 @@ pub fn solve<N: Number>(mut rows: Vec<Vec<N>>, zero: Zero, scale: f64, scale_rig
 #[derive(Debug, Clone)]
 pub struct Inequality<N> {
     pub value: Affine<N>,
-    /// The size of its constant; its factors have that of `scale / unit`.
+    /// The size of the constant; factors have the size `scale / unit`.
     pub scale: f64,
     pub strict: bool,
 }
 
-/// More inequalities than these are left open.
+/// The largest number of inequalities that is tested; more are left undecided.
 const MOST: usize = 4000;
 
-/// Whether some choice of the free numbers, each of size `unit`, satisfies all inequalities; `None` if undecided.
+/// Whether some choice of the free variables, each of size `unit`, satisfies all inequalities; `None` if undecided.
 ///
-/// Fourier and Motzkin: a number may be eliminated by adding each inequality that bounds it from below to each that
-/// bounds it from above.
+/// Fourier-Motzkin elimination: a variable is eliminated by adding each inequality that bounds it from below to each
+/// that bounds it from above.
 pub fn feasible<N: Number>(mut list: Vec<Inequality<N>>, zero: Zero, unit: f64) -> Option<bool> {
     let free = list.first().map_or(0, |first| first.value.factors.len());
     for _ in 0..free {

@@ -1,11 +1,11 @@
-//! What acts on a robot in sustained contact, and whether its motion and its forces balance.
+//! The loads on a robot in sustained contact, and whether its motion and its forces balance.
 //!
 //! ```text
 //!     h = torques + gravity - m J_com^T (d^2/dt^2 of the place on the way q + v t)      M a = h + J^T f + K^T l
 //! ```
 //!
-//! Accelerations are second differences of places, so that no term of velocities is written out; springs act by virtual
-//! work on the velocities of their points.
+//! Accelerations are second differences of positions, so that no velocity-dependent term is written out. Springs act by
+//! virtual work on the velocities of their points.
 
 use crate::balls::dynamics::{Terms, in_body, terms};
 use crate::balls::number::{Ball, Number};
@@ -16,15 +16,15 @@ use heelstrike::state::{LinkPoint, SpringEnd, State, VirtualSpring};
 
 /// Loads and accelerations while no coordinate accelerates.
 pub struct Loads<N> {
-    /// h by coordinate; of a floating base without what springs ask of it.
+    /// h by coordinate; on a floating base without the springs' part.
     pub forces: Vec<N>,
-    /// Of each contact's center, x and z.
+    /// Acceleration of each contact's center, x and z.
     pub drifts: Vec<Pair<N>>,
-    /// kappa, x and z of each loop.
+    /// kappa: the acceleration by which each loop opens, x and z.
     pub openings: Vec<N>,
 }
 
-/// Joint torques of a spring, by coordinate; nothing of a floating base.
+/// Joint torques of a spring, by coordinate; zero for a floating base.
 fn spring<N: Number>(
     robot: &Robot,
     VirtualSpring { a, b, laws }: &VirtualSpring,
@@ -35,7 +35,7 @@ fn spring<N: Number>(
     let number = |value: f64| N::new(value, bits);
     let base = robot.base_dofs();
     let still = || vec![[number(0.0), number(0.0)]; robot.dofs()];
-    // Place and pitch, and how they move with each coordinate.
+    // Position and pitch of an end, and their rates by coordinate.
     let end = |LinkPoint { link, offset }: LinkPoint| {
         let pose = &poses[robot.links()[link].body];
         let [x, z] = pose.point(&in_body(robot, link, offset, bits));
@@ -84,7 +84,7 @@ pub fn loads<N: Number>(
 ) -> Loads<N> {
     let number = |value: f64| N::new(value, bits);
     let scene = &state.scene;
-    // A third of the digits for the step: its square and what is left of the difference stay small.
+    // The step takes a third of the digits: its square and the rounding of the difference both stay small.
     let step = step::<N>(bits);
     let moved = |way: f64| {
         let shift = step.times(&number(way));
@@ -132,9 +132,10 @@ fn step<N: Number>(bits: usize) -> N {
     N::new(f64::exp2(-(bits as f64 / 3.0).floor()), bits)
 }
 
-/// How far the printed forces and accelerations of an `outcome` are from balance, as parts of the terms' size: of
-/// M a = h + J^T f + K^T l, each row by the root of its entry of M, and of d/dt of the kinetic energy against the power of all that acts, which is
-/// `None` if a brake may take some.
+/// The imbalance of the printed forces and accelerations of an `outcome`, relative to the size of the terms: first of M
+/// a = h + J^T f + K^T l, with each row divided by the root of its diagonal entry of M; then of the rate of kinetic
+/// energy against the power of all loads, the contacts' `power` included. The second is `None` if a brake may take
+/// power or nothing moves.
 pub fn imbalance(robot: &Robot, state: &State, outcome: &Outcome, power: f64) -> Option<(f64, Option<f64>)> {
     let bits = 256;
     let number = |value: f64| Ball::new(value, bits);
@@ -154,7 +155,7 @@ pub fn imbalance(robot: &Robot, state: &State, outcome: &Outcome, power: f64) ->
         let (sum, size) = terms
             .chain([forces[coordinate].clone()])
             .fold((number(0.0), 0.0), |(sum, size), term| (sum.plus(&term), size + term.size()));
-        // Free of units.
+        // The division makes rows comparable, whatever their units.
         let inertia = mass(i).size().sqrt();
         (worst, largest) = (worst.max(sum.size() / inertia), largest.max(size / inertia));
         work += size * velocity[coordinate].size();
@@ -162,7 +163,7 @@ pub fn imbalance(robot: &Robot, state: &State, outcome: &Outcome, power: f64) ->
     if !state.scene.braked.is_empty() || work == 0.0 {
         return Some((worst / largest, None));
     }
-    // A stencil of three points: its error is step^2 of the next derivatives, a fifty-first of all digits.
+    // A central difference: its error is step^2 = 2^-170 = 1e-51 of the next derivatives.
     let step = step::<Ball>(bits);
     let energy = |way: f64| {
         let time = step.times(&number(way));

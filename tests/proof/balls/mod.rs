@@ -1,11 +1,10 @@
-//! What the product calls proven, against an oracle in balls of 256 bits and more: what is checked with more digits
-//! than f64 has belongs here.
+//! Proven answers against an oracle in balls of 256 bits and more. Checks with more digits than f64 belong here.
 //!
-//! The oracle (`poses`, `dynamics`, `loads`, `oracle`, `number`) shares no code with the product: absolute poses, a dense mass matrix,
-//! one linear solve per list of modes. It takes from the library only the numbers of the reduced robot and of the
-//! state.
+//! The oracle (`poses`, `dynamics`, `loads`, `oracle`, `number`) shares no code with the product: absolute poses, a
+//! dense mass matrix, one linear solve per combination of modes. From the library it takes only the numbers of the
+//! reduced robot and of the state.
 //!
-//! A million states, a third of them next to a border:
+//! To check a million states, a third of them next to a border:
 //!
 //! ```text
 //!     HEELSTRIKE_STATES=1000000 cargo test --release --test proof -- --nocapture states_are_decided_rightly
@@ -40,7 +39,7 @@ fn states_are_decided_rightly() {
         let answered = number - unknown - refused;
         assert!(proven * 1000 >= answered * 999, "{proven} of {answered} {kind} states proven");
     }
-    // A state without an answer shows nothing, so few of them may lack one.
+    // A state without an answer tests nothing, so few may lack one.
     let (count, void) = (census.all("number"), census.all("unknown") + census.all("refused"));
     assert!(void * 200 <= count, "{void} states without an answer");
     let [near, random] = ["near", "random"].map(|kind| census.count(kind, "number"));
@@ -49,7 +48,7 @@ fn states_are_decided_rightly() {
     assert!(several * 50 >= random, "{several} of {random} have several outcomes");
 }
 
-/// Robots of all forms, which no file has.
+/// Random trees have forms that no robot file has.
 #[test]
 fn states_of_random_trees_are_decided_rightly() {
     let trees: Vec<_> = (0..40).map(|seed| states::tree(&mut Random::new(seed))).collect();
@@ -59,13 +58,13 @@ fn states_of_random_trees_are_decided_rightly() {
     assert!(number >= 1_200 && proven * 100 >= number * 98, "{proven} of {number} states proven");
 }
 
-/// The number in an environment variable.
+/// The number in an environment variable, or the default.
 pub fn environment<T: std::str::FromStr>(name: &str, default: T) -> T {
     let value = std::env::var(name).ok();
     value.map_or(default, |value| value.parse().unwrap_or_else(|_| panic!("{name} is no number: {value}")))
 }
 
-/// A check that never fails checks nothing.
+/// The comparison must report a wrong mode, a missing outcome and a wrong index.
 #[test]
 fn a_mistake_is_found() {
     let mut seen = [0; 3];
@@ -83,7 +82,7 @@ fn a_mistake_is_found() {
             let mode = &mut mistakes[0].outcomes[0].modes[0];
             *mode = if *mode == Mode::Separate { Mode::Stick } else { Mode::Separate };
             mistakes[1].outcomes.pop();
-            // Where contacts depend on each other the index is not compared.
+            // The index of redundant contacts is not compared.
             if answer.outcomes.iter().all(|outcome| outcome.index != Index::Redundant) {
                 let mut turned = right.clone();
                 turned.outcomes[0].index = Some(turned.outcomes[0].index.map_or(1, |index| -index));
@@ -97,7 +96,7 @@ fn a_mistake_is_found() {
                 assert!(matches!(compare(&answer, &mistake), Finding::Wrong(_)), "{mistake:?}");
                 *count += 1;
             }
-            // One proven outcome that is none is wrong, even where the list is not said to be complete.
+            // A proven outcome that does not exist is wrong even if the list of outcomes is undecided.
             let mut single = right.clone();
             single.proven = false;
             single.verdict = Verdict::Undecided;

@@ -1,36 +1,36 @@
-//! The numbers of the oracle: balls of any precision, and f64 to look for borders with.
+//! The oracle's arithmetic: balls of any precision, and f64 to look for borders.
 
 use astro_float_num::{BigFloat, Consts, RoundingMode, Sign};
 use std::cell::RefCell;
 use std::cmp::Ordering;
 
-/// What the oracle calculates with.
+/// A number that the oracle calculates with.
 pub trait Number: Clone {
-    /// Exactly `value`, to be calculated with in `bits` bits.
+    /// The exact `value`; operations on it round to `bits` bits.
     fn new(value: f64, bits: usize) -> Self;
     fn plus(&self, other: &Self) -> Self;
     fn times(&self, other: &Self) -> Self;
-    /// The quotient; `other` must have a sign.
+    /// The quotient; the sign of `other` must be known and not zero.
     fn over(&self, other: &Self) -> Self;
     fn negative(&self) -> Self;
     /// Cosine and sine of an angle \[rad\].
     fn cos_sin(&self) -> [Self; 2];
-    /// How it compares with zero; `None` if that is not known.
+    /// The number compared with zero; `None` if that is not known.
     fn sign(&self) -> Option<Ordering>;
-    /// No less than its magnitude, and where it has a sign at most twice that.
+    /// An upper bound on the magnitude, at most twice the magnitude if the sign is known.
     fn size(&self) -> f64;
 
     fn minus(&self, other: &Self) -> Self {
         self.plus(&other.negative())
     }
 
-    /// Whether it is zero for certain.
+    /// Whether the number is certainly zero.
     fn is_zero(&self) -> bool {
         self.sign() == Some(Ordering::Equal)
     }
 }
 
-/// f64 without any bound: what it says of a sign is a guess.
+/// f64 without error bounds: its signs are guesses.
 impl Number for f64 {
     fn new(value: f64, _: usize) -> Self {
         value
@@ -73,16 +73,16 @@ pub struct Ball {
     bits: usize,
 }
 
-/// More than the rounding of the few f64 operations that one radius takes: 2^-46, 64 times that of one.
+/// Factor above the rounding of the few f64 operations that compute a radius: 2^-46, 64 times that of one operation.
 const INFLATION: f64 = 1.0 + 64.0 * f64::EPSILON;
 
 impl Ball {
-    /// `mid` known to `radius`, which was added up in f64, and its own rounding.
+    /// The ball about `mid` with this `radius`, which was added up in f64, and with the rounding of `mid` itself.
     fn rounded(mid: BigFloat, radius: f64, bits: usize) -> Self {
-        // One unit in the last place, twice what rounding to nearest may do, is magnitude * 2^(1 - bits); once more
-        // twice that costs two bits of hundreds, and need not rely on how well the crate rounds.
+        // One unit in the last place is magnitude * 2^(1 - bits), twice the error of rounding to nearest. Doubling it
+        // once more costs two bits of hundreds, and makes no assumption about the rounding of the crate.
         let radius = radius + magnitude(&mid) * power_of_two(2 - bits as i32);
-        // The least normal number covers what underflow took away.
+        // The smallest normal number covers underflow.
         let radius = if radius == 0.0 && mid.is_zero() { 0.0 } else { radius * INFLATION + f64::MIN_POSITIVE };
         Self { mid, radius, bits }
     }
@@ -92,18 +92,18 @@ impl Ball {
     }
 }
 
-/// No less than |value|, and above it by a few units of f64 at most; infinite where it is none.
+/// An upper bound on |value|, larger by a few units of f64 at most; infinite if the value is not finite.
 fn magnitude(value: &BigFloat) -> f64 {
     if value.is_zero() {
         return 0.0;
     }
     let Some((words, _, _, exponent, _)) = value.as_raw_parts() else { return f64::INFINITY };
-    // The value is 0.m * 2^exponent, m led by the last word.
+    // The value is 0.m * 2^exponent, where the last word leads m.
     let lead = words.last().copied().unwrap_or(u64::MAX) as f64 * power_of_two(-64);
     lead * INFLATION * power_of_two(exponent)
 }
 
-/// 2^exponent, no less where that lies below the normal numbers, infinite where above.
+/// 2^exponent, raised to the smallest normal number, and infinite beyond the largest power of two.
 fn power_of_two(exponent: i32) -> f64 {
     match exponent {
         ..-1022 => f64::MIN_POSITIVE,
@@ -142,7 +142,7 @@ impl Number for Ball {
             return self.clone();
         }
         let mid = self.mid.div(&other.mid, self.bits, RoundingMode::ToEven);
-        // |a/b - a'/b'| <= (ra + |a/b| rb) / (|b| - rb), with |b| from below.
+        // |a/b - a'/b'| <= (ra + |a/b| rb) / (|b| - rb), with a lower bound of |b|.
         let below = magnitude(&other.mid) / (INFLATION * INFLATION) - other.radius * INFLATION;
         let rounding = magnitude(&mid) * power_of_two(2 - self.bits as i32);
         let quotient = magnitude(&mid) + rounding;
@@ -157,7 +157,7 @@ impl Number for Ball {
 
     fn cos_sin(&self) -> [Self; 2] {
         thread_local! {
-            /// Digits of pi that the crate keeps.
+            /// The crate's cache of digits of pi.
             static CONSTANTS: RefCell<Consts> = RefCell::new(Consts::new().expect("memory for a few constants"));
         }
         if self.is_exact_zero() {
@@ -166,7 +166,7 @@ impl Number for Ball {
         CONSTANTS.with_borrow_mut(|constants| {
             let cos = self.mid.cos(self.bits, RoundingMode::ToEven, constants);
             let sin = self.mid.sin(self.bits, RoundingMode::ToEven, constants);
-            // Neither changes faster than its angle.
+            // Cosine and sine change no faster than their angle.
             [cos, sin].map(|mid| Self::rounded(mid, self.radius, self.bits))
         })
     }

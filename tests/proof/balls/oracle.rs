@@ -1,9 +1,9 @@
-//! Every outcome of a state, by one dense linear solve for each of the 4^n lists of modes, in balls.
+//! Every outcome of a state, by one dense linear solve in balls for each of the 4^n combinations of modes.
 //!
-//! A contact that separates has no unknown, one that slides one (L_n, or with infinite friction L_t), one that sticks
-//! two (one at friction 0). Where 256 bits leave a sign open it is tried with 832; a number that these hold below
-//! 2^-150 of its scale is taken for zero, and the state for one on a border. Where that makes equations dependent, the
-//! impulses that are left free are eliminated from the inequalities one by one (Fourier and Motzkin).
+//! A separating contact has no unknown, a sliding one has one (L_n, or L_t at infinite friction), a sticking one has
+//! two (one at friction 0). A sign that 256 bits leave open is tried with 832 bits; a number that is then bounded below
+//! 2^-150 of its scale counts as zero, and its state as on a border. If equations depend on each other, the free
+//! impulses are eliminated from the inequalities one by one (Fourier-Motzkin).
 
 use crate::balls::dynamics::{Problem, problem};
 use crate::balls::linear::{Affine, Inequality, Solution, Solved, Zero, feasible, solve};
@@ -24,13 +24,13 @@ pub struct Outcome {
     pub index: Index,
 }
 
-/// The sign of det A, where it has one.
+/// The sign of det A, if it has one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Index {
     Sign(i8),
     /// An inequality is zero.
     Border,
-    /// Contacts depend on each other, so that det A = 0.
+    /// Contacts are redundant, so that det A = 0.
     Redundant,
 }
 
@@ -39,21 +39,23 @@ pub enum Index {
 pub struct Answer {
     /// Every outcome, in the order of its modes.
     pub outcomes: Vec<Outcome>,
-    /// Lists of modes that no precision decided: whole families of velocities, or many free impulses.
+    /// Number of combinations that no precision decided: families, or many free impulses.
     pub open: usize,
-    /// Whether the equations of some list depend on each other: then no outcome need exist, nor their indices add up.
+    /// Whether the equations of some combination depend on each other. Then there need not be an outcome, and indices
+    /// need not sum to one.
     pub dependent: bool,
-    /// The precision that it took.
+    /// The precision that was needed.
     pub bits: usize,
 }
 
-/// Every outcome of the contacts that the state names, some of them `resting`; `None` if the mass matrix is singular.
+/// Every outcome of the state's named contacts, of which the `resting` ones are exactly at rest; `None` if the mass
+/// matrix is singular.
 pub fn answer(robot: &Robot, state: &State, resting: &[bool]) -> Option<Answer> {
     answer_about(robot, state, resting, None)
 }
 
-/// Every set of forces of the contacts that the state names, which slide with these signs; `None` if the mass matrix is
-/// singular.
+/// Every outcome in sustained contact of the state's named contacts, which slide with these signs; `None` if the mass
+/// matrix is singular.
 pub fn forces(robot: &Robot, state: &State, slips: &[Ordering]) -> Option<Answer> {
     answer_about(robot, state, &[], Some(slips))
 }
@@ -93,7 +95,7 @@ fn answer_about(robot: &Robot, state: &State, resting: &[bool], slips: Option<&[
     None
 }
 
-/// The lists of modes that f64 takes for outcomes; nothing is proven by them.
+/// The combinations that are outcomes in f64, without any proof.
 pub fn guess(robot: &Robot, state: &State) -> Vec<Vec<Mode>> {
     let Some(problem) = problem::<f64>(robot, state, &[], None, 0, false) else { return Vec::new() };
     let mut lists = lists(problem.friction.len());
@@ -101,8 +103,8 @@ pub fn guess(robot: &Robot, state: &State) -> Vec<Vec<Mode>> {
     lists
 }
 
-/// The numbers of an outcome with these modes, of a state without applied impulses, or of forces with `slips` (base and
-/// joints are then those before); `None` if its equations depend on each other.
+/// The numbers of the outcome with these modes, for a state without applied impulses. With `slips` they are those of
+/// forces, and the rates of base and joints start from those before. `None` if the equations depend on each other.
 pub fn truth(robot: &Robot, state: &State, slips: Option<&[Ordering]>, modes: &[Mode]) -> Option<Truth> {
     let bits = BITS[BITS.len() - 1];
     let problem = problem::<Ball>(robot, state, &[], slips, bits, true)?;
@@ -130,7 +132,7 @@ pub fn truth(robot: &Robot, state: &State, slips: Option<&[Ordering]>, modes: &[
     }
     let work = impulse.iter().zip(problem.free.iter().zip(&after)).map(|(l, (c, after))| l.times(&c.plus(after)));
     let loss = work.fold(Ball::new(0.0, bits), |sum, work| sum.plus(&work)).times(&Ball::new(-0.5, bits));
-    // What 832 bits leave of zero.
+    // A number that 832 bits do not distinguish from zero becomes 0.
     let number = |ball: &Ball, scale: f64| match zero.sign(ball, scale) {
         Some(Ordering::Greater) => ball.size(),
         Some(Ordering::Less) => -ball.size(),
@@ -141,7 +143,8 @@ pub fn truth(robot: &Robot, state: &State, slips: Option<&[Ordering]>, modes: &[
     let push = speed / mobility;
     let pushes: Vec<[f64; 2]> = pairs(&impulse, push);
     let diagonal: Vec<Ball> = (0..resting.len()).map(|row| problem.delassus[row][row].clone()).collect();
-    // What the impulses can do to a coordinate, however they point: |(M^-1 J^T)_jr| <= sqrt((M^-1)_jj G_rr).
+    // An upper bound on what the impulses do to a coordinate, whatever their signs: |(M^-1 J^T)_jr| <= sqrt((M^-1)_jj
+    // G_rr).
     let pressed: f64 = (0..resting.len()).map(|r| impulse[r].size() * problem.delassus[r][r].size().sqrt()).sum();
     let rates = (0..problem.velocity.len()).map(|coordinate| {
         let parts = problem.responses.iter().zip(&impulse).map(|(response, l)| response[coordinate].times(l));
@@ -162,30 +165,30 @@ pub fn truth(robot: &Robot, state: &State, slips: Option<&[Ordering]>, modes: &[
     })
 }
 
-/// All 4^n lists of modes.
+/// All 4^n combinations of modes.
 fn lists(contacts: usize) -> Vec<Vec<Mode>> {
     let modes = |number: usize| (0..contacts).map(|k| Mode::ALL[number >> (2 * k) & 3]).collect();
     (0..1 << (2 * contacts)).map(modes).collect()
 }
 
-/// What a list of modes comes to.
+/// What is decided about a combination of modes.
 enum Judgment {
     Outcome(Index),
     None,
-    /// No outcome, of equations that depend on each other.
+    /// No outcome, and the equations depend on each other.
     Dependent,
     /// Not decided by this precision.
     Open,
 }
 
-/// An entry of L, or L_n of a slide, which brings L_t = slope * L_n with it.
+/// An unknown entry of L; the L_n of a sliding contact also determines L_t = slope * L_n.
 struct Unknown<N> {
     row: usize,
     slope: Option<N>,
 }
 
 impl<N: Number> Unknown<N> {
-    /// What one unit of it adds to a contact velocity.
+    /// What one unit of the unknown adds to the contact velocity of a row.
     fn effect(&self, problem: &Problem<N>, row: usize) -> N {
         let entry = &problem.delassus[row][self.row];
         match &self.slope {
@@ -203,8 +206,8 @@ enum Comparison {
     Zero,
 }
 
-/// The unknowns and equations (rows of c+) of a list of modes, and the sign of what putting in the known impulses takes
-/// from det A.
+/// The unknowns and equations (rows of c+) of a combination, and the sign that det A changes by when the known impulses
+/// are substituted.
 fn equations<N: Number>(problem: &Problem<N>, modes: &[Mode]) -> (Vec<Unknown<N>>, Vec<usize>, i8) {
     let (mut unknowns, mut equations, mut index) = (Vec::new(), Vec::new(), 1);
     let single = |row| Unknown { row, slope: None };
@@ -256,7 +259,7 @@ fn resting<N: Number>(problem: &Problem<N>, zero: Zero, scale: f64) -> Option<Ve
     problem.free.iter().enumerate().map(row).collect()
 }
 
-/// Solves the equations of `modes` and tests their strict inequalities.
+/// Solves the equations of `modes` and tests their inequalities.
 fn judge<N: Number>(problem: &Problem<N>, modes: &[Mode], zero: Zero) -> Judgment {
     let bits = problem.bits;
     let speed = largest(problem.free.iter());
@@ -308,11 +311,11 @@ fn judge<N: Number>(problem: &Problem<N>, modes: &[Mode], zero: Zero) -> Judgmen
     let speeds = |(k, &mode): (usize, &Mode)| match mode {
         Mode::Separate => Some((velocity(2 * k + 1), Comparison::Positive)),
         Mode::Stick => problem.friction[k].is_zero().then(|| (velocity(2 * k), Comparison::Zero)),
-        // One that slides already may be slowed or sped up.
+        // A contact that slides already may slow down or speed up.
         _ if problem.slides[k].is_some() => None,
         _ => Some((velocity(2 * k).times(&number(mode.direction())), Comparison::Positive)),
     };
-    // Impulses first: most lists fail by them, and velocities cost more.
+    // Impulses come first: most combinations fail by them, and velocities cost more.
     let pushes = modes.iter().enumerate().flat_map(pushes).map(|value| (value, push, Comparison::NotNegative));
     let speeds = modes.iter().enumerate().filter_map(speeds).map(|(value, comparison)| (value, speed, comparison));
     let (mut open, mut border) = (false, false);
@@ -340,7 +343,7 @@ fn judge<N: Number>(problem: &Problem<N>, modes: &[Mode], zero: Zero) -> Judgmen
             (false, false) => Judgment::Outcome(Index::Sign(index * solution.sign)),
         };
     }
-    // Where what is free changes a velocity, every value of it is an outcome of its own.
+    // If free variables change a velocity, every value of them is an outcome of its own: a family.
     let family = || {
         let moved = |row: usize| velocity(row).factors.iter().any(|f| zero.sign(f, mobility) != Some(Ordering::Equal));
         (0..resting.len()).any(moved)

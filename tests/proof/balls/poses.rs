@@ -1,4 +1,4 @@
-//! Where bodies are and how their points move, by absolute angles and velocities of points in the world.
+//! Poses of bodies and velocities of their points, by absolute angles and in the axes of the world.
 
 use crate::balls::number::Number;
 use heelstrike::robot::{Axis, MimicJoint, ParentJoint, Robot};
@@ -6,7 +6,7 @@ use heelstrike::robot::{Axis, MimicJoint, ParentJoint, Robot};
 /// A pair in the plane, [forward, up].
 pub type Pair<N> = [N; 2];
 
-/// A body's place in the world; velocities of its origin and rates of its angle are by coordinate, which moves at one.
+/// A body's pose in the world. Velocities of its origin and rates of its angle are per unit rate of each coordinate.
 #[derive(Clone)]
 pub struct Pose<N> {
     pub angle: N,
@@ -27,7 +27,7 @@ impl<N: Number> Pose<N> {
         add(&self.origin, &self.axes(local))
     }
 
-    /// Velocities of a point of the body.
+    /// Velocities of a point of the body, per unit rate of each coordinate.
     pub fn velocities(&self, point: &Pair<N>) -> Vec<Pair<N>> {
         let [x, z] = [0, 1].map(|k| point[k].minus(&self.origin[k]));
         let velocity =
@@ -40,7 +40,7 @@ pub fn add<N: Number>(a: &Pair<N>, b: &Pair<N>) -> Pair<N> {
     [a[0].plus(&b[0]), a[1].plus(&b[1])]
 }
 
-/// Sum of products, where zeros cost nothing.
+/// The sum of products; zeros are skipped.
 pub fn dot<'a, N: Number + 'a>(pairs: impl IntoIterator<Item = (&'a N, &'a N)>, bits: usize) -> N {
     let mut sum = N::new(0.0, bits);
     for (a, b) in pairs {
@@ -51,7 +51,7 @@ pub fn dot<'a, N: Number + 'a>(pairs: impl IntoIterator<Item = (&'a N, &'a N)>, 
     sum
 }
 
-/// Where every body is; the root's origin lies at zero, since only differences of points count.
+/// The poses of all bodies. The root's origin is at zero, because only differences of points count.
 pub fn poses<N: Number>(robot: &Robot, position: &[N], bits: usize) -> Vec<Pose<N>> {
     let number = |value: f64| N::new(value, bits);
     let base = robot.base_dofs();
@@ -70,7 +70,7 @@ pub fn poses<N: Number>(robot: &Robot, position: &[N], bits: usize) -> Vec<Pose<
                 Pose { turn: angle.cos_sin(), angle, origin, velocities, rates }
             }
             Some(mover) => {
-                // The joint with its axis, and the coordinate that moves it, by a factor and with an offset.
+                // The joint's parent and origin, and if it moves its axis, coordinate and [multiplier, offset].
                 let (parent, origin, moves) = match mover {
                     ParentJoint::Joint(index) => {
                         let joint = &robot.joints()[index];

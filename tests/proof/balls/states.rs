@@ -1,4 +1,4 @@
-//! Random states of several robots, seeded, and states a wanted distance from a border.
+//! Seeded random states of several robots, and states at chosen distances from a border.
 
 use crate::balls::oracle;
 use crate::support::command::read;
@@ -19,16 +19,16 @@ pub struct Model {
     pub name: &'static str,
     pub robot: Robot,
     feet: Vec<NamedContact>,
-    /// How many of them touch in most states.
+    /// How many feet touch in most states.
     touching: usize,
-    /// The most that may touch, so that no contact depends on others.
+    /// How many feet touch at most, so that contacts are not redundant by their number.
     most: usize,
-    /// Points that stay together, and how a pose is changed so that they do.
+    /// The robot's loops, and a function that changes a pose so that they are closed.
     loops: Vec<NamedLoop>,
     closing: fn(&mut [f64]),
 }
 
-/// A robot with prismatic joints that lean, which none of the files has.
+/// A robot with prismatic joints, one of them inclined, which no robot file has.
 fn telescope() -> String {
     urdf::robot(&[
         urdf::link("torso", 5.0, [0.02, 0.1], 0.07, ""),
@@ -41,7 +41,7 @@ fn telescope() -> String {
     ])
 }
 
-/// A chain of so many links with masses of 1e-4 to 1e4 kg, which points of some of them strike.
+/// A chain of `length` links with masses of 1e-4 to 1e4 kg; points of three links may touch.
 pub fn chain(length: usize, random: &mut Random) -> Model {
     let links = (0..length).map(|link| {
         let mass = random.decades(-4.0, 4.0);
@@ -53,7 +53,7 @@ pub fn chain(length: usize, random: &mut Random) -> Model {
     Model { most: 3, ..Model::new("chain", &urdf::robot(&parts), 2, &feet) }
 }
 
-/// A tree of two to seven links, on revolute and prismatic joints; points of all links strike, two at a time.
+/// A random tree of two to seven links on revolute and prismatic joints; one point per link may touch, two at a time.
 pub fn tree(random: &mut Random) -> Model {
     let point = |random: &mut Random| [random.between(-1.0, 1.0), random.between(-1.0, 1.0)];
     let (mut parts, mut feet) = (Vec::new(), Vec::new());
@@ -75,7 +75,7 @@ fn joint(parent: usize, link: usize, axis: Axis, origin: [f64; 2]) -> String {
     urdf::joint(format!("joint_{link}"), axis, [&ends[0], &ends[1]], origin, "")
 }
 
-/// A body whose left knee follows its hip and whose right telescope follows its hip, and a toe that follows twice.
+/// A robot with mimic joints: the left knee and ankle follow the left hip, and the right slide follows the right hip.
 fn follower() -> String {
     let mimic = |joint: &str, multiplier: f64, offset: f64| {
         format!("<mimic joint=\"{joint}\" multiplier=\"{multiplier}\" offset=\"{offset}\"/>")
@@ -99,10 +99,10 @@ fn follower() -> String {
     ])
 }
 
-/// Both knees of the leg of five bars such that the ends of its shanks are one point, ahead of the hips or behind.
+/// Sets both knees of the five-bar leg such that the ends of its shanks coincide, ahead of the hips or behind them.
 fn close_five_bars(q: &mut [f64]) {
     let [hips, thigh, shank] = [0.2, 0.4, 0.5];
-    // Both hips so far apart that the shanks reach each other.
+    // Smaller hip angles, so that the shanks reach each other.
     let [left, right] = [3, 5].map(|hip| 0.6 * q[hip]);
     let knee = |hip: f64, x: f64| [x - thigh * hip.sin(), -thigh * hip.cos()];
     let [a, b] = [knee(left, -0.5 * hips), knee(right, 0.5 * hips)];
@@ -110,14 +110,14 @@ fn close_five_bars(q: &mut [f64]) {
     let apart = f64::hypot(x, z);
     let rise = (shank * shank - 0.25 * apart * apart).max(0.0).sqrt() / apart;
     let end = [0.5 * (a[0] + b[0]) + rise * z, 0.5 * (a[1] + b[1]) - rise * x];
-    // A bar that hangs down at zero is turned by atan2(-x, -z).
+    // A bar that hangs down at zero points along (x, z) at the angle atan2(-x, -z).
     let turned = |from: [f64; 2], hip: f64| f64::atan2(from[0] - end[0], from[1] - end[1]) - hip;
     (q[3], q[5]) = (left, right);
     (q[4], q[6]) = (turned(a, left), turned(b, right));
 }
 
-/// Robots with mimic joints, with a loop, on a fixed base, and chains of random masses, one of which is solved by
-/// articulated bodies alone, for states in sustained contact.
+/// Robots for states in sustained contact: with a loop, with mimic joints, on a fixed base, and two chains of random
+/// masses, one of which is solved by articulated bodies alone.
 pub fn tied_models(random: &mut Random) -> Vec<Model> {
     let feet =
         [("left_shank", [0.0, 0.0, -0.5], 0.0), ("torso", [-0.3, 0.0, 0.0], 0.05), ("torso", [0.2, 0.0, 0.3], 0.0)];
@@ -137,7 +137,8 @@ pub fn tied_models(random: &mut Random) -> Vec<Model> {
 pub fn models() -> Vec<Model> {
     let model = |name, urdf: &str, touching, feet: &[(&str, [f64; 3], f64)]| {
         let model = Model::new(name, urdf, touching, feet);
-        // With more rows than coordinates contacts depend on each other; of that only what two flat feet bring.
+        // More contact rows than coordinates make contacts redundant; that is left to the robots with `touching` such
+        // contacts.
         let most = if touching > 2 { touching } else { feet.len().min(model.robot.dofs() / 2).max(touching) };
         Model { most, ..model }
     };
@@ -152,7 +153,7 @@ pub fn models() -> Vec<Model> {
     let leaning = [round[0], round[1], ("torso", [0.05, 0.0, 0.2], 0.04)];
     let shins = [("right_shin", end(0.4), 0.0), ("left_shin", end(0.4), 0.0), ("torso", end(0.48), 0.0)];
     let wheels = [("left_wheel_tire", end(0.0), 0.05), ("right_wheel_tire", end(0.0), 0.05)];
-    // A body that stands on two corners, and has three ways to move for their four rows.
+    // A body that stands on two corners: four contact rows for three coordinates.
     let sled = urdf::robot(&[urdf::link("sled", 3.0, [0.1, 0.2], 0.05, "")]);
     let corners = [("sled", [0.4, 0.0, 0.0], 0.0), ("sled", [-0.3, 0.0, 0.0], 0.0)];
     let slides = [("left_foot", end(-0.2), 0.02), ("right_foot", end(-0.5), 0.0), ("torso", [0.2, 0.0, 0.3], 0.0)];
@@ -171,7 +172,6 @@ pub fn models() -> Vec<Model> {
     ]
 }
 
-/// Choices of real numbers.
 impl Random {
     /// 10 to a power from `low` to `high`.
     fn decades(&mut self, low: f64, high: f64) -> f64 {
@@ -180,7 +180,7 @@ impl Random {
 }
 
 impl Model {
-    /// A robot with these points of links for feet, of which `touching` touch.
+    /// A robot with these points of links as feet, of which `touching` touch in most states.
     fn new(name: &'static str, urdf: &str, touching: usize, feet: &[(impl AsRef<str>, [f64; 3], f64)]) -> Self {
         let robot = Robot::from_urdf(urdf).unwrap_or_else(|error| panic!("{name}: {error}"));
         let link = |link: &str| robot.link(link).unwrap_or_else(|| panic!("{name} has no link {link}"));
@@ -193,7 +193,7 @@ impl Model {
         Self { name, robot, feet, touching, most: touching, loops: Vec::new(), closing: |_| {} }
     }
 
-    /// A state with one to four of the robot's feet as contacts.
+    /// A random state with one to four of the robot's feet as contacts.
     pub fn random(&self, random: &mut Random) -> State {
         let dofs = self.robot.dofs();
         let base = self.robot.base_dofs();
@@ -202,9 +202,9 @@ impl Model {
             velocity: (0..dofs).map(|_| random.between(-2.0, 2.0)).collect(),
             ..State::default()
         };
-        // Most impacts are struck from above, else most of them end with the feet in the air.
+        // Most states move downward; otherwise most impacts would end with the feet in the air.
         state.velocity[1] -= random.between(0.0, 3.0);
-        // Joints at rest make contacts of equal velocity, straight legs make matrices that are nearly singular.
+        // Joints at rest give contacts equal velocities; straight legs give nearly singular matrices.
         if random.once_in(3) {
             state.velocity.iter_mut().for_each(|rate| {
                 if random.once_in(2) {
@@ -214,7 +214,8 @@ impl Model {
         }
         if random.once_in(8) && dofs > base {
             let joint = random.whole(base as i64, dofs as i64 - 1) as usize;
-            // The feet of a walker with a hip alone would be one, and its legs of point masses one without inertia.
+            // A walker with only a hip is not quite straightened: its feet would coincide, and its legs of point masses
+            // would have no inertia as one.
             let straight = if self.robot.joints().len() == 1 { [1e-4, 1e-2] } else { [0.0, 1e-9] };
             state.position[joint] = random.pick(&straight);
         }
@@ -222,7 +223,7 @@ impl Model {
         state
     }
 
-    /// A state in sustained contact, and with torques; `None` if its contacts depend on each other.
+    /// A random state in sustained contact, with torques; `None` if its contacts are redundant while they move.
     pub fn sustained(&self, random: &mut Random) -> Option<State> {
         let mut state = self.random(random);
         state.scene.impulses.clear();
@@ -238,7 +239,7 @@ impl Model {
             state.velocity.fill(0.0);
             return Some(state);
         }
-        // Where every contact goes for a unit rate of each coordinate, those of braked joints, too.
+        // The contact Jacobian, with the columns of braked joints.
         let options = Options { matrices: true, ..Options::default() };
         let ends = self.loops.iter().flat_map(|own| [own.a, own.b]);
         let ends = ends.map(|LinkPoint { link, offset }| NamedContact { link, offset, radius: 0.0 });
@@ -250,7 +251,7 @@ impl Model {
         };
         let mut rows = rows_of(contacts.to_vec(), state.scene.ground.clone())?;
         let ties = rows_of(ends.collect(), Ground::default())?;
-        // All normal velocities are taken out, and some of those along the ground.
+        // All normal velocities and a third of the tangential ones are removed.
         let mut wanted: Vec<usize> = (0..rows.len()).filter(|at| at % 2 == 1 || random.once_in(3)).collect();
         for ends in ties.chunks(4) {
             for axis in 0..2 {
@@ -313,7 +314,7 @@ impl Model {
         links.sort_unstable();
         links.dedup();
         let by_link = links.iter().map(|&link| (link, alike.unwrap_or_else(|| friction(random)))).collect();
-        // A link stands on the lowest of its contacts; with one there is no question which that is.
+        // A stance is the lowest contact of its link, so only a link with a single contact is chosen.
         let alone = contacts.iter().filter(|contact| contact.link == contacts[0].link).count() == 1;
         let mut scene = Scene {
             friction: ByLink { default: None, links: by_link },
@@ -343,7 +344,7 @@ impl Model {
     }
 }
 
-/// None, little, the usual, much, or infinite friction.
+/// Zero, small, usual, large, or infinite friction.
 fn friction(random: &mut Random) -> Friction {
     match random.whole(0, 9) {
         0 => Friction::ZERO,
@@ -354,12 +355,12 @@ fn friction(random: &mut Random) -> Friction {
     }
 }
 
-/// A number of a state that a line in the space of states changes.
+/// A number of a state that varies along a line in the space of states.
 #[derive(Debug, Clone, Copy)]
 enum Parameter {
     Position(usize),
     Velocity(usize),
-    /// Of one of the links.
+    /// Friction of this link.
     Friction(usize),
 }
 
@@ -368,7 +369,7 @@ impl Parameter {
         let floating = robot.base_dofs() == 3;
         let finite = |(&link, &mu): (&usize, &Friction)| matches!(mu, Friction::Finite(mu) if mu > 0.0).then_some(link);
         let finite: Vec<usize> = state.scene.friction.links.iter().filter_map(finite).collect();
-        // The base's x and z lead nowhere, and with a stance nor do their rates.
+        // The base's x and z change no outcome, and with a stance their rates change none either.
         let dofs = robot.dofs() as i64 - 1;
         match random.whole(0, 2) {
             0 if !finite.is_empty() => Self::Friction(random.pick(&finite)),
@@ -401,8 +402,8 @@ impl Parameter {
     }
 }
 
-/// States next to one border: both neighboring f64 between which the outcomes change, and one further off on either
-/// side, 1e-15 to 1e-6 of the parameter away.
+/// States next to one border: the two neighboring f64 values of a parameter between which the outcomes change, and a
+/// value farther off on either side, 1e-15 to 1e-6 of the parameter away.
 pub fn beside_a_border(model: &Model, random: &mut Random) -> [State; 4] {
     let mut pipeline = Pipeline::new(&model.robot, Options::default());
     loop {
@@ -416,8 +417,8 @@ pub fn beside_a_border(model: &Model, random: &mut Random) -> [State; 4] {
         let guess = |value: f64| oracle::guess(&model.robot, &parameter.with(&state, value));
         let Some(guessed) = bisect(start, far, guess) else { continue };
         let modes = |value: f64| modes(model, &parameter.with(&state, value));
-        // The product is quicker to find the place. It counts only where the oracle's outcomes change, and where the
-        // product sees no such place, the oracle seeks it.
+        // The product finds the place faster. The place counts only if the oracle's outcomes change there; otherwise
+        // the oracle searches for one.
         let mut found = |value: f64| {
             let analysis = pipeline.impact(&parameter.with(&state, value)).ok()?.into_analysis().ok()?;
             Some(analysis.outcomes.into_iter().map(|outcome| outcome.modes).collect::<Vec<_>>())
@@ -459,11 +460,11 @@ fn bisect<T: PartialEq>(mut a: f64, mut b: f64, mut property: impl FnMut(f64) ->
     }
 }
 
-/// Two numbers about `guessed` that `property` distinguishes: what f64 guesses is off by its rounding.
+/// Two numbers around `guessed`, which is off by the rounding of f64, that `property` distinguishes.
 fn widen<T: PartialEq>([a, b]: [f64; 2], mut property: impl FnMut(f64) -> T) -> Option<[f64; 2]> {
     let mut reach = b - a;
     let (mut low, mut high) = (a, b);
-    // 4^20 units in the last place are 1e-4 of the number; what f64 guesses is not as wrong.
+    // 4^20 units in the last place are 1e-4 of the number, more than the error of a guess in f64.
     for _ in 0..20 {
         if property(low) != property(high) {
             return Some([low, high]);

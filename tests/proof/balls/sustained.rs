@@ -1,11 +1,11 @@
-//! States in sustained contact: at rest, or with the normal velocities taken out of random ones; with torques, virtual
-//! springs, held and mimic joints, and loops.
+//! States in sustained contact: at rest, or moving without the normal velocities; with torques, virtual springs, held
+//! and mimic joints, and loops.
 //!
 //! ```text
 //!     HEELSTRIKE_STATES=1000000 cargo test --release --test proof -- --nocapture forces_are_decided_rightly
 //! ```
 //!
-//! takes a tenth as many states.
+//! checks a tenth of that number of states.
 
 use super::{dynamics, environment, loads, oracle, states};
 use crate::balls::census::{Finding, compare};
@@ -20,9 +20,9 @@ use heelstrike::impact::Mode;
 use heelstrike::pipeline::{Options, Pipeline, Sustained};
 use heelstrike::state::State;
 
-/// What is counted of states: answered, proven, undecided, and without an answer of the oracle; with contacts that
-/// slide, loops, mimic joints, springs, held joints; without an outcome, with one and with several; rows and sums of
-/// power that were balanced, and outcomes whose digits were compared.
+/// Counts of states: answered, proven, undecided, and without an answer of the oracle; with sliding contacts, loops,
+/// mimic joints, springs, held joints; without an outcome, with one and with several. Then counts of outcomes: with
+/// balanced rows, with a balanced power, and with compared digits.
 const COLUMNS: [&str; 15] = [
     "seen", "proven", "open", "unknown", "slides", "loops", "mimics", "springs", "held", "none", "unique", "several",
     "rows", "powers", "digits",
@@ -57,7 +57,7 @@ fn check(model: &Model, random: &mut Random) -> [u64; COLUMNS.len()] {
             && let Some(truth) = oracle::truth(&model.robot, &state, Some(slips), &outcome.modes)
         {
             let fail = |difference: String| panic!("{difference}, {}", place());
-            // Of forces it is a power, which the balance holds.
+            // For forces `energy_loss` is a power, which the balance above has checked.
             let truth = Truth { energy_loss: outcome.energy_loss, ..truth };
             truth.check(outcome, &frictions(&state)).unwrap_or_else(fail);
             digits += 1;
@@ -85,7 +85,7 @@ fn check(model: &Model, random: &mut Random) -> [u64; COLUMNS.len()] {
     ]
 }
 
-/// The accelerations in f64 are within the bounds of their rounding, and these are of use.
+/// Checks that the accelerations in f64 are within the bounds of their rounding, and near the exact ones.
 fn check_rounding(
     model: &Model,
     state: &State,
@@ -100,7 +100,7 @@ fn check_rounding(
     for ((&own, exact), &bound) in own.iter().zip(&exact.free).zip(found.rounding.as_flattened()) {
         let off = exact.minus(&Ball::new(own, 256)).size();
         assert!(off <= bound, "{own} is off by {off:e}, more than {bound:e}; {}", place());
-        // In f64 it has lost the condition of M: straight legs leave eight digits, chains of all masses five.
+        // f64 loses digits by the condition of M: straight legs leave eight digits, chains of unequal masses five.
         let allowed = if model.name == "chain" { 1e-3 } else { 1e-6 };
         assert!(off < allowed * size, "{own} is off by {off:e}; {}", place());
     }

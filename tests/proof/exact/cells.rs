@@ -1,15 +1,15 @@
-//! The cells of a contact problem in exact arithmetic: for every list of modes all velocities that have it.
+//! The cells of a contact problem in exact arithmetic. A cell has all velocities of one combination of modes.
 //!
-//! Impulses of a list of modes form a polyhedron. The double description method (Motzkin and others 1953; Fukuda and
-//! Prodon 1996) turns its inequalities into vertices, rays and lines, one inequality after the other; the velocities
-//! are the hull of the vertices'.
+//! The impulses of a combination form a polyhedron. The double description method (Motzkin and others 1953; Fukuda and
+//! Prodon 1996) turns its inequalities into vertices, rays and lines, one inequality after the other. The cell is the
+//! convex hull of the velocities of the vertices.
 
 use super::enumeration::Problem;
 use crate::support::rational::{dot, rank, ratio, times};
 use dashu_ratio::RBig;
 use heelstrike::impact::Mode;
 
-/// All velocities of one list of modes: a convex set.
+/// All velocities of one combination of modes: a convex set.
 #[derive(Debug)]
 pub struct Cell {
     pub modes: Vec<Mode>,
@@ -36,7 +36,7 @@ fn cell(problem: &Problem, modes: Vec<Mode>) -> Option<Cell> {
         Mode::SlidePlus => velocity[2 * k] > RBig::ZERO,
         Mode::SlideMinus => velocity[2 * k] < RBig::ZERO,
     };
-    // The middle of all vertices is inside of what is not closed by all of them.
+    // The mean of all vertices satisfies a strict inequality if at least one vertex does.
     let inside = (0..modes.len()).all(|k| velocities.iter().any(|velocity| strict(&modes, velocity, k)));
     if velocities.is_empty() || !inside {
         return None;
@@ -54,7 +54,7 @@ fn cell(problem: &Problem, modes: Vec<Mode>) -> Option<Cell> {
     Some(Cell { modes, dimension: rank(&differences), corners: extreme(velocities) })
 }
 
-/// xi_n of a contact.
+/// xi_n = c_n+ + e min(c_n-, 0) of contact `k`.
 fn gap_speed(problem: &Problem, velocity: &[RBig], k: usize) -> RBig {
     let before = &problem.velocity_before[2 * k + 1];
     &velocity[2 * k + 1] + &problem.restitution[k] * before.clone().min(RBig::ZERO)
@@ -71,13 +71,14 @@ pub fn modes_of(problem: &Problem, velocity: &[RBig]) -> Vec<Mode> {
     (0..problem.friction.len()).map(mode).collect()
 }
 
-/// Whether the equations of the modes have a solution, and whether one satisfies the closed inequalities.
+/// Whether the equations of the modes have a solution, and whether a solution satisfies the inequalities, zero
+/// included.
 pub fn is_solvable(problem: &Problem, modes: &[Mode]) -> [bool; 2] {
     let impulses = Impulses::of(problem, modes);
     [true, false].map(|equations_alone| !impulses.generators(&[], equations_alone).vertices.is_empty())
 }
 
-/// Least and greatest of every impulse's entry with these modes and this velocity; `None` if it has no bound.
+/// Least and greatest value of each impulse entry with these modes and this velocity; `None` if there is no bound.
 pub fn impulse_range(problem: &Problem, modes: &[Mode], velocity: &[RBig]) -> Vec<[Option<RBig>; 2]> {
     let impulses = Impulses::of(problem, modes);
     let generators = impulses.generators(velocity, false);
@@ -92,11 +93,11 @@ pub fn impulse_range(problem: &Problem, modes: &[Mode], velocity: &[RBig]) -> Ve
     (0..velocity.len()).map(entry).collect()
 }
 
-/// The impulses of a list of modes, by unknowns: both entries of a contact that sticks, one of a contact that slides.
+/// The impulses of a combination as functions of unknowns: two for a sticking contact, one for a sliding contact.
 struct Impulses<'a> {
     problem: &'a Problem,
     modes: &'a [Mode],
-    /// The row and the entry of L that each unknown stands for.
+    /// For each unknown, the rows of L that it enters, and its factors there.
     unknowns: Vec<Vec<(usize, RBig)>>,
 }
 
@@ -129,11 +130,11 @@ impl<'a> Impulses<'a> {
         self.problem.velocity_before.iter().zip(gained).map(|(before, gained)| before + gained).collect()
     }
 
-    /// All impulses that the modes allow, of this velocity if it is given; inequalities of velocities closed, or
-    /// left out.
+    /// All impulses that the modes allow, with this velocity if it is not empty. Strict inequalities include zero;
+    /// `equations_alone` leaves all inequalities out.
     fn generators(&self, velocity: &[RBig], equations_alone: bool) -> Generators {
         let Self { problem, modes, unknowns } = self;
-        // Rows on the unknowns and one: coefficients, constant.
+        // A row of c+: the coefficients of the unknowns, then the constant.
         let row = |row: usize| -> Vec<RBig> {
             let along = |entries: &Vec<(usize, RBig)>| {
                 entries.iter().fold(RBig::ZERO, |sum, (column, entry)| sum + entry * &problem.delassus[row][*column])
@@ -190,17 +191,17 @@ impl<'a> Impulses<'a> {
     }
 }
 
-/// A polyhedron as all sums of a mean of vertices, multiples of lines and multiples from zero on of rays.
+/// A polyhedron: the convex hull of vertices, plus nonnegative multiples of rays, plus multiples of lines.
 struct Generators {
     vertices: Vec<Vec<RBig>>,
     rays: Vec<Vec<RBig>>,
     lines: Vec<Vec<RBig>>,
 }
 
-/// All sums of multiples of lines and of multiples from zero on of rays, none of which the others replace.
+/// All sums of multiples of lines and nonnegative multiples of rays; no generator is redundant.
 struct Cone {
     lines: Vec<Vec<RBig>>,
-    /// Each with the inequalities, by number, that are zero on it.
+    /// Each ray with the set of inequalities that are zero on it, a bit for each.
     rays: Vec<(Vec<RBig>, u128)>,
     inequalities: u32,
 }
@@ -211,7 +212,7 @@ impl Cone {
         Self { lines: (0..dimension).map(unit).collect(), rays: Vec::new(), inequalities: 0 }
     }
 
-    /// Leaves those points on which `row` is not negative, or zero.
+    /// Restricts the cone to points on which `row` is nonnegative, or zero if `to_zero`.
     fn restrict(&mut self, row: &[RBig], to_zero: bool) {
         let own = 1 << self.inequalities;
         self.inequalities += 1;
@@ -260,7 +261,7 @@ impl Cone {
         self.rays = kept;
     }
 
-    /// The polyhedron of those points whose last entry is one.
+    /// The polyhedron of the points whose last entry is one.
     fn generators(self) -> Generators {
         let mut found = Generators { vertices: Vec::new(), rays: Vec::new(), lines: self.lines };
         for (mut ray, _) in self.rays {
@@ -275,16 +276,16 @@ impl Cone {
     }
 }
 
-/// The ray with one as the size of its first entry.
+/// The ray, scaled so that its first nonzero entry has the magnitude one.
 fn shortened(ray: Vec<RBig>) -> Vec<RBig> {
     let Some(first) = ray.iter().find(|entry| !entry.is_zero()).cloned() else { return ray };
     let size = if first < RBig::ZERO { -first } else { first };
     ray.into_iter().map(|entry| entry / &size).collect()
 }
 
-/// Those points that are no mean of the others.
+/// The points that are no convex combination of the others.
 fn extreme(points: Vec<Vec<RBig>>) -> Vec<Vec<RBig>> {
-    // A functional that is not negative on the points is a facet, or zero on all of them.
+    // An extreme functional that is nonnegative on the points is a facet; lines are zero on all points.
     let lifted: Vec<Vec<RBig>> = points.iter().map(|point| [&point[..], &[RBig::ONE]].concat()).collect();
     let mut functionals = Cone::whole(lifted[0].len());
     lifted.iter().for_each(|point| functionals.restrict(point, false));

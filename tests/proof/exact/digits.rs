@@ -1,4 +1,4 @@
-//! Every printed number of an outcome as the exact one, and those of a flat foot in closed form.
+//! Exact values of every printed number of an outcome, and those of a flat foot in closed form.
 
 use super::enumeration::{Combination, Problem};
 use super::numbers;
@@ -19,7 +19,7 @@ pub fn power(exponent: i64) -> RBig {
     exact((exponent as f64).exp2())
 }
 
-/// 1e-12 to 1e12.
+/// A random coefficient from 1e-12 to 1e12.
 pub fn coefficient(random: &mut Random) -> f64 {
     10_f64.powf(random.between(-12.0, 12.0))
 }
@@ -49,11 +49,12 @@ pub fn truth(problem: &Problem, combination: &Combination) -> Truth {
     }
 }
 
-/// A flat foot of one body that two contacts stop. Its normal impulses are unique, its tangential ones have a sum.
+/// A body with a flat foot that two sticking contacts stop. The normal impulses are unique; of the tangential ones only
+/// the sum is.
 struct FlatFoot {
     mass: RBig,
     moment: RBig,
-    /// Height of the centre of mass.
+    /// Height of the center of mass.
     height: RBig,
     places: [RBig; 2],
     /// x, z, pitch.
@@ -69,7 +70,7 @@ impl FlatFoot {
         let friction = [first, if equal { first } else { coefficient(random) }];
         let [mass, moment] = [0, 1].map(|_| power(random.whole(-20, 20)));
         let (height, places) = (eighths(random, 1), [-eighths(random, 1), eighths(random, 1)]);
-        // Impulses that the cones admit, and the velocity that they stop, as f64 holds it.
+        // Impulses within the friction cones, and the velocity that they stop, rounded to f64.
         let pressed = [0, 1].map(|_| eighths(random, 1) * power(random.whole(-10, 10)));
         let most = to_f64(&pressed[0]) * friction[0] + to_f64(&pressed[1]) * friction[1];
         let along = exact(most * random.between(-1.0, 1.0));
@@ -102,7 +103,7 @@ impl FlatFoot {
 fn digits_of_a_flat_foot_are_right() {
     let [compared, clipped] = total(environment("HEELSTRIKE_PROBLEMS", 2_000), |seed| {
         let foot = FlatFoot::random(&mut Random::new(seed));
-        // M v + J^T L = 0.
+        // The foot stops: M v + J^T L = 0.
         let along = -&foot.mass * &foot.velocity[0];
         let down = -&foot.mass * &foot.velocity[1];
         let torque = &foot.moment * &foot.velocity[2] - &foot.height * &along;
@@ -110,7 +111,7 @@ fn digits_of_a_flat_foot_are_right() {
         let pressed = [&down - &second, second];
         let mu = foot.friction.map(exact);
         let cones = [&mu[0] * &pressed[0], &mu[1] * &pressed[1]];
-        // Where rounding has moved it beyond its cones, the foot does not stick.
+        // The foot does not stick if the rounding of its velocity has moved the impulses out of the cones.
         let size = along.clone().max(-along.clone());
         if pressed.iter().any(|n| *n <= RBig::ZERO) || size > &cones[0] + &cones[1] {
             return [0; 2];
@@ -152,7 +153,7 @@ fn digits_of_a_flat_foot_are_right() {
         }
         truth.check(&found, &foot.friction.map(Friction::Finite)).unwrap_or_else(|difference| fail(difference));
         let printed = found.impulse_range.clone().unwrap_or_default();
-        // On the edge of both cones no impulse is free.
+        // No range is printed on the edge of both cones, where the impulses are unique.
         for (own, entries) in printed.iter().enumerate() {
             let [low, high] = ranges[own].each_ref().map(to_f64);
             let scale = low.abs().max(high.abs());

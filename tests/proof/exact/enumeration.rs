@@ -1,4 +1,4 @@
-//! All outcomes of a contact problem in exact arithmetic, one list of modes after the other.
+//! All outcomes of a contact problem in exact arithmetic, one combination of modes after the other.
 
 use crate::support::rational::{Matrix, common_denominator, cramer, quotient, rank, sign, to_f64, whole};
 use dashu_base::Abs;
@@ -6,7 +6,7 @@ use dashu_int::{IBig, UBig};
 use dashu_ratio::RBig;
 use heelstrike::impact::Mode;
 
-/// Coulomb's coefficient; none stands for infinite friction.
+/// Coefficient of Coulomb friction; `None` stands for infinite friction.
 pub type Friction = Option<RBig>;
 
 /// G, c-, mu and e; contact k has the rows 2k (tangential) and 2k + 1 (normal).
@@ -18,7 +18,7 @@ pub struct Problem {
     pub restitution: Vec<RBig>,
 }
 
-/// What one list of modes comes to.
+/// One combination of modes with its solution.
 #[derive(Debug, Clone)]
 pub struct Combination {
     pub modes: Vec<Mode>,
@@ -26,7 +26,7 @@ pub struct Combination {
     pub valid: bool,
     /// Sign of det A.
     pub index: i8,
-    /// Smallest slack, as the design defines it.
+    /// The margin: the smallest slack.
     pub margin: f64,
     pub impulse: Quotients,
     pub velocity_after: Quotients,
@@ -46,14 +46,14 @@ impl Quotients {
     }
 }
 
-/// All 4^n lists of modes.
+/// The results of all 4^n combinations of modes.
 #[derive(Debug, Clone)]
 pub struct Enumeration {
-    /// Those with det A != 0, valid or not.
+    /// The combinations with det A != 0, valid or not.
     pub combinations: Vec<Combination>,
-    /// Number of lists with det A = 0 whose equations contradict each other: no outcome.
+    /// Number of combinations with det A = 0 whose equations contradict each other: no outcome.
     pub contradictory: usize,
-    /// Number of lists with det A = 0 that have infinitely many solutions; a border.
+    /// Number of combinations with det A = 0 that have infinitely many solutions; a border.
     pub dependent: usize,
 }
 
@@ -62,9 +62,9 @@ impl Enumeration {
         self.combinations.iter().filter(|combination| combination.valid)
     }
 
-    /// Distance of the whole case from the nearest border: the least |margin| of all lists.
+    /// Distance of the whole case from the nearest border: the least |margin| of all combinations.
     pub fn clearance(&self) -> f64 {
-        // Nothing moves before the impact: no slack has a size.
+        // If nothing moves before the impact, slacks have no scale and margins are not finite.
         if self.dependent > 0 || self.combinations.iter().any(|combination| !combination.margin.is_finite()) {
             return 0.0;
         }
@@ -72,7 +72,7 @@ impl Enumeration {
     }
 }
 
-/// Tries every list of modes. G must be regular.
+/// Tries every combination of modes. G must be regular.
 pub fn enumerate(problem: &Problem) -> Enumeration {
     let contacts = problem.friction.len();
     let scaled = Scaled::new(problem);
@@ -100,9 +100,9 @@ struct Scaled {
     scale: UBig,
     delassus: Vec<Vec<IBig>>,
     before: Vec<IBig>,
-    /// scale * e min(c_n-, 0) = bounce / bounce_scale.
+    /// Pairs (bounce, bounce_scale) with scale * e min(c_n-, 0) = bounce / bounce_scale.
     bounce: Vec<(IBig, IBig)>,
-    /// mu = .0 / .1; (1, 0) where it is infinite.
+    /// mu as numerator and denominator; (1, 0) if it is infinite.
     friction: Vec<(IBig, IBig)>,
     /// sqrt(G_ii).
     root: Vec<f64>,
@@ -172,7 +172,7 @@ impl Scaled {
 
     /// Tests the inequalities of the modes on the solution L = numerators / determinant.
     fn judge(&self, modes: Vec<Mode>, determinant: IBig, numerators: Vec<IBig>) -> Combination {
-        // From here on one positive denominator for all.
+        // From here on all numbers have one positive denominator.
         let index = sign(&determinant);
         let turn = |x: IBig| if index < 0 { -x } else { x };
         let impulse: Vec<IBig> = numerators.into_iter().map(turn).collect();
@@ -191,7 +191,7 @@ impl Scaled {
 
         let mut valid = true;
         let mut margin = f64::INFINITY;
-        // An inequality numerator / below > 0, or >= 0 where not strict; `size` frees it of units.
+        // The inequality numerator / below > 0, or >= 0 if it is not strict; `size` makes its slack free of units.
         let mut require = |strict: bool, numerator: IBig, below: &IBig, size: f64| {
             valid &= if strict { sign(&numerator) > 0 } else { sign(&numerator) >= 0 };
             margin = margin.min(quotient(&numerator, below) / size);

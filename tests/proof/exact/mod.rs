@@ -1,6 +1,6 @@
-//! The crate against the exact oracle of this folder: what is compared with rational arithmetic belongs here.
+//! The crate against the exact oracle of this folder. Comparisons with rational arithmetic belong here.
 //!
-//! 16,000,000 problems of contacts that do not depend on each other:
+//! To check 16,000,000 problems whose contacts are not redundant:
 //!
 //! ```text
 //!     HEELSTRIKE_PROBLEMS=16000000 cargo test --release --test proof -- --nocapture matrices_have_exact_outcomes
@@ -43,15 +43,15 @@ fn analyze(problem: &Problem) -> Analysis {
     analysis.unwrap_or_else(|error| panic!("{error}\n{problem:?}"))
 }
 
-/// No slack of the problems is nearer to zero than this but exact zeros and what is put beside borders.
+/// A problem counts as next to a border if its least |margin| is smaller than this, but not zero.
 const CLEAR: f64 = 1e-9;
 
-/// What is counted of problems: compared, with several outcomes, on a border, next to one, undecided; then outcomes whose
-/// digits were compared, those with sliding, and those that are marked as not proven.
+/// Counts of problems: compared, with several outcomes, on a border, next to a border, undecided. Then counts of
+/// outcomes: with compared digits, those of them with sliding, and those that are not proven.
 type Counts = [u64; 8];
 
-/// Compares the crate's answer with all exact outcomes: modes, verdict, indices, margins, and every number by its own
-/// scale.
+/// Compares the crate's answer with all exact outcomes: modes, verdict, indices, margins, and every number relative to
+/// its scale.
 fn compare(problem: &Problem) -> Result<Counts, String> {
     let all = enumerate(problem);
     // With det A = 0 and more than one solution the exact oracle does not say which is admissible.
@@ -76,7 +76,7 @@ fn compare(problem: &Problem) -> Result<Counts, String> {
     if analysis.verdict != right {
         return Err(format!("verdict {}, not {right}", analysis.verdict));
     }
-    // Without any velocity no slack has a size, and all are zero.
+    // Without any velocity slacks have no scale, and all are zero.
     let clear = |outcome: &Combination| outcome.margin > 0.0 && outcome.margin.is_finite();
     let clearance = all.clearance();
     let frictions: Vec<impact::Friction> = problem.friction.iter().map(rounded).collect();
@@ -85,7 +85,7 @@ fn compare(problem: &Problem) -> Result<Counts, String> {
         [1, is(exact.len() > 1), is(!all.outcomes().all(clear)), is(clearance > 0.0 && clearance < CLEAR), 0, 0, 0, 0];
     for (exact, found) in exact.values().zip(found.values()) {
         let place = |difference: String| format!("{:?}: {difference}", exact.modes);
-        // Near borders the oracle has no slack for L_t = 0 at friction 0, and so no index.
+        // At friction 0 the oracle has no slack for L_t = 0, so that it has no index near borders.
         let is_told = clearance >= CLEAR || !problem.friction.contains(&Some(RBig::ZERO));
         let index = clear(exact).then_some(exact.index);
         if is_told && found.index != index {
@@ -115,7 +115,7 @@ fn delassus(random: &mut Random, contacts: usize, most: i64) -> Option<rational:
     (rational::rank(&delassus) == rows).then_some(delassus)
 }
 
-/// Up to four contacts in small numbers, the smallest of which give zeros in G and in the pivots of an elimination.
+/// One to four contacts in small numbers, the smallest of which give zeros in G and in the pivots of an elimination.
 fn of_small_numbers(random: &mut Random) -> Option<Problem> {
     let contacts = random.whole(1, 4) as usize;
     let most = random.pick(&[1, 2, 5]);
@@ -128,7 +128,7 @@ fn of_small_numbers(random: &mut Random) -> Option<Problem> {
     })
 }
 
-/// Up to four contacts, with mass ratios up to 1e12, speeds of many sizes, and no, any or infinite friction.
+/// One to four contacts with mass ratios up to 1e12, speeds of many sizes, and zero, finite or infinite friction.
 fn of_all_sizes(random: &mut Random) -> Option<Problem> {
     let contacts = random.whole(1, 4) as usize;
     let mut delassus = delassus(random, contacts, 5)?;
@@ -158,21 +158,21 @@ fn of_all_sizes(random: &mut Random) -> Option<Problem> {
     })
 }
 
-/// A problem with a known outcome that lies on borders, by c- = c+ - G L in numbers that f64 holds: some contacts leave
-/// at no speed, rest without a load, need all of their friction, or slide at no speed. In two of three problems one
-/// number is then off by 2^-1 to 2^-52 of itself. `None` if G is singular.
+/// A problem with a known outcome that lies on borders: c- = c+ - G L, in numbers that f64 holds exactly. Some contacts
+/// separate at zero speed, stick without a load, need all of their friction, or slide at zero speed. In two of three
+/// problems one number is then changed by 2^-1 to 2^-52 of itself. `None` if G is singular.
 fn beside_borders(random: &mut Random) -> Option<Problem> {
     let contacts = random.whole(1, 3) as usize;
     let delassus = delassus(random, contacts, 3)?;
     let frictions = [Some(ratio(0, 1)), Some(ratio(1, 4)), Some(ratio(1, 1)), Some(ratio(3, 1)), None];
     let mut friction: Vec<Friction> = (0..contacts).map(|_| random.pick(&frictions)).collect();
     let restitution: Vec<RBig> = (0..contacts).map(|_| ratio(random.pick(&[0, 0, 0, 1]), 1)).collect();
-    // [t, n] of impulse and of (c_t, xi_n) after.
+    // The impulses L and the velocities (c_t+, xi_n), each tangential then normal.
     let (mut impulse, mut after) = (Vec::new(), Vec::new());
     for mu in &friction {
         let load = ratio(random.whole(0, 4), 2);
         let side = ratio(random.pick(&[-1, 1]), 1);
-        // At infinite friction a load bears any push, and a slide has none.
+        // At infinite friction a loaded contact bears any tangential impulse, and a sliding one has no load.
         let edge = mu.as_ref().map_or_else(|| ratio(random.whole(0, 4), 2), |mu| mu * &load);
         let zero = || ratio(0, 1);
         let (l, c) = match random.whole(0, 3) {
@@ -191,13 +191,13 @@ fn beside_borders(random: &mut Random) -> Option<Problem> {
         after.iter().zip(rational::times(&delassus, &impulse)).map(|(after, change)| after - change).collect();
     for (contact, e) in restitution.iter().enumerate() {
         let normal = &mut velocity_before[2 * contact + 1];
-        // xi_n counts an approach 1 + e times.
+        // xi_n contains an approach velocity 1 + e times.
         if *normal < RBig::ZERO {
             *normal = &*normal / (ratio(1, 1) + e);
         }
     }
     let off = RBig::ONE + ratio(random.pick(&[-1, 1]), 1 << random.whole(1, 52));
-    // As f64 holds it: what is compared is what the library is given.
+    // Rounded to f64, because the library is given the rounded number.
     let pushed = |value: &RBig| RBig::try_from(to_f64(&(value * &off))).expect("a finite number");
     match random.whole(0, 2) {
         0 => {}
@@ -213,7 +213,8 @@ fn beside_borders(random: &mut Random) -> Option<Problem> {
     Some(Problem { delassus, velocity_before, friction, restitution })
 }
 
-/// Two contacts whose rows differ only in the last digits of the diagonal and of the velocities, and perhaps a third one.
+/// Two contacts whose rows differ only in the last digits of the diagonal and of the velocities; some problems have a
+/// third one.
 fn nearly_dependent(random: &mut Random) -> Option<Problem> {
     let (contacts, last) = (random.whole(2, 3) as usize, -random.whole(30, 48));
     let mut delassus = delassus(random, contacts, 2)?;
@@ -237,7 +238,7 @@ fn nearly_dependent(random: &mut Random) -> Option<Problem> {
     Some(Problem { delassus, velocity_before, friction, restitution: vec![RBig::ZERO; contacts] })
 }
 
-/// Matrices that are given are exact, so that a sign of theirs may stay undecided but not be wrong, however small.
+/// Given matrices count as exact, so a sign may stay undecided but must not be wrong, however small its number.
 #[test]
 fn matrices_have_exact_outcomes() {
     type Draw = fn(&mut Random) -> Option<Problem>;
@@ -250,7 +251,7 @@ fn matrices_have_exact_outcomes() {
     for (name, draw, share, least) in cases {
         let counts = total(environment("HEELSTRIKE_PROBLEMS", 8_000) * share / 4, |seed| {
             let Some(problem) = draw(&mut Random::new(seed)) else { return [0; 8] };
-            // One of four contacts takes the oracle as long as seven of three.
+            // A problem of four contacts takes the oracle as long as seven of three contacts.
             if problem.friction.len() == 4 && seed % 3 > 0 {
                 return [0; 8];
             }
@@ -265,7 +266,7 @@ fn matrices_have_exact_outcomes() {
     }
 }
 
-/// As `heelstrike solve` reads it.
+/// The problem as `heelstrike solve` reads it.
 fn solve_json(problem: &Problem) -> serde_json::Value {
     let friction = |friction: &Friction| friction.as_ref().map_or("infinite".into(), |mu| to_f64(mu).into());
     serde_json::json!({

@@ -19,7 +19,7 @@ use heelstrike::impact::{
 };
 use std::collections::BTreeSet;
 
-/// A contact problem by its mass matrix, contact Jacobian and velocity, so that the crate knows its redundancy.
+/// A contact problem given by mass matrix, contact Jacobian and velocity, so that the crate knows its redundancy.
 struct Mechanism {
     masses: Vec<RBig>,
     jacobian: Matrix,
@@ -38,7 +38,7 @@ impl Mechanism {
         let ratio_of_masses = random.pick(&[1.0, 4.0, 1e4, 1e8, 1e12]);
         let mass = |random: &mut Random| exact(random.pick(&[1.0, 1.0, 2.0, ratio_of_masses]));
         let (masses, jacobian): (Vec<RBig>, Vec<Vec<i64>>) = match random.whole(0, 3) {
-            // Any rows, many of them dependent.
+            // Arbitrary rows, many of them dependent.
             0 | 1 => {
                 let freedoms = random.whole(1, (2 * contacts).min(4)) as usize;
                 let entry = |random: &mut Random| random.pick(&[0, 0, 0, 1, -1, 2, -2]);
@@ -53,7 +53,8 @@ impl Mechanism {
                 let rows = supports.iter().flat_map(|&[x, z]| [vec![1, 0, -z], vec![0, 1, x]]).collect();
                 ((0..3).map(|_| mass(random)).collect(), rows)
             }
-            // Bodies apart from each other, in some of which friction loads the contact as much as it brakes it.
+            // Separate bodies with one contact each; in some of them friction loads the contact as much as it brakes
+            // it.
             _ => {
                 let freedoms = 3 * contacts as usize;
                 let mut rows = vec![vec![0; freedoms]; 2 * contacts as usize];
@@ -99,7 +100,7 @@ impl Mechanism {
     }
 }
 
-/// What was compared.
+/// Numbers of compared cells of one velocity, families, families of two dimensions and more, and corners.
 #[derive(Default)]
 struct Tally {
     isolated: u64,
@@ -108,11 +109,11 @@ struct Tally {
     corners: u64,
 }
 
-/// Compares an analysis with all exact cells, or says what differs.
+/// Compares an analysis with all exact cells. Returns an error that describes the first difference.
 fn compare(problem: &Problem, cells: &[Cell], analysis: &Analysis) -> Result<Tally, String> {
     let outcomes = &analysis.outcomes;
     let mut tally = Tally::default();
-    // Every list of modes is a cell of one velocity, a family or rejected.
+    // Every combination is a cell of one velocity, a family or rejected.
     let isolated = || cells.iter().filter(|cell| cell.dimension == 0);
     let many = || cells.iter().filter(|cell| cell.dimension > 0);
     let lists = |cells: &mut dyn Iterator<Item = &Cell>| -> BTreeSet<(Vec<Mode>, usize)> {
@@ -142,14 +143,15 @@ fn compare(problem: &Problem, cells: &[Cell], analysis: &Analysis) -> Result<Tal
             _ => [true, true],
         };
         let is = is_solvable(problem, modes);
-        // What is violated without the second equation of a contact that sticks without friction is named as well.
+        // A combination without a solution may be called violated if it has none only because of the second equation of
+        // a contact that sticks without friction.
         let frictionless = |(mode, mu): (&Mode, &Friction)| *mode == Mode::Stick && *mu == Some(RBig::ZERO);
         let is_named = is == [false; 2] && right == [true, false];
         if is != right && !(is_named && modes.iter().zip(&problem.friction).any(frictionless)) {
             return Err(format!("{modes:?}: solvable, and closed: {is:?}, but {because:?}"));
         }
     }
-    // All corners are outcomes, and outcomes of many velocities are corners.
+    // All corners are outcomes, and outcomes with the modes of a family are corners.
     let mut corners: BTreeSet<(Vec<Mode>, Vec<RBig>)> = BTreeSet::new();
     for cell in many() {
         let own = cell.corners.iter().map(|corner| (modes_of(problem, corner), corner.clone()));
@@ -172,7 +174,7 @@ fn compare(problem: &Problem, cells: &[Cell], analysis: &Analysis) -> Result<Tal
         let mut near: Vec<usize> = (0..outcomes.len()).filter(free).collect();
         near.sort_by(|&a, &b| apart(&outcomes[a]).total_cmp(&apart(&outcomes[b])));
         if near.len() > 1 {
-            // Velocities that are the same in f64 may differ in their impulses.
+            // Outcomes whose velocities are equal in f64 may differ in their impulses.
             let range = impulse_range(problem, modes, velocity);
             let least: Vec<f64> = range.iter().map(|ends| ends[0].as_ref().map_or(f64::NAN, to_f64)).collect();
             let same = |place: &usize| {
@@ -289,7 +291,7 @@ fn redundant_contacts_have_every_cell() {
     assert!(wrong == 0 && undecided == 0 && families > count / 20 && areas > count / 1_000, "{counts}");
 }
 
-/// Where no rejection is listed, many combinations are rejected at once; the answer is the same as one by one.
+/// If no rejections are listed, many combinations are rejected at once; the answer is the same as one by one.
 #[test]
 fn combinations_rejected_at_once_leave_the_rest() {
     let count = 40;
