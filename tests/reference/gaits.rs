@@ -1,5 +1,5 @@
-//! Recorded gaits (`data/gaits`) through the binary, on the robots' files as others wrote them: every outcome of the
-//! reference states, and the touchdowns found in the tables, planar and in three dimensions, with options as a user
+//! Recorded gaits (`data/gaits`) through the command, with robot files as their authors wrote them: every outcome of
+//! the reference states, and the touchdowns found in the tables, planar and in three dimensions, with options as a user
 //! gives them.
 
 use std::collections::BTreeMap;
@@ -15,7 +15,7 @@ use crate::support::scaled::{Differences, largest};
 
 const FRICTIONS: [&str; 3] = ["0.4", "0.8", "infinite"];
 
-/// Of the largest velocity or impulse: Delassus matrices here have conditions up to 1e4.
+/// Relative to the largest velocity or impulse. The Delassus matrices here have condition numbers up to 1e4.
 const TOLERANCE: f64 = 1e-12;
 
 /// A gait and how its robot is given: the file, then feet for a robot without shapes.
@@ -51,7 +51,7 @@ struct Outcomes {
     outcomes: Vec<Outcome>,
 }
 
-/// Redundant contacts have no impulses there, and a margin of the velocities alone.
+/// An outcome of the reference. For redundant contacts it has no impulses, and a margin of the velocities alone.
 #[derive(Deserialize)]
 struct Outcome {
     modes: Vec<Mode>,
@@ -61,9 +61,9 @@ struct Outcome {
 }
 
 impl Expected {
-    /// Whether it is this touchdown that was found: the same foot at the same row.
+    /// Whether the report is of this touchdown: the same foot at the same row.
     fn is(&self, found: &Report) -> bool {
-        // A row is named by its line, behind the header.
+        // A report names a row by its line: the row 0 of the reference is line 2, after the header.
         let same = |found: &Touchdown| found.row == self.csv_row + 2 && link(&found.striking) == link(&self.striking);
         found.touchdown.as_ref().is_some_and(same)
     }
@@ -123,7 +123,7 @@ impl Gait<'_> {
         stdout.lines().map(|line| serde_json::from_str(line).expect("a result")).collect()
     }
 
-    /// Every touchdown of the reference is found, and none beyond, with the same end of the same foot.
+    /// Every touchdown of the reference is found, and no other, with the same end of the same foot.
     fn touchdowns_are_those_of_the_reference(&self, table: &Table) {
         let found = self.touchdowns(table, &["--friction", "0.8", "--touching", "strike"]);
         let expected: BTreeMap<(usize, String), Expected> =
@@ -135,16 +135,16 @@ impl Gait<'_> {
                 panic!("{place}")
             };
             let shift_z = found.touchdown.as_ref().expect("a touchdown").shift_z;
-            // Tables in three dimensions have nine digits, of an x of 33 m, too.
+            // Tables in three dimensions have nine digits, also for x up to 33 m.
             assert!((shift_z - expected.shift_z).abs() < 1e-8, "{place}: {shift_z} {}", expected.shift_z);
-            // Heel and toe are 0.28 m apart.
+            // The tolerance tells heel and toe apart, which are 0.28 m from each other.
             let x = found.contacts[0].point.expect("a point").x;
             let should = self.strikes_at(expected);
             assert!((x - should).abs() < 1e-7, "{place}: {x} {should}");
         }
     }
 
-    /// Where the striking contact of a reference state is.
+    /// The x of the striking contact of a reference state, as the command computes it \[m\].
     fn strikes_at(&self, expected: &Expected) -> f64 {
         let robot = path(self.robot[0]);
         let states = std::slice::from_ref(&expected.state);

@@ -1,4 +1,4 @@
-//! Numbers that others computed (`../data`), through the command: the paper, problems, robots and gaits.
+//! The command against numbers that others computed (`../data`): the paper, problems, robots and gaits.
 
 mod gaits;
 mod paper;

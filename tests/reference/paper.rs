@@ -1,5 +1,5 @@
-//! The paper's models through their URDF files and the command line, against `data/paper.json` (40-digit values):
-//! matrices, the three cases and every outcome.
+//! The paper's models through their URDF files and the command, against `data/paper.json` (40-digit values): matrices,
+//! the three cases and every outcome.
 //!
 //! Both sides use different coordinates; [`to_reference`] holds the transformation.
 
@@ -14,7 +14,7 @@ use crate::support::command::{file, read};
 use crate::support::paper::{At, MODELS, Model, REFERENCE};
 use crate::support::scaled::{Differences, largest, matrix};
 
-/// To this share of the largest entry, contact velocity or impulse of the case.
+/// Relative to the largest entry, contact velocity or impulse of the case.
 const TOLERANCE: f64 = 1e-11;
 
 /// A state of the reference and what the binary answers for it.
@@ -57,7 +57,7 @@ fn urdf(model: &Model) -> String {
     let text = read(&source);
     let of_file = "iyy=\"0.04\"";
     assert_eq!(text.matches(of_file).count(), 2, "{source}: the inertia of two legs");
-    // A file per call: its content is always the same.
+    // Each call writes the same content.
     file(&format!("{}.urdf", model.name), text.replace(of_file, &format!("iyy=\"{inertia}\"")))
 }
 
@@ -84,7 +84,7 @@ fn found(answer: &Answer) -> Vec<Vec<Mode>> {
     sorted(answer.outcomes.iter().map(|outcome| outcome.modes.clone()).collect())
 }
 
-/// The numbers of the combination of modes, be it an outcome or rejected: impulse and velocity after.
+/// Impulse and velocity after of a combination of modes, whether it is an outcome or rejected.
 fn combination(answer: &Answer, modes: [Mode; 2]) -> Option<(Vec<f64>, Vec<f64>)> {
     if let Some(Outcome { impulse, velocity_after, .. }) = answer.outcomes.iter().find(|o| o.modes == modes) {
         return Some((impulse.concat(), velocity_after.concat()));
@@ -116,7 +116,8 @@ fn matrices_are_those_of_the_paper() {
     differences.finish();
 }
 
-/// Leading foot stopped, friction infinite; the reference lists c_x, c_y, L_x, L_y of the trailing foot alone.
+/// The three cases of the trailing foot, with the leading foot stopped and infinite friction. The reference lists c_x,
+/// c_y, L_x, L_y of the trailing foot alone.
 #[test]
 fn the_three_cases_are_among_outcomes_and_rejections() {
     let mut differences = Differences::default();
@@ -134,8 +135,7 @@ fn the_three_cases_are_among_outcomes_and_rejections() {
                 differences.note(&place, format!("{trailing}, stick is not listed with its numbers"));
                 continue;
             };
-            // The leading foot's impulse from c_le+ = 0, for the case's largest impulse: G_le,le L_le = -(c_le +
-            // G_le,tr L_tr).
+            // The leading foot's impulse follows from c_le+ = 0: G_le,le L_le = -(c_le + G_le,tr L_tr).
             let delassus = matrix(&case.reference.delassus);
             let before = &case.reference.contact_velocity_before;
             let pull = [2, 3].map(|row| before[row] + delassus[(row, 0)] * l_x + delassus[(row, 1)] * l_y);

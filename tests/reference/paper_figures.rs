@@ -1,5 +1,5 @@
-//! The studies and states of `examples/paper/`: all are answered, what they show is what the paper claims, and where it
-//! is not, that is the paper's own contradiction.
+//! The studies and states of `examples/paper/`: all are answered, and they show what the paper claims, except where the
+//! paper contradicts itself.
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -64,8 +64,8 @@ fn nothing_is_refused_anywhere_in_a_study() {
     }
 }
 
-/// Table 1 gives the shanks' CoG from the foot, and calls it the distance from the knee: with its numbers the paper's
-/// own bands and its Table 2 do not come out. The numbers of the pitch are lost.
+/// Table 1 gives the distance of the shanks' CoG from the foot, but calls it the distance from the knee: its numbers do
+/// not reproduce the paper's own bands and Table 2. The paper's numbers on the pitch are lost.
 #[test]
 fn all_claims_but_those_on_table_1_come_out() -> Result<(), Box<dyn Error>> {
     for figure in FIGURES {
@@ -82,7 +82,7 @@ fn all_claims_but_those_on_table_1_come_out() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// On a line of the map's grid every point of a curve is bisected, as the borders along one parameter are.
+/// On a line of the map's grid the points of curves come from bisection, as the borders along one parameter do.
 #[test]
 fn the_pitch_map_agrees_with_sweeps_at_three_pitches() -> Result<(), Box<dyn Error>> {
     const WITHIN: f64 = 1e-9;
@@ -94,7 +94,7 @@ fn the_pitch_map_agrees_with_sweeps_at_three_pitches() -> Result<(), Box<dyn Err
         *counted.entry(pitch.to_bits()).or_default() += 1;
     }
     for near in [-0.4, 0.02, 0.35] {
-        // A line of the grid crosses all six curves; other points share their pitch with none.
+        // A line of the grid crosses all six curves; the pitch of other points occurs less often.
         let lines = counted.iter().filter(|(_, count)| **count >= 6).map(|(bits, _)| f64::from_bits(*bits));
         let pitch = lines.min_by(|a, b| (a - near).abs().total_cmp(&(b - near).abs())).ok_or("no line of the grid")?;
         let [parameter, constants] = [r#", "pitch": {"from": -0.5, "to": 0.5, "steps": 65}"#, r#""constants": {"#];

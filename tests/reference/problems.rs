@@ -1,5 +1,6 @@
 //! Contact problems of other people's software, papers and textbooks (`data/problems.json`, solved exactly) through one
-//! `solve`: modes, velocities, least impulses and their ranges, borders, families, indices, rank; and all of it proven.
+//! call of `solve`: modes, velocities, least impulses and their ranges, borders, families, indices and rank. All must
+//! be proven.
 
 use heelstrike::{Mode, Outcome};
 use serde::Deserialize;
@@ -8,7 +9,7 @@ use serde_json::Value;
 use crate::support::answers::{Answer, answers};
 use crate::support::scaled::{Differences, largest, near};
 
-/// To this share of the largest speed before or after, or of the largest impulse.
+/// Relative to the largest speed before or after, or to the largest impulse.
 const TOLERANCE: f64 = 1e-9;
 
 #[derive(Deserialize)]
@@ -27,7 +28,7 @@ struct Expected {
     families: Vec<ExpectedFamily>,
 }
 
-/// A segment.
+/// A family that is a segment, given by its ends.
 #[derive(Deserialize)]
 struct ExpectedFamily {
     modes: Vec<Mode>,
@@ -45,7 +46,7 @@ struct ExpectedOutcome {
     #[serde(default)]
     family: bool,
     index: Option<i8>,
-    /// In place of `index` where the Schur complement of the sliding contacts is singular.
+    /// Replaces `index` if the Schur complement of the sliding contacts is singular.
     index_extended: Option<i8>,
 }
 
@@ -53,7 +54,7 @@ struct ExpectedOutcome {
 fn the_problems_of_others_have_their_outcomes() {
     let text = include_str!("../data/problems.json");
     let problems: Vec<Problem> = serde_json::from_str(text).expect("the problems are readable");
-    // What is expected is no field of a problem and not read.
+    // The field `expected` does not belong to a problem and is not read.
     let inputs: Vec<Value> = serde_json::from_str(text).expect("JSON");
     let mut differences = Differences::default();
     for (problem, answer) in problems.iter().zip(answers(&["solve", "-", "--format", "json"], &inputs)) {
@@ -68,7 +69,7 @@ fn compare(problem: &Problem, answer: &Answer, differences: &mut Differences) {
         let found: Vec<_> = answer.outcomes.iter().map(|outcome| &outcome.modes).collect();
         differences.note(id, format!("{:?}: {found:?}, {} outcomes too many or few", report.verdict, found.len()));
     }
-    // The references have no index sum where a contact's share in it is defined by regularization.
+    // The references have no index sum if the part of a contact is defined by regularization.
     let index_sum = report.index_sum.flatten().filter(|_| expected.index_sum.is_some());
     let found = (report.proven, report.rank, index_sum);
     differences.same(id, found, (Some(true), Some(expected.rank), expected.index_sum));

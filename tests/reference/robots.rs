@@ -1,6 +1,6 @@
 //! Robots of other people's projects against Pinocchio's values (`data/robots`): matrices, energy and contact points
-//! with the reference's contacts named by hand, then each contact struck alone. Of a reference's variants the one is
-//! taken that the rules of `robot` mean: `default` where the root link floats.
+//! for the reference's contacts as named contacts, then the impact of each contact alone. The variant of each reference
+//! is the one that the rules of `robot` choose: `default` if the root link floats.
 
 use heelstrike::Mode;
 use heelstrike::planar::Vector;
@@ -12,7 +12,7 @@ use crate::support::answers::{answers, named_velocity};
 use crate::support::robots::{Contact, ROBOTS, by_name, robot_and_reference};
 use crate::support::scaled::{Differences, largest, matrix};
 
-/// To this share of the largest entry.
+/// Relative to the largest entry.
 const TOLERANCE: f64 = 1e-10;
 
 #[derive(Deserialize)]
@@ -23,7 +23,7 @@ struct Variant {
     configs: Vec<Config>,
 }
 
-/// A configuration with the values there; contact rows are x then z.
+/// A configuration with its values; contact rows are x then z.
 #[derive(Deserialize)]
 #[allow(non_snake_case, reason = "the reference's own names")]
 struct Config {
@@ -37,7 +37,8 @@ struct Config {
     impacts: Vec<Impact>,
 }
 
-/// A contact struck alone; no inequality is checked in either. Without values where the contact cannot move both ways.
+/// The impact of one contact alone, without checks of inequalities. `None` if the contact cannot move in both
+/// directions.
 #[derive(Deserialize)]
 struct Impact {
     stick: Option<Struck>,
@@ -76,7 +77,7 @@ impl Robot {
         })
     }
 
-    /// The coordinates x, z and pitch come first where the base floats; a joint may be named like them.
+    /// The base's coordinates x, z and pitch come first if it floats; a joint may have one of these names.
     fn base_dofs(&self) -> usize {
         if self.variant.base["mode"] == "floating" { 3 } else { 0 }
     }
@@ -157,7 +158,8 @@ fn compare_single_contacts(robot: &Robot, differences: &mut Differences) {
         }
         // The whole robot's velocity and energy are listed only for outcomes.
         let Some(outcome) = outcome else { continue };
-        // A robot with as many coordinates as the contact has directions stops dead.
+        // A robot with only as many coordinates as the contact has directions stops, so the velocity before counts as
+        // well.
         let within = TOLERANCE * largest(&should.v_plus).max(largest(&config.v));
         let (names, velocity) = named_velocity(outcome);
         differences.same(place, names, robot.variant.coordinates.iter().map(String::as_str).collect());
