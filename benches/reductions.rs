@@ -86,7 +86,7 @@ fn weld(bencher: Bencher, weld: bool) {
     whole_state(bencher, UPKIE, &state(UPKIE, 1), Reductions { weld, massless: weld, ..Reductions::ALL });
 }
 
-/// Of the same robot only those links that have neither mass nor shape.
+/// Upkie's links that have neither mass nor shape, with fixed joints welded in both cases.
 #[divan::bench(args = [true, false])]
 fn massless(bencher: Bencher, massless: bool) {
     whole_state(bencher, UPKIE, &state(UPKIE, 1), Reductions { massless, ..Reductions::ALL });

@@ -1,4 +1,4 @@
-//! The command from its start to its end, as an engine that starts one process per partition pays for it.
+//! The command from start to end, as an engine pays for it that starts one process per partition.
 //!
 //! `cargo bench --bench startup` prints times; they include what the operating system takes to start any process.
 
@@ -17,7 +17,7 @@ fn run(arguments: &[&str]) {
     assert!(status.expect("it runs").success(), "{arguments:?}");
 }
 
-/// Nothing but to be there.
+/// The least that the command does.
 #[divan::bench]
 fn version(bencher: Bencher) {
     bencher.bench_local(|| run(&["--version"]));

@@ -1,5 +1,5 @@
 //! RAMone's impact with both feet, written by hand for this robot alone: M, J and G, then the signs of all 16
-//! combinations. Code for any tree takes longer; by how much is what [`super::ratios`] prints.
+//! combinations. General code takes longer; [`super::ratios`] prints by how much.
 //!
 //! All masses and feet lie on the vertical axes of their bodies. With u the body's turn `(sin, cos)`, a point at -l is
 //! -l u from the origin, and a positive rate moves it by -l (cos, -sin). Joints turn the other way.
@@ -13,7 +13,7 @@ const SHANK: Link = Link { mass: 0.51, moment: 0.00652, com: 0.165235, length: 0
 const HIP: f64 = 0.137675;
 const RADIUS: f64 = 0.02815;
 
-/// What no sign is read from, relative to the scale of its row: a bound by hand, not a proof.
+/// Numbers below this have no sign, relative to the scale of their row: a bound by hand, not a proof.
 const ROUNDING: f64 = 1e-11;
 
 struct Link {
@@ -25,10 +25,10 @@ struct Link {
 
 type Matrix<const N: usize> = [[f64; N]; N];
 
-/// Of one leg the columns x, z, pitch, hip, knee.
+/// The matrices of one leg, in the columns x, z, pitch, hip, knee.
 #[derive(Default, Clone, Copy)]
 pub struct Leg {
-    /// What the leg brings to the lower triangle of M.
+    /// The leg's part of the lower triangle of M.
     pub mass: Matrix<5>,
     /// J of its foot, tangential and normal.
     pub jacobian: [[f64; 5]; 2],
@@ -104,7 +104,7 @@ fn eliminate<const N: usize, const R: usize>(mass: &mut Matrix<N>, rows: &mut [[
 }
 
 impl Impact {
-    /// M, J, G and c- of q and v in the order x, z, pitch, left hip and knee, right hip and knee.
+    /// Computes M, J, G and c- from q and v in the order x, z, pitch, left hip and knee, right hip and knee.
     pub fn assemble(&mut self, q: &[f64; 7], v: &[f64; 7]) {
         let torso = <[f64; 2]>::from(libm::sincos(q[2]));
         self.legs = from_fn(|leg| Leg::of(torso, q[2], q[3 + 2 * leg], q[4 + 2 * leg]));
@@ -146,7 +146,8 @@ impl Impact {
         self.velocity = from_fn(|row| problem.velocity_before()[row / 2][row % 2]);
     }
 
-    /// The outcomes with friction `mu`: the second contact's signs first, since most combinations fail there.
+    /// Computes the outcomes with friction `mu`. The second contact's signs come first, since most combinations fail
+    /// there.
     pub fn solve(&mut self, mu: f64) {
         let (g, c) = (self.delassus, self.velocity);
         let block = |row: usize, column: usize| [0, 1].map(|i| [0, 1].map(|j| g[2 * row + i][2 * column + j]));
@@ -189,7 +190,7 @@ fn product(a: Matrix<2>, b: Matrix<2>) -> Matrix<2> {
     from_fn(|i| from_fn(|j| a[i][0] * b[0][j] + a[i][1] * b[1][j]))
 }
 
-/// One contact's friction, and what its velocities and impulses may be off by.
+/// One contact's friction, and the bounds of rounding of its velocities and impulses.
 struct Law {
     mu: f64,
     velocity: [f64; 2],

@@ -1,7 +1,8 @@
 //! One RAMone state (7 coordinates, 2 contacts) from (q, v) to its outcomes, stage by stage.
 //!
 //! `cargo bench --bench impact` prints times and allocations; compare stages within one run, not runs with each other.
-//! At its end, unless stages are chosen, are the ratios to what is written by hand for this robot, and to serde_json alone.
+//! Unless stages are chosen, the ratios to code written by hand for this robot, and to serde_json alone, follow at the
+//! end.
 
 mod closed_form;
 mod ratios;
@@ -61,7 +62,7 @@ fn problem(robot: &Robot, state: &State) -> ContactProblem {
     Pipeline::new(robot, Options::default()).unsolved(state).expect("a good state").problem
 }
 
-/// q to cos and sin, to M, J, G and c.
+/// From q to its cosines and sines, and to M, J, G and c.
 #[divan::bench]
 fn dynamics(bencher: Bencher) {
     let robot = ramone();
@@ -80,7 +81,7 @@ fn dynamics(bencher: Bencher) {
     });
 }
 
-/// The velocities of base and joints after impulses at both feet.
+/// From impulses at both feet to the velocities of base and joints after them.
 #[divan::bench]
 fn velocity_after(bencher: Bencher) {
     let robot = ramone();
@@ -119,7 +120,7 @@ fn enumeration(bencher: Bencher) {
     });
 }
 
-/// A contact problem to its analysis.
+/// From a contact problem to its analysis.
 #[divan::bench]
 fn analysis(bencher: Bencher) {
     let robot = ramone();
@@ -128,7 +129,7 @@ fn analysis(bencher: Bencher) {
     bencher.bench_local(move || scratch.analyze(black_box(&problem), black_box(&problem), AnalysisOptions::default()));
 }
 
-/// A state as numbers to its whole answer.
+/// From a state in numbers to its whole answer.
 #[divan::bench]
 fn whole_state(bencher: Bencher) {
     let robot = ramone();
@@ -137,7 +138,7 @@ fn whole_state(bencher: Bencher) {
     bencher.bench_local(|| pipeline.impact(black_box(&state)));
 }
 
-/// The same pose at rest on both feet, and on sliding ones, to all forces and accelerations.
+/// From the same pose, at rest or sliding on both feet, to all forces and accelerations.
 #[divan::bench(args = [0.0, 0.4])]
 fn whole_state_in_sustained_contact(bencher: Bencher, speed: f64) {
     let robot = ramone();
@@ -149,7 +150,7 @@ fn whole_state_in_sustained_contact(bencher: Bencher, speed: f64) {
     bencher.bench_local(|| pipeline.forces(black_box(&state)));
 }
 
-/// The same without bounds of the dynamics' rounding, and so without a proof.
+/// [`whole_state`] without bounds of the dynamics' rounding, and so without a proof.
 #[divan::bench]
 fn whole_state_without_proof(bencher: Bencher) {
     let robot = ramone();
@@ -158,7 +159,7 @@ fn whole_state_without_proof(bencher: Bencher) {
     bencher.bench_local(|| pipeline.impact(black_box(&state)));
 }
 
-/// A state as JSON text to its whole answer.
+/// From a state as JSON text to its whole answer.
 #[divan::bench]
 fn whole_state_from_json(bencher: Bencher) {
     let robot = ramone();
@@ -169,7 +170,7 @@ fn whole_state_from_json(bencher: Bencher) {
     });
 }
 
-/// A zigzag of so many links that strikes with both ends, to its outcomes.
+/// From a zigzag chain of `links` links that strikes with both ends to its outcomes.
 #[divan::bench(args = [10, 30, 100, 300, 1000])]
 fn chain(bencher: Bencher, links: usize) {
     let (length, mass) = (2.0 / links as f64, 10.0 / links as f64);
@@ -204,7 +205,7 @@ fn chain(bencher: Bencher, links: usize) {
     bencher.bench_local(|| pipeline.impact(black_box(&state)));
 }
 
-/// A body with 24 boxes, two of which stand on the ground, to its contacts and outcomes.
+/// From a body with 24 boxes, two of which stand on the ground, to its contacts and outcomes.
 #[divan::bench]
 fn many_shapes(bencher: Bencher) {
     let shape = |at: usize| {

@@ -1,5 +1,5 @@
-//! What an answer takes against what it could: by hand for this robot alone, and by serde_json alone. Both alternate, so
-//! that a machine that drifts does so for both.
+//! The time of an answer against what is possible: code written by hand for this robot alone, and serde_json alone. The
+//! two alternate, so that a machine's drift affects both.
 
 use super::closed_form;
 use divan::black_box;
@@ -22,12 +22,12 @@ pub fn print(rounds: usize) {
     of_threads(&robot, rounds.min(20));
 }
 
-/// Prints what both take for one line of the walk: the least time of rounds that alternate.
+/// Prints the time of both per line of the walk: the least of alternating rounds.
 fn compare(rounds: usize, what: &str, own: impl FnMut(), against: &str, yardstick: impl FnMut()) {
     compare_lines(rounds, WALK.lines().count(), what, own, against, yardstick);
 }
 
-/// The same of so many lines.
+/// [`compare`] for work on this many lines.
 fn compare_lines(
     rounds: usize,
     lines: usize,
@@ -48,7 +48,7 @@ fn compare_lines(
     println!("{what:<34} {own:>7.0} ns   {against:<30} {yardstick:>7.0} ns   ratio {:.2}", own / yardstick);
 }
 
-/// Both feet touch in every pose of the walk.
+/// Compares the answers to single states. Both feet touch in every pose of the walk.
 fn of_one_state(robot: &Robot, rounds: usize) {
     let read = |line: &str| {
         let foot = |side| format!(r#"{{"link": "{side}_foot", "radius": 0.02815}}"#);
@@ -124,7 +124,7 @@ fn of_one_state(robot: &Robot, rounds: usize) {
     }
 }
 
-/// Panics unless the closed form is the same robot.
+/// Panics unless the closed form has the same G and the same outcomes.
 fn agrees(inputs: &[[[f64; 7]; 2]], problems: &[heelstrike::ContactProblem]) {
     let mut own = closed_form::Impact::default();
     for ([q, v], problem) in inputs.iter().zip(problems) {
@@ -190,7 +190,7 @@ fn question(robot: &Robot, brief: bool) -> Question<'_> {
     }
 }
 
-/// Gives `write` the answers to `lines`.
+/// Calls `write` with the answers to `lines`.
 fn answer(question: &Question, lines: &str, threads: usize, mut write: impl FnMut(&[u8]) + Send) {
     let answerer = || {
         let mut batch = Batch::new(question);
@@ -224,7 +224,7 @@ fn of_one_line(robot: &Robot, rounds: usize) {
     }
 }
 
-/// How much of a second processor goes to the answers.
+/// Compares two threads with one.
 fn of_threads(robot: &Robot, rounds: usize) {
     println!("\nA line of 40,800, two threads:");
     let lines = WALK.repeat(400);
@@ -240,7 +240,7 @@ fn of_threads(robot: &Robot, rounds: usize) {
 
 const SERDE: &str = "parse and format by serde_json";
 
-/// Reads the lines of the walk into their type, and writes the `answers` from theirs.
+/// The work of serde_json alone: parse the lines of the walk as [`Line`], and format the parsed `answers`.
 fn parse_and_format<'a, T: Deserialize<'a> + Serialize>(answers: &'a str, out: &mut Vec<u8>) -> impl FnMut() {
     let read = |line| serde_json::from_str(line).expect("a result");
     let answers: Vec<T> = answers.lines().map(read).collect();
