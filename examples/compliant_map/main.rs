@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// How the trailing foot ends, where that is near a rigid outcome.
+/// The mode in which the trailing foot ends, if that is near a rigid outcome.
 fn end(cell: &LandingCell) -> Option<Mode> {
     cell.modes.first().copied().filter(|_| cell.distance <= NEAR)
 }

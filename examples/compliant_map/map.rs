@@ -1,9 +1,9 @@
 //! Where overdamped contact leads the paper's minimalistic biped at alpha = 1.4, which has three rigid outcomes.
 //!
-//! The leading foot strikes as in the paper; the trailing one, which rests there, strikes too: its approach speed and
-//! the ratio d_t / d_n span the map. Either the trailing foot lifts off or both stop; the curve between them is the
-//! separatrix. It does not follow the border at which lift-off ceases to be a rigid outcome, so that some runs end near
-//! no outcome.
+//! The leading foot strikes as in the paper. The trailing foot, which rests in the paper, strikes too: its approach
+//! speed and the ratio d_t / d_n span the map. Either the trailing foot lifts off or both feet stop; the curve between
+//! the two is the separatrix. It differs from the border at which lift-off ceases to be a rigid outcome, so some runs
+//! end near no outcome.
 
 use heelstrike::Result;
 use heelstrike::accuracy::compliant::{NEAR, NearestOutcome, SoftGround, landing, run};
@@ -32,9 +32,9 @@ pub struct LandingMap {
 pub struct LandingCell {
     /// Modes of the nearest rigid outcome, trailing foot first.
     pub modes: Vec<Mode>,
-    /// Its index.
+    /// Index of that outcome.
     pub index: Option<i8>,
-    /// Distance to it, in the energy norm.
+    /// Distance to that outcome, in the energy norm.
     pub distance: f64,
 }
 
@@ -50,7 +50,7 @@ pub struct Biped {
 const TOLERANCE: f64 = 1e-8;
 
 impl Biped {
-    /// The paper's state, and this friction.
+    /// The biped in the paper's state, with this friction.
     pub fn new(friction: Friction) -> Result<Self> {
         let robot = Robot::from_urdf(include_str!("../../urdf/minimalistic.urdf"))?;
         let state = include_str!("../minimalistic.json");
@@ -71,7 +71,7 @@ impl Biped {
         ContactProblem::new(self.delassus.clone(), before, vec![self.friction; contacts], vec![0.0; contacts])
     }
 
-    /// 1/2 c-^T G^-1 c-, which is the kinetic energy, for the biped has as many coordinates as contact rows \[J\].
+    /// 1/2 c-^T G^-1 c-, the kinetic energy \[J\], because the biped has as many coordinates as contact rows.
     fn energy(&self, problem: &ContactProblem) -> f64 {
         let rows = 2 * problem.contacts();
         let before = DVector::from_iterator(rows, problem.velocity_before().iter().flatten().copied());
@@ -100,7 +100,7 @@ impl Biped {
         ))
     }
 
-    /// The speed up to `greatest` beyond which both feet stop, to 1e-4 of it; `None` if they do not.
+    /// The speed up to `greatest` beyond which both feet stop, to 1e-4 of `greatest`; `None` if they do not.
     pub fn separatrix(&self, ratio: f64, greatest: f64) -> Result<Option<f64>> {
         let stops = |speed: f64| {
             self.cell(speed, ratio).map(|cell| cell.modes.first() == Some(&Mode::Stick) && cell.distance <= NEAR)

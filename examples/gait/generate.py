@@ -3,8 +3,7 @@
 
     python3 examples/gait/generate.py        (numpy and scipy, nothing else)
 
-Nothing here is drawn by hand: the step is the result of a trajectory optimization with the full rigid-body dynamics, and
-the keyframes are states on it.
+The step results from a trajectory optimization with the full rigid-body dynamics; the keyframes are states on it.
 
 Model       Read from urdf/ramone.urdf: a planar floating base (x, z, pitch) and four joints, every link's mass, CoG and
             moment of inertia, two round feet. One foot at a time stands and rolls without slip; a step ends when the other
@@ -43,10 +42,10 @@ GRAVITY = 9.81      # m/s^2
 FRICTION = 0.6      # written into the NDJSON's states
 SPEED = 0.5         # m/s, average
 KEYFRAMES = 50      # per step, intervals of equal time
-CONE = 0.5          # what the walk may use of the friction, in the step and in the impact
+CONE = 0.5          # friction that the walk may need at most, in the step and in the impact
 CLEARANCE = 0.015   # m, the swing foot's least height at mid-step
 KNEE = -0.08        # rad, the straightest knee
-DEGREE = 7          # of the Bezier polynomials
+DEGREE = 7          # degree of the Bezier polynomials
 RATE = 8.0          # rad/s, the fastest joint
 SLIP = 0.3          # m/s, the fastest striking foot along the ground
 COARSE, FINE = 41, 121   # Chebyshev points along a step, for the optimization and for its result
@@ -112,9 +111,9 @@ class Robot:
         return p, jac, rate
 
     def foot(self, q, name):
-        """Of a foot: lowest point (.., 2), Jacobian of that material point, rows t and n, and the Jacobian's rate times v.
+        """A foot's lowest point (.., 2), the Jacobian of that material point, rows t and n, and its rate times v.
 
-        The tangential row is the gradient of (centre's x - radius * angle), which rolling keeps constant."""
+        The tangential row is the gradient of (center's x - radius * angle), which rolling keeps constant."""
         radius, turn, chain = self.feet[name]
         p, jac, rate = self.point(q, chain)
         p[..., 1] -= radius
@@ -134,7 +133,7 @@ class Robot:
         return mass, h, g
 
     def energy(self, q, v):
-        """Kinetic and potential."""
+        """Kinetic and potential energy."""
         t = u = 0
         for m, iyy, turn, chain in self.bodies:
             p, jac, _ = self.point(q, chain)
@@ -165,9 +164,9 @@ SWAP = [0, 1, 2, 5, 6, 3, 4]                                          # left leg
 
 
 def ride(y, dy, ddy):
-    """The stance foot rolls: (pitch, joints) and their derivatives by anything give all of q and its derivatives.
+    """All of q and its derivatives from (pitch, joints) and their derivatives, while the stance foot rolls.
 
-    The foot's angle in space 0 is where x = 0 is touched: x = radius * angle."""
+    The foot touches x = radius * angle, where angle is its angle in space."""
     radius, turn, _ = robot.feet[STANCE]
     q = np.concatenate([np.zeros(y.shape[:-1] + (2,), y.dtype), y], -1)
     p, jac, rate = robot.foot(q, STANCE)
@@ -233,7 +232,7 @@ def step(z):
     y, dy, ddy = path(z, S)
     q, dq, ddq, basis = ride(y, dy, ddy)
     mass, h, g = robot.dynamics(q, dq)
-    # The pitch's row of the equations of motion; neither motors nor the rolling contact have a part in it.
+    # The pitch's row of the equations of motion, in which neither motors nor the rolling contact appear.
     free = basis[..., :, 0]
     a = (free * (mass @ dq[..., None])[..., 0]).sum(-1)
     b = (free * ((mass @ ddq[..., None])[..., 0] + h)).sum(-1)
@@ -274,7 +273,7 @@ def inequalities(r):
     slip, fall = r["down"]
     inner = slice(1, -1)
     return np.concatenate([
-        r["k"] - 0.3,                                                 # it walks on, and on
+        r["k"] - 0.3,                                                 # the phase never stops
         CONE * fz - fx, CONE * fz + fx, fz - 0.2,                     # the ground only pushes
         [CONE * lz - lx, CONE * lz + lx],
         [10 * r["trailing"][1] - 0.5, -10 * fall - 0.5, SLIP - slip, SLIP + slip],   # one foot lifts, the other falls
@@ -330,7 +329,7 @@ def optimize():
     print(f"optimization: {best.message}, {best.nit} iterations")
     grid(FINE)
     z, f = best.x, Cached()
-    for _ in range(6):                                                # to the nearest solution of the equalities
+    for _ in range(6):                                                # Newton's method, to the nearest solution of the equalities
         z = z - np.linalg.lstsq(f.jacobian(1)(z), f.value(1)(z), rcond=None)[0]
     return z
 
@@ -351,7 +350,7 @@ def states(z, k, s):
 
 
 def phases(r, times):
-    """When is the phase what: t(s) is the integral of 1 / sqrt(K), inverted by Newton's method."""
+    """The phases at these times: t(s) is the integral of 1 / sqrt(K), inverted by Newton's method."""
     rate = 1 / np.sqrt(r["k"])
     lhs, rhs = D.copy(), rate.copy()
     lhs[0], rhs[0] = np.eye(NODES)[0], 0
@@ -459,7 +458,7 @@ def check(z, times, q, v):
 
     gain = np.exp(-2 * W @ r["slope"]) * r["k"][0] / r["k"][-1]
     tell("return map's multiplier (below 1: the walk is stable)", gain, abs(gain) < 1)
-    # Two steps again, in all coordinates.
+    # Simulate both steps once more, in all coordinates.
     half, worst, state = KEYFRAMES + 1, 0, np.append(q[0], v[0])
     for i, (stance, swing) in enumerate([(STANCE, SWING), (SWING, STANCE)]):
         t, run = simulate(z, state[:robot.n], state[robot.n:], stance, swing, half)
@@ -479,7 +478,7 @@ def check(z, times, q, v):
 
 
 def momentum(q, v, about):
-    """Linear momentum x, z and angular momentum about +y and a point."""
+    """Linear momentum x, z, and angular momentum about +y and the point `about`."""
     out = np.zeros(3)
     for m, iyy, turn, chain in robot.bodies:
         p, jac, _ = robot.point(q, chain)

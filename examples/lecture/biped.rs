@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use std::error::Error;
 
 const GRAVITY: f64 = 9.81;
-/// Of the virtual spring that bears the torso \[N/m\].
+/// Stiffness of the virtual spring that bears the torso \[N/m\].
 const STIFFNESS: f64 = 800.0;
 
 /// What is claimed, and whether it holds.
@@ -25,7 +25,7 @@ pub fn claims() -> Result<Vec<Claim>, Box<dyn Error>> {
     let near = |found: f64, expected: f64| (found - expected).abs() < 1e-11 * weight;
     let mut claims = Vec::new();
 
-    // With held joints two points hold the body's three coordinates by four rows.
+    // With held joints the two contacts constrain three coordinates by four rows.
     let stands = forces(&standing)?;
     let unique = only(&stands).filter(|own| own.modes == [Mode::Stick; 2] && own.proven);
     claims.push((
@@ -43,7 +43,7 @@ pub fn claims() -> Result<Vec<Claim>, Box<dyn Error>> {
         falls.is_some_and(|own| normal(own) > 0.0 && normal(own) < weight),
     ));
 
-    // By the lever rule.
+    // The normal forces on both feet follow from the lever rule.
     let weights = robot.bodies().iter().enumerate();
     let moment: f64 = weights.map(|(at, own)| GRAVITY * own.mass * stands.placement.world(at, own.com).x).sum();
     let [left, right] = [0, 1].map(|foot| stands.contacts[foot].point.x);
@@ -55,7 +55,7 @@ pub fn claims() -> Result<Vec<Claim>, Box<dyn Error>> {
         let (force, at) = (GRAVITY * body.mass, stands.placement.world(link.body, body.com));
         let mut spring = json!({"a": {"link": link.name, "offset": link.offset(body.com)}, "b": {"world": at}});
         if link.name == "torso" {
-            // A spring from where it is, and one that keeps it upright.
+            // A spring from the torso's place, and one that keeps it upright.
             spring["stiffness"] = json!([STIFFNESS, STIFFNESS]);
             spring["target"] = json!([0.0, force / STIFFNESS]);
             spring["damping"] = json!([40.0, 40.0]);
@@ -93,7 +93,7 @@ pub fn claims() -> Result<Vec<Claim>, Box<dyn Error>> {
     Ok(claims)
 }
 
-/// The outcome that is the only one.
+/// The outcome, if there is exactly one.
 fn only(found: &Impact) -> Option<&Outcome> {
     let analysis = found.analysis.as_ref().filter(|own| own.verdict == Verdict::Unique);
     analysis.and_then(|own| own.outcomes.first())

@@ -9,7 +9,7 @@ use rod::{Kind, RodMap};
 use std::error::Error;
 use std::path::PathBuf;
 
-/// Where the pictures are.
+/// The default directory for pictures.
 const HERE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/lecture");
 
 fn main() -> Result<(), Box<dyn Error>> {

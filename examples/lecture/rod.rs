@@ -9,7 +9,7 @@ use heelstrike::impact::Verdict;
 use heelstrike::{Defaults, Options, Pipeline, Result, Robot, State};
 use serde_json::json;
 
-/// l = 1 m and k^2 = 1/3 m^2.
+/// Half length l = 1 m and squared radius of gyration k^2 = 1/3 m^2.
 const ROD: &str = r#"<robot name="rod"><link name="rod"><inertial><mass value="3"/>
     <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link></robot>"#;
 /// (l/k)^2.
@@ -17,7 +17,7 @@ const SLENDER: f64 = 3.0;
 const GRAVITY: f64 = 9.81;
 /// Rate of turn \[rad/s\], such that the end lifts off from an inclination of 0.93 on.
 const OMEGA: f64 = 3.5;
-/// Inclinations of the map \[rad\], and its friction.
+/// Ranges of the map: inclinations \[rad\] and friction.
 const THETA: [f64; 2] = [0.3, 1.5];
 const FRICTION: [f64; 2] = [0.0, 4.0];
 
@@ -85,7 +85,7 @@ fn places([from, to]: [f64; 2], steps: usize) -> impl Iterator<Item = f64> {
 }
 
 impl RodMap {
-    /// So many inclinations and coefficients of friction.
+    /// Answers a grid of `thetas` inclinations and `frictions` coefficients of friction.
     pub fn new(thetas: usize, frictions: usize) -> Result<Self> {
         let robot = Robot::from_urdf(ROD)?;
         let pairs = places(THETA, thetas).flat_map(|theta| places(FRICTION, frictions).map(move |own| (theta, own)));
@@ -116,7 +116,7 @@ impl RodMap {
 /// The inclination and friction from which on a rod that does not turn may jam: the lowest point of the map's border.
 fn least_friction() -> Result<(f64, f64)> {
     let robot = Robot::from_urdf(ROD)?;
-    // Of one inclination, by bisection.
+    // The friction at the border for one inclination, by bisection.
     let border = |theta: f64| -> Result<f64> {
         let [mut low, mut high] = [1.0, 4.0];
         while high - low > 1e-14 {
@@ -127,7 +127,7 @@ fn least_friction() -> Result<(f64, f64)> {
         Ok(0.5 * (low + high))
     };
     let [mut from, mut to] = [0.8, 1.4];
-    // In its lowest 1e-6 rad the border rises by no more than rounding.
+    // Within 1e-6 rad of its minimum the border rises by no more than rounding.
     while to - from > 1e-6 {
         let third = (to - from) / 3.0;
         if border(from + third)? < border(to - third)? { to -= third } else { from += third }

@@ -1,4 +1,4 @@
-//! What a figure's regions along one parameter say of a claim.
+//! Checks claims against the regions of a figure along one parameter.
 
 use super::exhibit::Found;
 use super::figures::Finding;
@@ -13,12 +13,12 @@ pub fn modes(regime: &Regime) -> Vec<String> {
     regime.outcomes().unwrap_or_default().iter().map(outcome).collect()
 }
 
-/// The regions have these outcomes in this order.
+/// Checks that the regions have these outcomes in this order.
 pub fn order(found: &Found, expected: &[&[Modes]]) -> Result<Finding, String> {
     ordered(found, expected, |_| true)
 }
 
-/// The regions have these outcomes in this order, if slides are left out.
+/// Checks that the regions have these outcomes in this order, without slides.
 pub fn order_without_slides(found: &Found, expected: &[&[Modes]]) -> Result<Finding, String> {
     ordered(found, expected, |modes| !modes.contains("slide"))
 }
@@ -34,10 +34,10 @@ fn ordered(found: &Found, expected: &[&[Modes]], counts: impl Fn(&str) -> bool) 
     Ok(Finding { words: said.collect::<Vec<_>>().join(", "), agrees: Some(all == expected) })
 }
 
-/// A region, and from where to where the paper has it.
+/// The outcomes of a region, and its start and end in the paper.
 pub type Band<'a> = (&'a [Modes], f64, f64);
 
-/// All regions with a slide among their outcomes are these, to `within`.
+/// Checks that the regions with a slide among their outcomes are these, to `within`.
 pub fn bands(found: &Found, expected: &[Band], within: f64) -> Result<Finding, String> {
     let regions = found.survey()?.regions.iter().map(|region| (modes(&region.regime), region.from, region.to));
     let bands: Vec<_> = regions.filter(|(modes, ..)| modes.iter().any(|modes| modes.contains("slide"))).collect();

@@ -1,4 +1,4 @@
-//! What one state's outcomes, and the combinations of modes that are none, say of a claim.
+//! Checks claims against the outcomes and the rejected combinations of one state.
 
 use super::along::Modes;
 use super::exhibit::Found;
@@ -10,17 +10,18 @@ fn name(modes: &[Mode]) -> String {
     modes.iter().map(ToString::to_string).collect::<Vec<_>>().join("/")
 }
 
-/// The outcomes are these.
+/// Checks that the outcomes are these.
 pub fn outcomes(found: &Found, expected: &[Modes]) -> Result<Finding, String> {
     let outcomes: Vec<String> = found.analysis()?.outcomes.iter().map(|outcome| name(&outcome.modes)).collect();
     Ok(Finding { agrees: Some(outcomes == expected), words: outcomes.join(" or ") })
 }
 
-/// One of the paper's cases with the trailing foot's velocity after \[m/s\] and impulse \[N s\], each tangential and
+/// One of the paper's cases with velocity after \[m/s\] and impulse \[N s\] of the trailing foot, each tangential and
 /// normal.
 pub type Case = (Modes, Pair<f64>, Pair<f64>);
 
-/// The cases have these numbers in parts of `unit`, to one of the last of three digits; `valid` alone is an outcome.
+/// Checks that the cases have these numbers in units of `unit`, to one in the last of three digits, and that `valid` is
+/// the only outcome.
 pub fn cases(found: &Found, unit: f64, expected: &[Case], valid: Modes) -> Result<Finding, String> {
     const LAST_DIGIT: f64 = 1e-3;
     let analysis = found.analysis()?;

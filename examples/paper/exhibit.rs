@@ -1,4 +1,4 @@
-//! A figure's robot and study, or state, and what is found there.
+//! A figure's robot with its study or state, and what is found there.
 
 use super::figures::{Figure, Input};
 use heelstrike::Robot;
@@ -13,12 +13,12 @@ use std::fs::read_to_string;
 use std::path::PathBuf;
 use std::thread::available_parallelism;
 
-/// Where the studies are, and where pictures go unless another directory is given.
+/// Directory of the studies, and of the pictures unless another one is given.
 pub const HERE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/paper");
 const ROBOTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/urdf");
 
 impl Figure {
-    /// Where its study or state is.
+    /// Path of the figure's study or state.
     pub fn path(&self) -> PathBuf {
         format!("{HERE}/{}.json", self.input.name()).into()
     }
@@ -29,7 +29,7 @@ pub struct Exhibit {
     figure: &'static Figure,
     text: String,
     description: Description,
-    /// As the file has it.
+    /// The robot as its file has it.
     pub robot: Robot,
 }
 
@@ -37,7 +37,7 @@ pub struct Exhibit {
 pub enum Found {
     /// The regions of a study.
     Regions(Findings),
-    /// One state, its outcomes and everything that is none.
+    /// One state with its outcomes and rejections.
     Outcomes(Box<(State, Box<Impact>)>),
 }
 
@@ -45,15 +45,15 @@ impl Exhibit {
     /// Reads the files of `figure`.
     ///
     /// # Errors
-    /// Missing files, and a robot that is refused.
+    /// Returns an error if a file is missing or the robot is refused.
     pub fn read(figure: &'static Figure) -> Result<Self, Box<dyn Error>> {
         Self::read_with(figure, read_to_string(figure.path())?)
     }
 
-    /// Reads the robot of `figure`, for another study or state than its own.
+    /// Reads the robot of `figure`, for the study or state in `text`.
     ///
     /// # Errors
-    /// A missing file, and a robot that is refused.
+    /// Returns an error if the file is missing or the robot is refused.
     pub fn read_with(figure: &'static Figure, text: String) -> Result<Self, Box<dyn Error>> {
         let description = Description::from_urdf(&read_to_string(format!("{ROBOTS}/{}.urdf", figure.robot))?)?;
         let robot = Robot::reduce(&description, &Reduction::default())?;
@@ -63,7 +63,7 @@ impl Exhibit {
     /// The regions of a study, or the outcomes of a state.
     ///
     /// # Errors
-    /// A study or a state that is refused.
+    /// Returns an error if the study or the state is refused.
     pub fn found(&self) -> heelstrike::Result<Found> {
         match self.figure.input {
             Input::Study(_) | Input::Explained(_) => self.study(Findings::of).map(Found::Regions),
@@ -71,10 +71,10 @@ impl Exhibit {
         }
     }
 
-    /// Asks about the study, with all cores.
+    /// Calls `ask` with the study and a worker for each core.
     ///
     /// # Errors
-    /// A study that is refused.
+    /// Returns an error if the study is refused.
     pub fn study<T>(&self, ask: impl FnOnce(&RobotStudy, Workers) -> T) -> heelstrike::Result<T> {
         let study = Study::from_json(&self.text)?;
         let model = RobotStudy {
@@ -109,7 +109,7 @@ impl Found {
     /// The regions along one parameter.
     ///
     /// # Errors
-    /// Where something else was found.
+    /// Returns an error if something else was found.
     pub fn survey(&self) -> Result<&Survey, String> {
         match self {
             Self::Regions(Findings::Along(survey)) => Ok(survey),
@@ -120,7 +120,7 @@ impl Found {
     /// The regions of two parameters.
     ///
     /// # Errors
-    /// Where something else was found.
+    /// Returns an error if something else was found.
     pub fn map(&self) -> Result<&Map, String> {
         match self {
             Self::Regions(Findings::Map(map)) => Ok(map),
@@ -131,7 +131,7 @@ impl Found {
     /// The outcomes of a state.
     ///
     /// # Errors
-    /// Where something else was found, or none could be.
+    /// Returns an error if something else was found, or the state has no analysis.
     pub fn analysis(&self) -> Result<&Analysis, String> {
         match self {
             Self::Outcomes(found) => found.1.analyzed().map_err(|error| error.to_string()),

@@ -1,6 +1,6 @@
-//! The figures and tables of the paper that show collisions, each with what the paper says of it.
+//! The figures and tables of the paper that show collisions, each with the paper's claims about it.
 //!
-//! Modes are those of the trailing and of the leading foot. The paper walks toward -x: it calls slide- forward.
+//! Modes are of the trailing foot, then of the leading foot. The paper walks toward -x, so it calls slide- forward.
 
 use super::along::{Modes, bands, order, order_without_slides};
 use super::cases::{Case, cases, outcomes};
@@ -10,31 +10,31 @@ use std::f64::consts::PI;
 
 /// A figure or table.
 pub struct Figure {
-    /// The name of its picture.
+    /// Name of the figure's picture.
     pub name: &'static str,
-    /// What it is.
+    /// Title for people.
     pub title: &'static str,
     /// The robot's file.
     pub robot: &'static str,
     /// The study's or state's file.
     pub input: Input,
-    /// What is claimed, by the paper or by the theory that it gives.
+    /// Claims of the paper, or of the theory that it gives.
     pub claims: &'static [Claim],
 }
 
-/// What is said of a figure, and how it is compared with what is found.
+/// A claim about a figure, and the check of it.
 pub struct Claim {
-    /// In the paper's words, shortened.
+    /// The claim in the paper's words, shortened.
     pub words: &'static str,
-    /// What is found instead, or as well.
+    /// Compares the claim with what is found.
     pub check: fn(&Found) -> Result<Finding, String>,
 }
 
-/// What is found.
+/// What a check found.
 pub struct Finding {
-    /// With its numbers.
+    /// The finding with its numbers.
     pub words: String,
-    /// Whether that agrees with the claim; `None` if the claim's numbers are lost.
+    /// Whether the finding agrees with the claim; `None` if the claim's numbers are lost.
     pub agrees: Option<bool>,
 }
 
@@ -88,13 +88,13 @@ const RAMONE_CASES: &[Claim] = &[Claim {
     },
 }];
 
-/// The inertia at which the legs' center of percussion is the foot \[kg m^2\], of legs of 1 kg and 1 m: m along (l -
-/// along).
+/// The inertia at which the foot is the legs' center of percussion \[kg m^2\], m along (l - along) for legs of 1 kg and
+/// 1 m.
 const fn critical_inertia(along: f64) -> f64 {
     along * (1.0 - along)
 }
 
-/// All of them, in the order of the paper.
+/// All figures and tables, in the order of the paper.
 pub const FIGURES: &[Figure] = &[
     Figure {
         name: "figures_3_and_6",

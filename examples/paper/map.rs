@@ -1,4 +1,4 @@
-//! What a figure's regions of two parameters say of a claim.
+//! Checks claims against the regions of a figure in two parameters.
 
 use super::along::modes;
 use super::exhibit::Found;
@@ -17,7 +17,7 @@ fn points(map: &Map, of: fn(&Area) -> bool) -> impl Iterator<Item = [f64; 2]> {
     map.areas.iter().filter(move |area| of(area)).flat_map(|area| area.loops.iter().flatten().copied())
 }
 
-/// Where the sliding band ends, and the point of the ambiguous band that is nearest to it.
+/// The point at which the sliding band ends, and the nearest point of the ambiguous band.
 pub fn junction(map: &Map) -> Option<[[f64; 2]; 2]> {
     let top = points(map, slides).max_by(|a, b| a[1].total_cmp(&b[1]))?;
     let away = |point: &[f64; 2]| (point[0] - top[0]).hypot(point[1] - top[1]);
@@ -25,7 +25,7 @@ pub fn junction(map: &Map) -> Option<[[f64; 2]; 2]> {
     Some([top, nearest])
 }
 
-/// The sliding band ends, and the ambiguous band begins, at this inertia.
+/// Checks that the sliding band ends, and the ambiguous band begins, at this inertia.
 pub fn closes_at(found: &Found, inertia: f64) -> Result<Finding, String> {
     const WITHIN: f64 = 1e-3;
     let [slides, ambiguous] = junction(found.map()?).ok_or("one of the bands is not there")?;
@@ -37,7 +37,7 @@ pub fn closes_at(found: &Found, inertia: f64) -> Result<Finding, String> {
     Ok(Finding { words, agrees: Some(near(slides) && near(ambiguous)) })
 }
 
-/// From where to where along the first parameter an area reaches at a value of the second.
+/// The intervals of the first parameter that an area covers at one value of the second.
 fn across(area: &Area, at: f64) -> Vec<[f64; 2]> {
     let mut crossings: Vec<f64> = Vec::new();
     for points in &area.loops {
@@ -63,7 +63,7 @@ pub fn bands_at(map: &Map, at: f64) -> Vec<(Vec<String>, [f64; 2])> {
     bands
 }
 
-/// Where the bands lie at some values of the second parameter; the paper's numbers are lost.
+/// Lists the bands at some values of the second parameter; the paper's numbers are lost.
 pub fn bands_move(found: &Found, values: &[f64]) -> Result<Finding, String> {
     let map = found.map()?;
     let at = |value: &f64| {

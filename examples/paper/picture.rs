@@ -1,4 +1,4 @@
-//! What a figure looks like.
+//! The picture of a figure.
 
 use super::exhibit::{Exhibit, Found};
 use heelstrike::Result;
@@ -7,7 +7,7 @@ use heelstrike::draw::{Forward, Picture, robot as drawing, sweep};
 /// Curves and regions of a study, or the robot in its pose with every outcome; `None` if there is nothing to draw.
 ///
 /// # Errors
-/// A study that is refused.
+/// Returns an error if the study is refused.
 pub fn of(exhibit: &Exhibit, found: &Found) -> Result<Option<Picture>> {
     match found {
         Found::Regions(findings) => {

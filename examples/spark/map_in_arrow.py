@@ -27,7 +27,7 @@ def table(urdf, states):
         return states[name].cast(pa.float64()).fill_null(np.nan).to_numpy(zero_copy_only=False)
 
     q, v = (np.stack([column(f"{part}_{name}") for name in names], axis=1) for part in "qv")
-    # An engine uses all cores already.
+    # Spark uses all cores already.
     answers = robot(urdf).impacts(q, v, friction=column("friction"), place="lowest", threads=1)
     return answers.to_arrow(id=states["id"])
 
