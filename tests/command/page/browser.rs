@@ -2,6 +2,7 @@
 //!
 //! ```text
 //!     page + listener + script --> file --chromium --dump-dom--> DOM --> argument of found() in the script, as JSON
+//! ```
 
 use crate::parsed;
 use percent_encoding::percent_decode_str;
