@@ -1,9 +1,9 @@
-"""What Python and tables cost beside the Rust library, as ratios of processor time.
+"""The cost of Python and of tables relative to the Rust library, as ratios of processor time.
 
     cargo build --release -p heelstrike-python --example library
     python python/bench/figures.py target/release/examples/library
 
-Each measure alternates with the library's in pairs, so that a busy machine slows both; shown are medians, also of the
+Each measurement alternates with one of the library, so that a busy machine slows both. Medians are shown, also of the
 ratios. The states are random poses of RAMone, the lowest foot on the ground, on one thread. Needs Linux and pyarrow.
 """
 
@@ -38,7 +38,7 @@ def impacts(robot, q, v, **fields):
 
 
 def measured(work):
-    """Seconds of processor time of this thread; what was made is freed behind them."""
+    """Seconds of processor time of this thread; the result is freed outside of them."""
     start = time.thread_time()
     made = work()
     end = time.thread_time()
@@ -47,7 +47,7 @@ def measured(work):
 
 
 def of_command(arguments):
-    """The same of a process."""
+    """Seconds of processor time of a run of the command."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     subprocess.run([*TOOL, *arguments], check=True)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -62,7 +62,7 @@ def paired(name, work, other, limit):
 
 
 def one_row(robot):
-    """What a call with one row costs beyond the row's share of a call with many equal ones."""
+    """Print what a call with one row costs beyond the row's share of a call with many equal rows."""
     count = 20_000
     lowest = {"place": "lowest"}
     for name, fields in [("plain", {}), ("place", lowest), ("ground", {**lowest, "ground": {"slope": 0.1}})]:

@@ -1,8 +1,8 @@
-//! The Rust library on the states that `figures.py` gives to Python and to tables: the other half of its ratios.
+//! The Rust library on the states that `figures.py` gives to Python and to tables: the other side of its ratios.
 //!
-//! `library ROBOT.urdf STATES FRICTION` reads rows of q and v as f64 from the file STATES. For each line on standard
-//! input, `arrays` or `brief`, it answers all rows on one thread, the lowest foot on the ground, and prints how many
-//! outcomes they have.
+//! `library ROBOT.urdf STATES FRICTION` reads rows of q and v as f64 from the file STATES. For each line of standard
+//! input, `arrays` or `brief`, it answers all rows on one thread, with the lowest foot on the ground, and prints the
+//! number of outcomes.
 
 use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::state::State;

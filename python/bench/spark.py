@@ -1,9 +1,9 @@
-"""What a row costs on a local Spark beyond a plain loop over the same file, from Parquet to Parquet.
+"""The cost of a row on a local Spark against a plain loop over the same file, from Parquet to Parquet.
 
     python python/bench/spark.py
 
-Both alternate in pairs, after the session has started and done the work once. Shown is the time by the clock, which
-means something on an idle machine alone, and processor time, of Spark that of Java and of its workers. Needs Linux.
+Both alternate in pairs, after the session has started and done the work once. Shown are wall-clock time, which is
+meaningful only on an idle machine, and processor time; Spark's is that of Java and of its workers. Needs Linux.
 """
 
 import functools
@@ -38,7 +38,7 @@ def states():
 
 
 def spent_by(root):
-    """Seconds of processor time of a process and of all that it has started."""
+    """Seconds of processor time of a process and of all processes that it started."""
     parents, spent = {}, {}
     for path in pathlib.Path("/proc").glob("[0-9]*/stat"):
         try:
@@ -47,7 +47,7 @@ def spent_by(root):
             continue
         own = int(path.parent.name)
         parents[own] = int(fields[1])
-        # Own time and that of children that have ended.
+        # The process's own time and that of its ended children.
         spent[own] = sum(map(int, fields[11:15])) / os.sysconf("SC_CLK_TCK")
 
     def is_of_root(own):

@@ -41,7 +41,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    # NumPy is loaded by what needs it: the command starts without.
+    # NumPy is imported only when it is needed, so that the command starts without it.
     if name not in ("Layout", "from_drake", "from_mujoco", "from_pinocchio"):
         raise AttributeError(f"module 'heelstrike' has no attribute '{name}'")
     from . import _convert
@@ -63,7 +63,7 @@ class Verdict(enum.IntEnum):
     NONE = 2
     """No outcome is consistent."""
     UNDECIDED = 3
-    """No precision settled some sign, or the budget of work was spent before."""
+    """No precision settled some sign, or the budget of work was spent first."""
     NO_IMPACT = 4
     """The only outcome has zero impulse."""
     NO_CONTACT = 5
@@ -76,7 +76,7 @@ class Mode(enum.IntEnum):
     """How a contact ends, as `Answers.modes` has it."""
 
     OPEN = -1
-    """It was not closed before."""
+    """It was not closed before the impact."""
     SEPARATE = 0
     """It leaves the ground."""
     STICK = 1

@@ -1,4 +1,4 @@
-"""Coordinates of other packages as a planar robot's, by the names of the joints.
+"""Converts coordinates of other packages into those of a planar robot, by the names of the joints.
 
 +-----------+------------------------+---------------------------------------------+--------------------+
 |           | base in q              | base in v                                   | continuous joints  |
@@ -8,7 +8,7 @@
 | Drake     | quaternion wxyz, x y z | angular, linear, both in the world's frame  | angle              |
 +-----------+------------------------+---------------------------------------------+--------------------+
 
-The world's axes forward and up are those of the robot's plane: x and z of a robot in its x-z plane.
+Forward and up in the world are the axes of the robot's plane: x and z for a robot in its x-z plane.
 """
 
 from __future__ import annotations
@@ -28,19 +28,19 @@ _AXES = dict(zip("xyz", np.eye(3), strict=True))
 
 @dataclass
 class Joint:
-    """Where a joint of one degree of freedom stands in q and in v."""
+    """The places of a joint of one degree of freedom in q and in v."""
 
     q: int
     v: int
     unit_circle: bool = False
-    """Whether q holds the cosine and the sine of its angle."""
+    """Whether q holds the cosine and the sine of the joint's angle."""
     zero: float = 0.0
-    """What q holds where its coordinate is zero [rad, m]."""
+    """The value in q at which the robot's coordinate is zero [rad, m]."""
 
 
 @dataclass
 class Base:
-    """Where a free base stands in q and in v, and in which frame its velocities are."""
+    """The places of a free base in q and in v, and the frames of its velocities."""
 
     position: slice
     """x, y, z."""
@@ -62,7 +62,7 @@ class Layout:
     base: Base | None = None
 
     def __call__(self, robot: Robot, q: ArrayLike, v: ArrayLike, *, tolerance: float = 1e-6) -> tuple[Array, Array]:
-        """The same states as `Robot.impacts` takes them.
+        """Convert states to the arrays that `Robot.impacts` takes.
 
         `q` is (n, nq) or (nq,), `v` (n, nv) or (nv,), both as the other package has them. Returns q and v, each
         (n, len(robot.coordinates)), x z pitch first [m, rad, m/s, rad/s].
@@ -182,7 +182,7 @@ def _refuse_length(what: str, vectors: Array) -> None:
 
 
 def _refuse(what: str, sizes: Array, unit: str, tolerance: float) -> None:
-    # Rows of NaN are for `Robot.impacts` to refuse.
+    # Rows of NaN pass here: `Robot.impacts` refuses them.
     sizes = np.nan_to_num(sizes, nan=0.0)
     worst = int(np.argmax(sizes)) if len(sizes) else 0
     if len(sizes) and not sizes[worst] <= tolerance:
@@ -214,7 +214,7 @@ def from_pinocchio(model: Any) -> Layout:
 
 
 def from_mujoco(model: Any) -> Layout:
-    """The layout of a `mujoco.MjModel`; its base is a free joint, which a URDF's root needs to be given."""
+    """The layout of a `mujoco.MjModel`; its base is a free joint, which must be added to a model from a URDF."""
     layout = Layout(model.nq, model.nv)
     for at in range(model.njnt):
         joint = model.joint(at)

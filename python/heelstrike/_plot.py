@@ -32,8 +32,9 @@ class Plot:
 
 
 def plot(result: Result | Robot) -> Plot:
-    """Draw a robot, or what `Robot.impact`, `Robot.forces` of one state or `Robot.sweep` gave; its question is answered
-    again for this."""
+    """Draw a robot, or the result of `Robot.impact`, `Robot.forces` of one state or `Robot.sweep`.
+
+    The question of a result is answered again for its picture."""
     if isinstance(result, Robot):
         return Plot(*result._drawn())
     if isinstance(result, Result):

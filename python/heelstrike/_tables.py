@@ -30,14 +30,14 @@ def to_arrow(answers: Answers, id: Any = None) -> Any:
     at = pa.array(outcome, mask=nothing)
 
     def per_outcome(values: Any) -> Any:
-        # NaN is null.
+        # NaN becomes null.
         return pa.array(values, from_pandas=True).take(at)
 
     def named(values: Any, names: list[str]) -> Any:
         return pa.array(names).take(pa.array(values, mask=values < 0))
 
     def texts(values: Sequence[str | None], places: Sequence[int | None]) -> Any:
-        # Not by `take`, which gives no more than 2 GiB.
+        # `take` is limited to 2 GiB of text.
         return pa.array((None if place is None else values[place] for place in places), pa.string())
 
     ids = np.arange(len(answers)) if id is None else id
@@ -68,6 +68,6 @@ def to_arrow(answers: Answers, id: Any = None) -> Any:
 def to_pandas(answers: Answers, id: Any = None) -> Any:
     pd = _import("pandas")
 
-    # A refused state has no outcome: with these types its row does not change those of the columns.
+    # A refused state has null cells; these nullable types keep the types of the columns.
     types = {"bool": pd.BooleanDtype(), "int64": pd.Int64Dtype()}
     return to_arrow(answers, id).to_pandas(types_mapper=lambda own: types.get(str(own)))

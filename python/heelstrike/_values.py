@@ -17,7 +17,7 @@ class Result(dict[str, Any]):
     """A result, as the JSON of the command has it, that ``heelstrike.plot`` can draw."""
 
     _drawn: Any = None
-    """Its robot and question, which it does not take along into another process."""
+    """The robot and the question, which are not pickled."""
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Result, (dict(self),)
@@ -29,12 +29,12 @@ def read(path: str | os.PathLike[str]) -> bytes:
 
 
 def robot(text: str, path: os.PathLike[str], options: dict[str, Any] | None) -> Robot:
-    """A robot of another process."""
+    """Restore a pickled robot."""
     return Robot._again(text, path, options)
 
 
 def answers(data: bytes) -> Answers:
-    """Answers of another process."""
+    """Restore pickled answers."""
     return Answers._again(data)
 
 
@@ -45,7 +45,7 @@ def _plain(value: Any) -> Any:
 
 
 def to_json(value: Any) -> str | bytes:
-    """JSON of a dictionary, or what the file of a path holds; text that begins with a brace is JSON already."""
+    """JSON of a dictionary, or the content of the file of a path; text that begins with a brace is JSON already."""
     if isinstance(value, str):
         return value if value.lstrip().startswith("{") else read(value)
     if isinstance(value, os.PathLike):
@@ -73,13 +73,13 @@ def _friction(value: Any) -> Any:
 
 
 def problem(delassus: Any, velocity: Any, friction: Any, restitution: Any) -> str | bytes:
-    # Data frames are no arrays.
+    # Data frames become arrays.
     delassus, velocity = (own.to_numpy() if hasattr(own, "to_numpy") else own for own in (delassus, velocity))
     velocity = velocity.tolist() if hasattr(velocity, "tolist") else velocity
     for name, value in (("G", delassus), ("c", velocity)):
         if not isinstance(value, (list, tuple)) and not hasattr(value, "shape"):
             raise TypeError(f"{name} is an array or a list, not a {type(value).__name__}")
-    # Numbers, of NumPy or not, or pairs of them.
+    # A flat list of numbers, of NumPy or Python, becomes pairs.
     if velocity and not hasattr(velocity[0], "__len__"):
         velocity = [velocity[at : at + 2] for at in range(0, len(velocity), 2)]
     fields = {"delassus": delassus, "velocity_before": velocity, "friction": friction}
@@ -91,7 +91,7 @@ def to_csv(table: Any) -> bytes:
     if isinstance(table, (str, os.PathLike)):
         return read(table)
     if hasattr(table, "to_csv"):
-        # Of a float32 pandas writes fewer digits than its value has.
+        # pandas writes fewer digits of a float32 than its value has.
         wide = {"float32": "float64", "float16": "float64", "Float32": "Float64"}
         narrow = {name: wide[str(own)] for name, own in table.dtypes.items() if str(own) in wide}
         return str(table.astype(narrow).to_csv(index=False)).encode()

@@ -29,7 +29,7 @@ def _origin(parent: ET.Element, pose: Any) -> None:
 
 
 def _shapes(shape: Any, pose: Any) -> list[tuple[str, dict[str, str], Any]]:
-    """The elements of URDF that a shape of Drake is."""
+    """The URDF elements of a Drake shape, each with sizes and pose."""
     geometry, pose_of = _drake("geometry"), _drake("math").RigidTransform
     if isinstance(shape, geometry.Sphere):
         return [("sphere", {"radius": repr(shape.radius())}, pose)]
@@ -59,7 +59,7 @@ def convert(path: str) -> str:
     plant.Finalize()
     robot = ET.Element("robot", name=plant.GetModelInstanceName(models[0]))
     joints = [plant.get_joint(index) for index in plant.GetJointIndices(models[0])]
-    # A link of URDF begins at its joint: the pose of the body in it.
+    # A URDF link has its frame at its joint: the pose of each body in that frame.
     poses = {joint.child_body().name(): joint.frame_on_child().GetFixedPoseInBodyFrame().inverse() for joint in joints}
     for index in plant.GetBodyIndices(models[0]):
         body = plant.get_body(index)
@@ -99,7 +99,7 @@ def convert(path: str) -> str:
             axis = joint.revolute_axis() if kind == "revolute" else joint.translation_axis()
             ET.SubElement(element, "axis", xyz=_numbers(axis))
             [lower], [upper] = joint.position_lower_limits(), joint.position_upper_limits()
-            # NumPy's numbers have a text of their own.
+            # `float`, because the repr of NumPy's numbers names their type.
             lower, upper = repr(float(max(lower, -1e9))), repr(float(min(upper, 1e9)))
             ET.SubElement(element, "limit", lower=lower, upper=upper, effort="0", velocity="0")
     ET.indent(robot)

@@ -15,10 +15,10 @@ use pyo3::types::{PyBytes, PyList};
 use serde::{Deserialize, Serialize};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Made once, when it is first asked for.
+/// An object of Python that is made when it is first asked for.
 type Made = PyOnceLock<Py<PyAny>>;
 
-/// The lists of [`Arrays`] that become arrays.
+/// The lists of [`Arrays`] that become NumPy arrays.
 macro_rules! lists {
     ($($name:ident: $entry:ty),*) => {
         struct Lists {
@@ -30,7 +30,7 @@ macro_rules! lists {
                 Self { $($name: Made::new()),* }
             }
 
-            /// Copies into `arrays` what they have given away.
+            /// Copies the lists that became NumPy arrays back into `arrays`.
             fn copy(&self, py: Python<'_>, arrays: &mut Arrays) -> PyResult<()> {
                 $(if let Some(array) = self.$name.get(py) {
                     arrays.$name = array.bind(py).cast::<PyArrayDyn<$entry>>()?.to_vec()?;
@@ -52,30 +52,30 @@ pub struct Answers {
     table: Arc<Table>,
     states: usize,
     outcomes: usize,
-    /// Taken away only where the answers end.
+    /// `None` only after the answers are dropped.
     arrays: Mutex<Option<Box<Arrays>>>,
     lists: Lists,
     texts: [Made; 4],
 }
 
-/// What the answers to all states have in common.
+/// The common part of the answers to all states.
 #[derive(Serialize, Deserialize)]
 pub struct Table {
     pub aspect: Aspect,
     pub coordinates: Vec<String>,
     columns: Columns,
-    /// No answer yet.
+    /// Arrays without any answer.
     pub empty: Arrays,
-    /// Memory of answers to few states that have ended.
+    /// Memory of dropped answers to few states, for reuse.
     #[serde(skip)]
     spare: Mutex<Option<Box<Arrays>>>,
 }
 
-/// The memory of answers to so many states is kept.
+/// Memory is kept for reuse if it had answers to at most this many states.
 const FEW: usize = 16;
 
 impl Table {
-    /// That of a robot's feet and contacts that states name.
+    /// The table for a robot's feet and for contacts that states name.
     pub fn new(aspect: Aspect, robot: &heelstrike::Robot, feet: &[NamedContact], named: &[&str]) -> Self {
         let layout = Layout { aspect, ..Layout::default() };
         let columns = Columns::without_lines(robot, feet, named, &[], layout);
@@ -83,7 +83,7 @@ impl Table {
         Self { aspect, coordinates, empty: Arrays::new(&columns), columns, spare: Mutex::default() }
     }
 
-    /// No answer yet, with room for those to so many states.
+    /// Arrays without any answer, with room for those to `states` states.
     pub fn arrays(&self, states: usize) -> Box<Arrays> {
         let spare = if states <= FEW { locked(&self.spare).take() } else { None };
         spare.unwrap_or_else(|| Box::new(self.empty.for_states(states)))
@@ -110,19 +110,19 @@ impl Answers {
         Self { table, states, outcomes, arrays: Some(arrays).into(), lists, texts }
     }
 
-    /// Work on the lists that are not arrays yet, and on the texts; Python must not run in it.
+    /// Runs `work` on the lists that are not NumPy arrays yet, and on the texts. `work` must not run Python code.
     fn with<R>(&self, work: impl FnOnce(&mut Arrays) -> R) -> R {
         work(locked(&self.arrays).get_or_insert_default())
     }
 
-    /// A copy of all.
+    /// A copy of all lists and texts.
     fn copy(&self, py: Python<'_>) -> PyResult<Arrays> {
         let mut arrays = self.with(|arrays| arrays.clone());
         self.lists.copy(py, &mut arrays)?;
         Ok(arrays)
     }
 
-    /// A list as an array, without a copy.
+    /// A list as a NumPy array, without a copy.
     fn array<T: Element>(
         &self,
         py: Python<'_>,
@@ -132,7 +132,7 @@ impl Answers {
     ) -> PyResult<Py<PyAny>> {
         let make = || {
             let array = PyArray1::from_vec(py, self.with(|arrays| std::mem::take(list(arrays))));
-            // What is made of them later relies on them.
+            // Arrays are read-only, because tables and copies are made from them later.
             array.getattr("flags")?.setattr("writeable", false)?;
             let array = if shape.len() == 1 { array.into_any() } else { array.reshape(shape.to_vec())?.into_any() };
             Ok::<_, PyErr>(array.unbind())
@@ -140,7 +140,7 @@ impl Answers {
         made.get_or_try_init(py, make).map(|array| array.clone_ref(py))
     }
 
-    /// Refuses a name that belongs to the other question.
+    /// Raises AttributeError if `name` belongs to answers to the other question.
     fn of(&self, aspect: Aspect, name: &str) -> PyResult<()> {
         let other = if aspect == Aspect::Impact { "forces" } else { "impacts" };
         let wrong = || PyAttributeError::new_err(format!("the answers of {other} have no '{name}'"));
@@ -189,33 +189,33 @@ impl Answers {
         self.table.columns.names()
     }
 
-    /// Of each state the `Verdict`, (n,) of uint8.
+    /// The `Verdict` of each state, (n,) of uint8.
     #[getter]
     fn verdict(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.array(py, &self.lists.verdict, |arrays| &mut arrays.verdict, &[self.states])
     }
 
-    /// Of each state whether every combination is decided by an error bound, (n,).
+    /// Whether every combination of each state is decided by an error bound, (n,).
     #[getter]
     fn all_proven(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.array(py, &self.lists.all_proven, |arrays| &mut arrays.all_proven, &[self.states])
     }
 
-    /// State k has the outcomes from offsets[k] to offsets[k + 1], (n + 1,).
+    /// Offsets of the outcomes, (n + 1,): state k has those from offsets[k] up to, but not including, offsets[k + 1].
     #[getter]
     fn offsets(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.array(py, &self.lists.offsets, |arrays| &mut arrays.offsets, &[self.states + 1])
     }
 
-    /// Of each outcome and contact the `Mode`, (m, contacts) of int8; OPEN if the contact is not closed.
+    /// The `Mode` of each contact in each outcome, (m, contacts) of int8; OPEN if the contact is not closed.
     #[getter]
     fn modes(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         let contacts = self.table.columns.contacts().len();
         self.array(py, &self.lists.modes, |arrays| &mut arrays.modes, &[self.outcomes, contacts])
     }
 
-    /// Of each outcome and contact [tangential, normal] [N s], (m, contacts, 2); NaN if the contact is not closed or the
-    /// outcome is not decided.
+    /// The impulse [tangential, normal] of each contact in each outcome [N s], (m, contacts, 2); NaN if the contact is
+    /// not closed or the outcome is not decided.
     #[getter]
     fn impulse(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.of(Aspect::Impact, "impulse")?;
@@ -223,8 +223,8 @@ impl Answers {
         self.array(py, &self.lists.impulse, |arrays| &mut arrays.impulse, &[self.outcomes, contacts, 2])
     }
 
-    /// Of each outcome and contact [tangential, normal] [N], (m, contacts, 2); NaN if the contact is not closed or the
-    /// outcome is not decided.
+    /// The force [tangential, normal] of each contact in each outcome [N], (m, contacts, 2); NaN if the contact is not
+    /// closed or the outcome is not decided.
     #[getter]
     fn force(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.of(Aspect::Forces, "force")?;
@@ -232,7 +232,8 @@ impl Answers {
         self.array(py, &self.lists.impulse, |arrays| &mut arrays.impulse, &[self.outcomes, contacts, 2])
     }
 
-    /// Of each outcome v after the impact, (m, nq) in the order of `coordinates` [m/s, rad/s]; NaN if it is not decided.
+    /// The velocity v after the impact of each outcome, (m, nq) in the order of `coordinates` [m/s, rad/s]; NaN if the
+    /// outcome is not decided.
     #[getter]
     fn velocity_after(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.of(Aspect::Impact, "velocity_after")?;
@@ -240,7 +241,8 @@ impl Answers {
         self.array(py, &self.lists.velocity_after, |arrays| &mut arrays.velocity_after, &shape)
     }
 
-    /// Of each outcome the rate of v, (m, nq) in the order of `coordinates` [m/s^2, rad/s^2]; NaN if it is not decided.
+    /// The acceleration dv/dt of each outcome, (m, nq) in the order of `coordinates` [m/s^2, rad/s^2]; NaN if the
+    /// outcome is not decided.
     #[getter]
     fn acceleration(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.of(Aspect::Forces, "acceleration")?;
@@ -248,55 +250,55 @@ impl Answers {
         self.array(py, &self.lists.velocity_after, |arrays| &mut arrays.velocity_after, &shape)
     }
 
-    /// Of each outcome the smallest slack, free of units, (m,); NaN if it has no inequality.
+    /// The smallest slack of each outcome, free of units, (m,); NaN if the outcome has no inequality.
     #[getter]
     fn margin(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.array(py, &self.lists.margin, |arrays| &mut arrays.margin, &[self.outcomes])
     }
 
-    /// Of each outcome the sign of det A, (m,) of int8; 0 if it is not defined, as on a border.
+    /// The index of each outcome, the sign of det A, (m,) of int8; 0 if it is not defined, as on a border.
     #[getter]
     fn index(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.array(py, &self.lists.index, |arrays| &mut arrays.index, &[self.outcomes])
     }
 
-    /// Of each outcome whether an error bound shows every sign, (m,).
+    /// Whether an error bound shows every sign of each outcome, (m,).
     #[getter]
     fn proven(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.array(py, &self.lists.proven, |arrays| &mut arrays.proven, &[self.outcomes])
     }
 
-    /// Of each outcome whether it is a corner of a family of outcomes, (m,).
+    /// Whether each outcome is a corner of a family of outcomes, (m,).
     #[getter]
     fn family(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.array(py, &self.lists.family, |arrays| &mut arrays.family, &[self.outcomes])
     }
 
-    /// Of each state why it was refused, or None.
+    /// A list with the reason why each state was refused, or None.
     #[getter]
     fn error<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.texts(py, &self.texts[0], |arrays| &arrays.error, self.states)
     }
 
-    /// Of each state what a reader should know, or None.
+    /// A list with the notes on each state, or None.
     #[getter]
     fn notes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.texts(py, &self.texts[1], |arrays| &arrays.notes, self.states)
     }
 
-    /// Of each outcome what is exactly zero, if it is on a border, or None.
+    /// A list with what is exactly zero in each outcome that is on a border, else None.
     #[getter]
     fn border<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.texts(py, &self.texts[2], |arrays| &arrays.border, self.outcomes)
     }
 
-    /// Of each outcome the modes of the families that it is a corner of, or None.
+    /// A list with the modes of the families of which each outcome is a corner, or None.
     #[getter]
     fn families<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.texts(py, &self.texts[3], |arrays| &arrays.families, self.outcomes)
     }
 
-    /// How many states there are.
+    /// The number of states.
     fn __len__(&self) -> usize {
         self.states
     }
@@ -312,7 +314,7 @@ impl Answers {
         let list = |names: &[String]| if names.is_empty() { "none".to_owned() } else { names.join(", ") };
         let contacts = list(self.table.columns.contacts());
         let mut first = String::new();
-        // The list of errors is as long as that of states.
+        // The list of errors has an entry per state, so it is made only if it is needed.
         if refused > 0 {
             let mut errors = self.error(py)?.try_iter()?.filter_map(Result::ok).filter(|error| !error.is_none());
             first = errors.next().map_or(first, |error| format!("; first refusal: {error}"));
@@ -334,14 +336,14 @@ impl Answers {
         Ok(Self::new(Arc::new(table), Box::new(arrays)))
     }
 
-    /// A pyarrow.Table with a row per outcome, and one for a state without outcome: the columns that `heelstrike batch`
-    /// writes as CSV, without `line`. `id` has an entry per state, by default its number from 0.
+    /// A pyarrow.Table with a row per outcome, and a row for each state without outcome. Its columns are those that
+    /// `heelstrike batch` writes as CSV, without `line`. `id` has an entry per state, by default its number from 0.
     #[pyo3(signature = (id = None))]
     fn to_arrow<'py>(slf: &Bound<'py, Self>, id: Option<&Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
         slf.py().import("heelstrike._tables")?.call_method1("to_arrow", (slf, id))
     }
 
-    /// The same as a pandas.DataFrame.
+    /// The table of `to_arrow` as a pandas.DataFrame.
     #[pyo3(signature = (id = None))]
     fn to_pandas<'py>(slf: &Bound<'py, Self>, id: Option<&Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
         slf.py().import("heelstrike._tables")?.call_method1("to_pandas", (slf, id))

@@ -1,9 +1,9 @@
-//! The Rust half of the Python package: what it answers, as dictionaries and arrays.
+//! The Rust half of the Python package: it gives answers as dictionaries and arrays.
 //!
 //! ```text
 //!     robot      URDF -> Robot; one state -> dictionary; inspection
 //!     rows       arrays q, v -> rows on all cores -> Answers, by pipelines that are kept
-//!     answers    the arrays of a batch, made when they are asked for
+//!     answers    the arrays of a batch, made when Python first asks for them
 //!     study      sweeps, touchdowns, contact problems -> dictionaries
 //!     picture    the same questions -> SVG and text
 //!     watch      Ctrl-C and the budget of work
@@ -42,7 +42,7 @@ mod core {
     }
 }
 
-/// Run the command `heelstrike` with these arguments, of which the first is its name.
+/// Run the command `heelstrike` with these arguments; the first one is the program's name.
 #[pyfunction]
 fn main(py: Python<'_>, arguments: Vec<std::ffi::OsString>) -> u8 {
     py.detach(|| heelstrike::cli::main(arguments))

@@ -14,7 +14,7 @@ use heelstrike::write::{Palette, Subject, text};
 use heelstrike::{Detail, Inspection};
 use pyo3::prelude::*;
 
-/// A picture, if there is something to draw, and text.
+/// A picture as SVG, if there is something to draw, and text.
 type Shown = (Option<String>, String);
 
 pub fn robot(model: &Model) -> Shown {
@@ -23,7 +23,7 @@ pub fn robot(model: &Model) -> Shown {
     (picture::robot(robot, &options.feet, Forward::Along).svg(), text)
 }
 
-/// Answers a question again, which was a state or a study, and shows it.
+/// Answers a state or a study again, and draws the answer.
 pub fn answer(py: Python<'_>, model: &Model, kind: &str, question: &str, friction: Option<&str>) -> PyResult<Shown> {
     let friction = friction.and_then(|friction| friction.parse().ok());
     let Model { robot, options, .. } = model;

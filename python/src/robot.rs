@@ -30,27 +30,27 @@ pub struct Model {
     pub robot: heelstrike::Robot,
     /// How contacts are found.
     pub options: Options,
-    /// How long an answer may take.
+    /// Processor time that an answer may take.
     pub budget: Seconds,
 }
 
 /// A planar robot, read from a URDF file.
 ///
 /// Options: `plane` ("xz", "yz", ...), `hold` (values of joints to fix, by name [rad, m]), `base` ("fixed",
-/// "floating"), `axis_tolerance` [rad], `package_path` (folders of meshes), `feet` (contacts to add, as a state lists
-/// them), `contact_tolerance` [m], `resting_speed` [m/s], `strict_limits`, `budget` (seconds of processor time that an
-/// answer may take, None for no end). Raises Refused with `file`, `place` and `hint`.
+/// "floating"), `axis_tolerance` [rad], `package_path` (folders with packages of meshes), `feet` (contacts to add,
+/// listed as in a state), `contact_tolerance` [m], `resting_speed` [m/s], `strict_limits`, `budget` (seconds of
+/// processor time that an answer may take, None for no limit). Raises Refused with `file`, `place` and `hint`.
 #[pyclass(frozen, module = "heelstrike")]
 pub struct Robot {
     pub model: Arc<Model>,
     impacts: Asker,
     forces: Asker,
-    /// What it was made from: text, the file that meshes are looked for from, options.
+    /// What the robot was made from: URDF text, path from which meshes are found, options.
     source: (String, PathBuf, Option<Py<PyDict>>),
 }
 
 impl Model {
-    /// Reads the robot; meshes are looked for as of the file `path`.
+    /// Reads the robot and its meshes, which are found from the file `path`.
     fn read(text: &str, path: &Path, options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
         let mut description = Description::from_urdf(text).map_err(refused)?;
         let mut reduction = Reduction { reductions: Reductions::ALL, ..Reduction::default() };
@@ -84,7 +84,7 @@ impl Model {
         Ok(Self { description, reduction, robot, options, budget })
     }
 
-    /// The answer to a state as JSON, and what else `then` makes of it.
+    /// The answer to a state as JSON, and the result of `then` on it.
     pub fn answer<T>(
         &self,
         state: &str,
@@ -108,13 +108,13 @@ impl Model {
 #[derive(Clone, Copy)]
 pub struct Asked {
     pub aspect: Aspect,
-    /// Of links to which the state gives none.
+    /// Friction of links to which the state gives none.
     pub friction: Option<Friction>,
     pub detail: Detail,
     pub next: bool,
 }
 
-/// A finite number from 0 on, or `None` for what is usual.
+/// A finite number from 0 on, or `None` for the default.
 fn positive(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
     let check = |number: f64| {
         from_zero(&number.to_string())
@@ -140,11 +140,11 @@ fn held(description: &Description, by_name: &Bound<'_, PyDict>) -> PyResult<Vec<
     by_name.iter().map(held).collect()
 }
 
-/// Contacts as a state lists them.
+/// Reads contacts that are listed as in a state.
 fn contacts(robot: &heelstrike::Robot, list: &Bound<'_, PyAny>) -> PyResult<Vec<NamedContact>> {
     let state = PyDict::new(list.py());
     state.set_item("contacts", list)?;
-    // As the option has it, of which no one has written the text.
+    // The place is that of the option, without line and column, because no one wrote the text.
     let own = |error: Error| {
         let place = error.place().map(|place| place.replacen("contacts", "feet", 1));
         refused(place.into_iter().fold(error.nowhere(), Error::at))
@@ -153,7 +153,7 @@ fn contacts(robot: &heelstrike::Robot, list: &Bound<'_, PyAny>) -> PyResult<Vec<
     Ok(state.scene.contacts.unwrap_or_default())
 }
 
-/// Friction as an argument: a number, `inf` and "infinite" included.
+/// Reads friction as an argument: a number, `inf` and "infinite" included.
 pub fn friction(value: &Bound<'_, PyAny>) -> PyResult<Friction> {
     match value.extract::<f64>() {
         Ok(number) => rough(number).map_err(refused),
@@ -161,7 +161,7 @@ pub fn friction(value: &Bound<'_, PyAny>) -> PyResult<Friction> {
             let expected = "friction is a number from 0 on or \"infinite\"; by link it is a dictionary, which rows take \
                             and a state holds itself";
             let text = value.extract::<String>().map_err(|_| PyTypeError::new_err(expected))?;
-            // As `float` reads it.
+            // Python's `float` reads this text, too.
             if text == "inf" {
                 return Ok(Friction::Infinite);
             }
@@ -190,13 +190,13 @@ impl Robot {
         let text = utf8(bytes.extract()?).map_err(refused);
         let robot = text.and_then(|text| Self::of(py, text, &path, options)).and_then(|robot| robot.cautioned(py));
         robot.map_err(|error| {
-            // As a message of the command has it.
+            // The exception names the file, as messages of the command do.
             let named = error.value(py).setattr("file", &path);
             named.err().unwrap_or(error)
         })
     }
 
-    /// A robot from the text of a URDF file; meshes are looked for in the current folder.
+    /// A robot from the text of a URDF file; paths of meshes start in the current folder.
     #[staticmethod]
     #[pyo3(signature = (text, **options))]
     fn from_string(py: Python<'_>, text: &str, options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
@@ -221,8 +221,8 @@ impl Robot {
         self.model.robot.reading().plane.name()
     }
 
-    /// Values of joints that `hold` fixed, and of those that follow joints without a coordinate; all others without a
-    /// coordinate are at zero.
+    /// Values [rad, m] of joints that `hold` fixes, and of mimic joints that follow a joint without a coordinate. All
+    /// other joints without a coordinate are at zero.
     #[getter]
     fn held(&self) -> HashMap<&str, f64> {
         let held = self.model.robot.reading().frozen.iter().filter_map(|joint| match joint.reason {
@@ -232,8 +232,8 @@ impl Robot {
         held.collect()
     }
 
-    /// What was read: plane, masses [kg], links, joints, feet, what was left out; as `heelstrike inspect --format
-    /// json`.
+    /// The robot that was read: plane, masses [kg], links, joints, feet, what was left out; as `heelstrike inspect
+    /// --format json` writes it.
     fn inspect<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let mut out = Vec::new();
         append_line(&mut out, &Inspection::new(&self.model.robot, &self.model.options.feet));
@@ -243,9 +243,9 @@ impl Robot {
     /// Every outcome of the impact of one state.
     ///
     /// `state` is a dictionary, a JSON text or a path of a JSON file, as the command `heelstrike impact` reads it;
-    /// lengths in m, angles in rad. `friction` is for links to which it gives none: a number from 0 on, or "infinite".
-    /// Returns the result as the command writes it; with `explain` also why every other combination fails, with
-    /// `matrices` M, J and G, with `next` the forces just after each outcome. Raises Refused.
+    /// lengths in m, angles in rad. `friction`, a number from 0 on or "infinite", applies to links to which the state
+    /// gives none. Returns the result as the command writes it. `explain` adds why every other combination fails,
+    /// `matrices` adds M, J and G, `next` adds the forces just after each outcome. Raises Refused.
     #[pyo3(signature = (state, *, friction = None, explain = false, matrices = false, next = false))]
     fn impact<'py>(
         slf: &Bound<'py, Self>,
@@ -260,12 +260,12 @@ impl Robot {
 
     /// Every outcome of the impacts of many states.
     ///
-    /// `q` and `v` are (n, nq) arrays of float64 in C order, in the order of `coordinates` [m, rad; m/s, rad/s], v =
-    /// dq/dt in the world's frame; other real numbers and other orders are converted. `friction` (0 to inf) and
-    /// `restitution` (0 to 1) are one number for all, an (n,) array, or a dictionary by link. `contacts` lists contacts
-    /// as a state does, else they are detected. Further fields of a state hold for all rows, as `place="lowest"` or
-    /// `ground={"slope": 0.1}`. `threads` is 0 or None for all cores. A row that is refused has the verdict REFUSED and
-    /// its reason in `error`; nothing raises for it.
+    /// `q` and `v` are (n, nq) arrays of float64 in C order, with columns in the order of `coordinates` [m, rad; m/s,
+    /// rad/s]; v = dq/dt in the world's frame. Other real numbers and other orders are converted. `friction` (0 to inf)
+    /// and `restitution` (0 to 1) are one number for all rows, an (n,) array, or a dictionary by link. `contacts` lists
+    /// contacts as a state does; without it they are detected. Further fields of a state apply to all rows, such as
+    /// `place="lowest"` or `ground={"slope": 0.1}`. `threads` is 0 or None for all cores. A refused row raises nothing:
+    /// it has the verdict REFUSED, and its reason in `error`.
     #[pyo3(signature = (q, v, *, friction = None, restitution = None, contacts = None, threads = None, **scene))]
     fn impacts<'py>(
         slf: &Bound<'py, Self>,
@@ -281,8 +281,8 @@ impl Robot {
         Rows::read(slf.get(), asker, [q, v], friction, restitution, contacts, scene)?.answer(slf.py(), asker, threads)
     }
 
-    /// The contact forces and accelerations in sustained contact: of one state as `impact`, with `friction`, `explain` and
-    /// `matrices`, of rows as `impacts`.
+    /// The contact forces and accelerations in sustained contact: of one state, given as for `impact` with `friction`,
+    /// `explain` and `matrices`; or of rows, given as for `impacts`.
     #[pyo3(signature = (
         q, v = None, *, friction = None, restitution = None, contacts = None, threads = None, explain = false,
         matrices = false, **scene
@@ -318,7 +318,7 @@ impl Robot {
     /// Outcomes against one or two parameters: regions, borders and samples.
     ///
     /// `study` is a dictionary, a JSON text or a path of a JSON file, as `heelstrike sweep` reads it. Returns the
-    /// result as the command writes it. The work may take `budget` seconds of processor time; None for no end. Raises
+    /// result as the command writes it. The work may take `budget` seconds of processor time, None for no limit. Raises
     /// Refused.
     #[pyo3(signature = (study, *, friction = None, threads = None, budget = Limit(Some(Duration::from_secs(60)))))]
     fn sweep<'py>(
@@ -333,12 +333,13 @@ impl Robot {
 
     /// The impacts at the touchdowns of a recording, as `heelstrike batch --touchdowns` writes them.
     ///
-    /// `table` is a path (CSV, TSV, flat NDJSON, Parquet, Arrow), a data frame, an Arrow table or a dictionary of columns: `time`
-    /// [s], `q_base_x`, `q_base_z`, `q_base_pitch`, `q_<joint>` [m, rad], and rates likewise with `v_` unless `velocity`
-    /// is "central" or "backward". `at` is "crossing" or "row", `touching` strike, slow:SPEED,HEIGHT or near:HEIGHT. A
-    /// foot must descend by `drop` to at most `ground_height` [m], which depend on the robot's size; `simulated` takes
-    /// z = 0 as the ground. `foreign` names columns that are none of the state's, and are copied. `line` and `row` of a table in memory are those of its CSV: the first row is line 2. Raises
-    /// Refused for the table; a refused touchdown has an `error`.
+    /// `table` is a path (CSV, TSV, flat NDJSON, Parquet, Arrow), a data frame, an Arrow table or a dictionary of
+    /// columns: `time` [s], `q_base_x`, `q_base_z`, `q_base_pitch`, `q_<joint>` [m, rad], and the same names with `v_`
+    /// for rates, unless `velocity` is "central" or "backward". `at` is "crossing" or "row"; `touching` is "strike",
+    /// "slow:SPEED,HEIGHT" or "near:HEIGHT". A foot must descend by `drop` to at most `ground_height` [m]; the defaults
+    /// depend on the robot's size. `simulated` takes z = 0 as the ground. `foreign` names columns that do not belong to
+    /// the state and are copied. `line` and `row` of a table in memory count as in its CSV: the first row is line 2.
+    /// Raises Refused for the table; a refused touchdown has an `error`.
     #[pyo3(signature = (
         table, *, friction = None, velocity = None, at = None, touching = None, drop = None, ground_height = None,
         simulated = false, foreign = None
@@ -378,7 +379,7 @@ impl Robot {
         picture::robot(&self.model)
     }
 
-    /// A picture of a question that was answered, as SVG, and the answer as text.
+    /// The picture of a question, which is answered again, as SVG, and the answer as text.
     fn _picture(
         &self,
         py: Python<'_>,
@@ -408,7 +409,7 @@ impl Robot {
 }
 
 impl Robot {
-    /// The robot, once Python was warned with its cautions.
+    /// Warns Python of the robot's cautions; returns the robot.
     fn cautioned(self, py: Python<'_>) -> PyResult<Self> {
         warn(py, self.model.robot.reading().cautions.iter().cloned())?;
         Ok(self)
@@ -417,7 +418,8 @@ impl Robot {
     fn of(py: Python<'_>, text: &str, path: &Path, options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
         let model = Model::read(text, path, options)?;
         let asker = |aspect| Asker::new(&model.robot, Table::new(aspect, &model.robot, &model.options.feet, &[]));
-        // Another process may run in another folder, and lists and dictionaries may change until it is asked for.
+        // A copy may be made later, for a process in another folder, and the caller's lists and dictionaries may change
+        // before.
         let absolute = |path: &Path| {
             let here = |_| std::env::current_dir().map(|folder| folder.join("robot.urdf"));
             std::path::absolute(path).or_else(here).unwrap_or_else(|_| path.to_owned())

@@ -1,4 +1,4 @@
-//! Arrays of states: rows of q and v, answered by pipelines that are kept from call to call.
+//! Arrays of states: rows of q and v, answered by pipelines that are reused from call to call.
 
 use crate::answers::{Answers, Table};
 use crate::robot::{Model, Robot, friction};
@@ -24,7 +24,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 const TOGETHER: usize = 256;
 
 self_cell!(
-    /// A pipeline and the robot that it is of.
+    /// A pipeline with the robot that it borrows.
     struct OwnPipeline {
         owner: Arc<Model>,
         #[covariant]
@@ -32,27 +32,27 @@ self_cell!(
     }
 );
 
-/// A pipeline and the state that it answers, from call to call.
+/// A pipeline and the state that it answers, both reused from call to call.
 pub struct Kept {
     pipeline: OwnPipeline,
     state: State,
-    /// Where the state comes from, but for its numbers.
+    /// The origin of the state's fields, except for the numbers of a row.
     common: Arc<Common>,
 }
 
-/// Who answers one kind of question about a robot.
+/// Answers one kind of question about a robot.
 pub struct Asker {
-    /// Of calls whose rows have no fields in common.
+    /// For calls whose rows have no common fields.
     pub plain: Arc<Common>,
     /// Pipelines that no call is using.
     pub kept: Mutex<Vec<Kept>>,
-    /// Of the last call whose rows had fields in common.
+    /// For the last call whose rows had common fields.
     pub last: Mutex<Option<Arc<Common>>>,
 }
 
 /// What all rows of a call have in common.
 pub struct Common {
-    /// As Python gave it.
+    /// The fields as Python gave them.
     fields: Option<Py<PyAny>>,
     state: State,
     pub table: Arc<Table>,
@@ -69,14 +69,14 @@ pub struct Rows<'py> {
     restitution: Option<Given<'py>>,
 }
 
-/// What all rows have in common, and the numbers that are given besides.
+/// The common fields of all rows, and the friction and restitution that are given as one number.
 struct Scene {
     common: Arc<Common>,
     friction: Option<Friction>,
     restitution: Option<f64>,
 }
 
-/// The same without the interpreter.
+/// The numbers of all rows as slices, which need no interpreter.
 struct Numbers<'a> {
     coordinates: &'a [String],
     q: &'a [f64],
@@ -85,14 +85,14 @@ struct Numbers<'a> {
     restitution: Option<&'a [f64]>,
 }
 
-/// The numbers of an array; few are copied, since NumPy's record of a borrow takes longer.
+/// The numbers of an array. Small arrays are copied, because NumPy's record of a borrow takes longer.
 enum Given<'py> {
     Few(Vec<f64>),
     Many(PyReadonlyArrayDyn<'py, f64>),
 }
 
 impl Given<'_> {
-    /// So many are few.
+    /// Arrays of at most this many numbers are copied.
     const FEW: usize = 256;
 
     fn numbers(&self) -> PyResult<&[f64]> {
@@ -103,7 +103,8 @@ impl Given<'_> {
     }
 }
 
-/// The array as f64 in C order, with this many numbers in each of its rows; it is copied only if it is something else.
+/// The number of rows, and the array as f64 in C order with a number per coordinate in each row, or one number per row
+/// without `coordinates`. A large array is copied only if it has another type or order.
 fn array<'py>(what: &str, value: &Bound<'py, PyAny>, coordinates: Option<&[String]>) -> PyResult<(usize, Given<'py>)> {
     let columns = coordinates.map(<[String]>::len);
     let py = value.py();
@@ -142,8 +143,7 @@ fn array<'py>(what: &str, value: &Bound<'py, PyAny>, coordinates: Option<&[Strin
     Ok((own.shape()[0], if few { Given::Few(own.to_vec()?) } else { Given::Many(own.readonly()) }))
 }
 
-/// Refuses a table whose columns are named as coordinates, or as the tool's own tables name them, and stand in another
-/// order.
+/// Refuses a table whose columns are named as coordinates, or as in the tool's own tables, but are in another order.
 fn check_order(what: &str, value: &Bound<'_, PyAny>, coordinates: &[String]) -> PyResult<()> {
     let names = value.getattr("column_names").or_else(|_| value.getattr("columns")).and_then(|names| names.try_iter());
     let names = names.into_iter().flatten().map(|name| name?.extract::<String>()).collect::<PyResult<Vec<_>>>();
@@ -171,10 +171,11 @@ impl Asker {
         Self { plain: Arc::new(plain), kept: Mutex::default(), last: Mutex::default() }
     }
 
-    /// What `fields` of a state mean, which is computed again only if they are others than those of the last call.
+    /// The common part of rows with these `fields`. It is computed again only if they differ from those of the last
+    /// call.
     fn common(&self, model: &Model, fields: &Bound<'_, PyDict>) -> PyResult<Arc<Common>> {
         let py = fields.py();
-        // Python runs below, and may let another thread ask meanwhile.
+        // No lock is held below, because Python code runs there and may let another thread ask.
         let last = self.last.lock().unwrap_or_else(PoisonError::into_inner).clone();
         let is_last = |last: &Arc<Common>| last.fields.as_ref().is_some_and(|known| same(known.bind(py), fields));
         if let Some(last) = last.filter(is_last) {
@@ -192,7 +193,7 @@ impl Asker {
                 let hint = hint.map_or(String::new(), |hint| format!("; {hint}"));
                 PyTypeError::new_err(format!("there is no argument '{name}'{hint}"))
             }
-            // No one has written the text.
+            // Without line and column, because no one wrote the text.
             _ => refused(error.nowhere()),
         };
         let state = State::from_json(&to_json(fields)?, &model.robot, &Defaults::default()).map_err(wrong)?;
@@ -217,14 +218,14 @@ impl Asker {
     }
 }
 
-/// Whether a link has a shape of the file or one that was added.
+/// Whether a link has a shape in the file, or a foot was added to it.
 fn has_foot(model: &Model, link: usize) -> bool {
     !model.robot.links()[link].shapes.is_empty() || model.options.feet.iter().any(|foot| foot.link == link)
 }
 
-/// Whether both are the same and of Python's own types.
+/// Whether both values are equal and of Python's own types.
 fn same(a: &Bound<'_, PyAny>, b: &Bound<'_, PyAny>) -> bool {
-    // Copies have these in common that cannot change.
+    // Copies share objects that cannot change.
     if a.is(b) {
         return true;
     }
@@ -245,7 +246,8 @@ fn same(a: &Bound<'_, PyAny>, b: &Bound<'_, PyAny>) -> bool {
     plain && a.eq(b).unwrap_or(false)
 }
 
-/// An argument that has a number per row, or one for all of them; by link it is one of the state's `fields`.
+/// An argument with a number per row, or with one value for all rows. A dictionary by link becomes one of the state's
+/// `fields` instead.
 type Argument<'py> = (Option<Given<'py>>, Option<Bound<'py, PyAny>>);
 
 fn argument<'py>(
@@ -255,13 +257,13 @@ fn argument<'py>(
     fields: &mut Option<Bound<'py, PyDict>>,
 ) -> PyResult<Argument<'py>> {
     let Some(value) = value else { return Ok((None, None)) };
-    // To ask a dictionary whether it is a number takes a microsecond.
+    // Dictionaries come first, because asking one whether it is a number takes a microsecond.
     if value.is_instance_of::<PyDict>() {
         fields.get_or_insert_with(|| PyDict::new(value.py())).set_item(what, value)?;
         return Ok((None, None));
     }
     let is_list = value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>();
-    // Not by whether it can be read as a number: for some versions of NumPy, an array of one can.
+    // Whether it can be read as a number does not tell: in some versions of NumPy an array of one entry can.
     let is_array = || Ok::<_, PyErr>(is_list || value.hasattr("shape")? && !value.getattr("shape")?.is_empty()?);
     if value.is_instance_of::<PyFloat>() || value.is_instance_of::<PyInt>() || !is_array()? {
         return Ok((None, Some(value.clone())));
@@ -321,17 +323,17 @@ impl<'py> Rows<'py> {
             friction: friction.as_ref().map(Given::numbers).transpose()?,
             restitution: restitution.as_ref().map(Given::numbers).transpose()?,
         };
-        // One row has no others to share with.
+        // A single row has no others to share a total with.
         let total = model.budget.filter(|_| rows > 1).map(|each| TotalBudget::new(budget(Some(each)), None));
         let arrays = without_python(py, || {
             let (numbers, total, call) = (&numbers, total.as_ref(), Call::current());
             let mut all = table.arrays(rows);
             if threads <= 1 {
-                // What it computes is written once.
+                // One thread writes directly to the result.
                 let mut worker = Worker::new(&model, asker, &scene);
                 for row in 0..rows {
                     worker.row(numbers, row, total, &mut all);
-                    // A row that takes long looks for signals itself.
+                    // Within a long row the budget's clock checks for signals.
                     if raised() || row % TOGETHER == TOGETHER - 1 && interrupted() {
                         break;
                     }
@@ -353,7 +355,7 @@ impl<'py> Rows<'py> {
                 all.append(block);
                 if raised() { Err(Reason::BeyondBudget.into()) } else { Ok(()) }
             };
-            // Only signals end it early, which are raised then.
+            // Only a signal ends the run early, and its exception is then raised.
             let _ = run(|| Ok(ranges.next()), threads, AHEAD, answerer, append);
             all
         })?;
@@ -362,7 +364,7 @@ impl<'py> Rows<'py> {
     }
 }
 
-/// A pipeline at work; it is given back at the end.
+/// A pipeline at work; it returns to the pool when dropped.
 struct Worker<'p> {
     kept: Option<Kept>,
     pool: &'p Mutex<Vec<Kept>>,
@@ -387,7 +389,7 @@ impl<'p> Worker<'p> {
         Self { kept: Some(kept), pool: &asker.kept }
     }
 
-    /// Answers a row.
+    /// Answers a row and appends the answer to `out`.
     fn row(&mut self, numbers: &Numbers, row: usize, total: Option<&TotalBudget>, out: &mut Arrays) {
         let Some(Kept { pipeline, state, .. }) = &mut self.kept else { return };
         let answer = set(state, numbers, row).and_then(|is_placed_twice| {
@@ -413,10 +415,10 @@ impl Drop for Worker<'_> {
     }
 }
 
-/// The note of a row that places the base as its stance does.
+/// The note of a row that places the base although the stance does.
 const PLACED_TWICE: &str = "x and z of q and v are not used: the stance places the base";
 
-/// Sets the numbers of a row; whether it places a base that a stance places.
+/// Sets the numbers of a row. Returns whether the row places the base although a stance does.
 fn set(state: &mut State, numbers: &Numbers, row: usize) -> heelstrike::Result<bool> {
     let nq = numbers.coordinates.len();
     let range = row * nq..(row + 1) * nq;

@@ -22,7 +22,7 @@ use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-/// How a study is worked on.
+/// Options for the work on a study.
 #[derive(Clone, Copy)]
 pub struct Work {
     pub friction: Option<Friction>,
@@ -30,7 +30,7 @@ pub struct Work {
     pub budget: Seconds,
 }
 
-/// Does the work on a study; also what a reader should know of it.
+/// Sweeps a study. Returns the result of `then`, and notes for the user.
 pub fn studied<T>(
     robot: &crate::robot::Model,
     text: &str,
@@ -55,7 +55,7 @@ pub fn studied<T>(
     Ok((made, notes))
 }
 
-/// A number of seconds, which a budget may be, or `None` or "infinite".
+/// Reads a budget: a number of seconds, or `None` or "infinite" for no limit.
 pub fn limit(value: &Bound<'_, PyAny>) -> PyResult<Seconds> {
     if value.is_none() {
         return Ok(None);
@@ -123,7 +123,7 @@ pub fn touchdowns<'py>(
     from_json(py, &out, None)
 }
 
-/// The answers to the touchdowns of a table, as a JSON list, and what a reader should know of them.
+/// The answers to the touchdowns of a table, as a JSON list, and notes for the user.
 fn found(
     model: &crate::robot::Model,
     mut states: States,
@@ -175,9 +175,9 @@ fn found(
 
 /// Every outcome of a contact problem that is given as matrices, as `heelstrike solve` writes it.
 ///
-/// `G` is the Delassus matrix, (2 n, 2 n) with rows tangential, normal per contact [1/kg]; `c` the contact velocities
-/// before, (n, 2) or (2 n,) [m/s]; `friction` one number from 0 to inf or one per contact; `restitution` likewise, 0 to
-/// 1. Raises Refused.
+/// `G` is the Delassus matrix [1/kg], (2 n, 2 n), with a tangential and a normal row per contact; `c` the contact
+/// velocities before [m/s], (n, 2) or (2 n,); `friction` one number from 0 to inf, or one per contact; `restitution`
+/// one number from 0 to 1, or one per contact. Raises Refused.
 #[pyfunction]
 #[pyo3(signature = (G, c, friction, restitution = None, *, explain = false))]
 #[expect(non_snake_case, reason = "the name of the Delassus matrix")]

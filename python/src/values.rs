@@ -32,12 +32,12 @@ pub fn refused(error: Error) -> PyErr {
     refused
 }
 
-/// The exception of a refusal of `value`, whose places in the text are left out if no one has written it.
+/// The exception of a refusal of `value`. A dictionary has no text that anyone wrote, so line and column are left out.
 pub fn refused_in(value: &Bound<'_, PyAny>, error: Error) -> PyErr {
     refused(if value.is_instance_of::<PyDict>() { error.nowhere() } else { error })
 }
 
-/// The exception of Python's own for a value of the wrong type, with the argument's name.
+/// Adds the argument's name to Python's own exception for a wrong type.
 pub fn of_argument(name: &str) -> impl Fn(PyErr) -> PyErr + '_ {
     move |error| {
         Python::attach(|py| match error.is_instance_of::<PyTypeError>(py) {
@@ -47,7 +47,7 @@ pub fn of_argument(name: &str) -> impl Fn(PyErr) -> PyErr + '_ {
     }
 }
 
-/// The value of a name that an argument may have.
+/// The value of the choice `name` of an argument.
 pub fn choice<T: Copy>(what: &str, choices: Choices<T>, name: Option<&str>) -> PyResult<Option<T>> {
     let unknown = |name: &str, known| PyValueError::new_err(format!("{what} is {known}, not \"{name}\""));
     name.map(|name| named(choices, name).map_err(|known| unknown(name, known))).transpose()
@@ -65,13 +65,13 @@ pub fn as_keywords(text: &str) -> String {
     pieces.collect::<Vec<_>>().join("`")
 }
 
-/// Warns with each of these notes.
+/// Issues a Python warning for each note.
 pub fn warn(py: Python<'_>, notes: impl IntoIterator<Item = String>) -> PyResult<()> {
     let warnings = py.import("warnings")?;
     notes.into_iter().try_for_each(|note| warnings.call_method1("warn", (as_keywords(&note),)).map(drop))
 }
 
-/// A JSON text of a value, in which NumPy's numbers and arrays count as Python's, or that of a file.
+/// The JSON text of a value, in which NumPy's numbers and arrays count as Python's, or the text of a file.
 pub fn to_json(value: &Bound<'_, PyAny>) -> PyResult<String> {
     let json = value.py().import("heelstrike._values")?.call_method1("to_json", (value,))?;
     match json.cast::<PyBytes>() {
@@ -82,7 +82,7 @@ pub fn to_json(value: &Bound<'_, PyAny>) -> PyResult<String> {
     }
 }
 
-/// The value of a JSON text, with what `heelstrike.plot` needs to draw it.
+/// The Python value of a JSON text, with what `heelstrike.plot` needs to draw it.
 pub fn from_json<'py>(py: Python<'py>, text: &[u8], drawn: Option<Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
     py.import("heelstrike._values")?.call_method1("from_json", (text, drawn))
 }

@@ -1,8 +1,8 @@
 //! Ctrl-C and the budget of work.
 //!
-//! Work that may take long runs within a budget, whose clock is read again and again. On the thread that runs Python's
-//! signal handlers this clock also asks whether one has raised: the budgets of all threads of the call are then spent,
-//! and it raises.
+//! Long work runs within a budget, whose clock is read repeatedly. On the thread that called from Python, reading the
+//! clock also runs Python's signal handlers. If a handler raises, the budgets of all threads of the call are spent, and
+//! the call raises that exception.
 
 use heelstrike::Budget;
 use heelstrike::budget::SharedBudget;
@@ -13,10 +13,10 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// How often signals are looked for.
+/// Time between two checks for signals.
 const OFTEN: Duration = Duration::from_millis(50);
 
-/// What the clock goes on by whenever it is read after a signal: a few looks spend any budget.
+/// Time by which the clock advances at each reading after a handler raised: a few readings spend any budget.
 const AGE: Duration = Duration::from_secs(1 << 33);
 
 thread_local! {
@@ -26,23 +26,23 @@ thread_local! {
     static AGES: Cell<u32> = const { Cell::new(0) };
 }
 
-/// A call from Python, of which all its threads know whether a signal handler raised, and what.
+/// A call from Python, shared by its threads: whether a signal handler raised, and the exception.
 #[derive(Clone, Default)]
 pub struct Call(Arc<(AtomicBool, Mutex<Option<PyErr>>)>);
 
 impl Call {
-    /// That for which this thread works.
+    /// The call for which this thread works.
     pub fn current() -> Self {
         CALL.with_borrow(Clone::clone).unwrap_or_default()
     }
 
-    /// Lets this thread work for it.
+    /// Makes this thread work for the call.
     pub fn join(&self) {
         CALL.set(Some(self.clone()));
     }
 }
 
-/// The budget of work that may take so long; `None` for work without an end.
+/// A budget of this time; `None` for no limit.
 pub fn budget(time: Seconds) -> Budget {
     Budget { time: time.unwrap_or(Duration::MAX), clock }
 }
@@ -59,9 +59,10 @@ fn clock() -> Duration {
     }
 }
 
-/// Whether a signal handler raised, which is asked anew after a while.
+/// Whether a signal handler raised. On the calling thread, runs the handlers if the last check is longer ago than
+/// [`OFTEN`].
 pub fn interrupted() -> bool {
-    // Python handles signals on the thread that called.
+    // Of the threads of a call, only the one that called can run Python's signal handlers.
     if IS_CALLER.get() && !raised() && LAST.get().is_none_or(|last| last.elapsed() > OFTEN) {
         LAST.set(Some(Instant::now()));
         look();
@@ -74,7 +75,7 @@ pub fn raised() -> bool {
     CALL.with_borrow(|call| call.as_ref().is_some_and(|call| call.0.0.load(Relaxed)))
 }
 
-/// Runs Python's signal handlers, one of which may raise.
+/// Runs Python's signal handlers, and keeps the exception if one raises.
 fn look() {
     if let Err(raised) = Python::attach(|py| py.check_signals()) {
         let Call(call) = Call::current();
@@ -83,9 +84,9 @@ fn look() {
     }
 }
 
-/// Does the work without the interpreter; raises what a signal handler raised on the way.
+/// Does the work detached from the interpreter; then raises what a signal handler raised meanwhile.
 pub fn without_python<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
-    // A handler may itself call.
+    // A signal handler may itself make a call, so the outer call is restored.
     let call = Call::default();
     let (outer, was_caller) = (CALL.replace(Some(call.clone())), IS_CALLER.replace(true));
     AGES.set(1);

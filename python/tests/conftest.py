@@ -15,7 +15,7 @@ COMMAND = [sys.executable, "-c", "import sys; from heelstrike._command import ma
 
 
 def peer(name):
-    """Another package of robots; without it a test is skipped, and fails where all of them are required."""
+    """Another robotics package. If it is missing the test is skipped, or fails if HEELSTRIKE_REQUIRE_PEERS is set."""
     if os.environ.get("HEELSTRIKE_REQUIRE_PEERS"):
         return importlib.import_module(name)
     return pytest.importorskip(name)

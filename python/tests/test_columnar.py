@@ -1,4 +1,4 @@
-"""Parquet and Arrow by the command, next to what pyarrow writes and reads."""
+"""Parquet and Arrow through the command, against what pyarrow writes and reads."""
 
 import subprocess
 
@@ -68,7 +68,7 @@ def test_columns_are_answered_as_the_csv(tmp_path, ending, options):
         assert found[name].to_pylist() == expected[name].to_pylist(), name
     for name in ["line", "touchdown_row"]:
         if name in found.column_names:
-            # A file has a header, and columns have none.
+            # Lines of a CSV count its header; rows of columns have none.
             assert [row + 1 for row in found[name].to_pylist()] == expected[name].to_pylist()
     for name, column in foreign.items():
         assert found[name].type == column.type, name

@@ -1,4 +1,4 @@
-"""States of Pinocchio, MuJoCo and Drake, against the packages themselves."""
+"""Converted states of Pinocchio, MuJoCo and Drake, against the packages' own kinematics."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ from conftest import peer
 import heelstrike
 from heelstrike._convert import Base
 
-# Right before left, continuous knees, and a roll joint that leaves the plane.
+# The right leg comes before the left one; the knees are continuous; a roll joint leaves the plane.
 LEG = """
   <link name="{side}_thigh"><inertial><origin xyz="0.01 0 -0.1"/><mass value="1"/>
     <inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/></inertial></link>
@@ -39,7 +39,7 @@ class Pinocchio:
         self.layout = heelstrike.from_pinocchio(self.model)
 
     def state(self, position, quaternion, linear, angular, joints, rates):
-        """q and v; base velocities are the world's, the quaternion w x y z."""
+        """q and v of the package, from base velocities in the world's frame and a quaternion w x y z."""
         q, v = self.pin.neutral(self.model), np.zeros(self.model.nv)
         turn = self.pin.Quaternion(*quaternion).toRotationMatrix()
         q[:7] = [*position, *quaternion[1:], quaternion[0]]
@@ -74,7 +74,7 @@ class MuJoCo:
         q, v = np.zeros(self.model.nq), np.zeros(self.model.nv)
         w, *vector = quaternion
         vector = np.array(vector)
-        # The world's angular velocity in the body's frame, by the conjugate quaternion.
+        # MuJoCo has the angular velocity in the body's frame: turned by the conjugate quaternion.
         cross = np.cross(-vector, angular)
         local = angular + 2 * (w * cross + np.cross(-vector, cross))
         q[:7], v[:6] = [*position, *quaternion], [*linear, *local]
@@ -141,7 +141,7 @@ def package(request):
 
 
 def planar(package, random, **change):
-    """A state in the plane, changed; also x, z, pitch, joints and their rates."""
+    """A random state in the plane, with the changes; and its x, z, pitch, joints and their rates."""
     pitch, turning = random.uniform(-1.5, 1.5), random.normal()
     angles, rates = random.uniform(-1.5, 1.5, 4), random.normal(size=4)
     x, z, along, up = random.normal(size=4)
@@ -204,7 +204,7 @@ def test_cosine_and_sine_of_no_angle_are_refused(robot):
         package.layout(robot, q, v)
 
 
-# The left knee is turned by twice the right one's angle and 0.1 rad.
+# The left knee mimics the right one: twice its angle plus 0.1 rad.
 MIMIC = URDF.replace(
     '<joint name="left_knee" type="continuous">',
     '<joint name="left_knee" type="continuous"><mimic joint="right_knee" multiplier="2" offset="0.1"/>',
@@ -333,7 +333,7 @@ def test_base_is_read_in_every_plane(plane):
     layout = heelstrike.Layout(7, 6, base=Base(slice(0, 3), [3, 4, 5, 6], slice(0, 3), slice(3, 6), False, False))
     robot = heelstrike.Robot.from_string(FLOATING, plane=plane)
     forward, up = (np.eye(3)["xyz".index(axis)] for axis in plane)
-    # As `heelstrike inspect` prints it.
+    # The plane's normal as `heelstrike inspect` prints it.
     axis = {"xz": "+y", "yz": "-x", "xy": "-z", "zy": "+x", "zx": "-y", "yx": "+z"}[plane]
     normal = np.eye(3)["xyz".index(axis[1])] * float(axis[0] + "1")
     q, v = layout(

@@ -15,7 +15,7 @@ from heelstrike import Mode, Verdict
 
 
 def state(robot, q, v, **scene):
-    """A row as a state."""
+    """The state, as a dictionary, of a row of q and v."""
 
     def part(entries):
         named = dict(zip(robot.coordinates, entries.tolist()))
@@ -84,7 +84,7 @@ def test_table_is_that_of_the_command(ramone, walk, tmp_path):
         for name in names:
             value = own[name]
             if name in ("error", "notes") and value:
-                # With the settings as keywords.
+                # The texts differ: Python's name settings as keywords.
                 assert row[name]
             elif value is None or isinstance(value, (bool, str)):
                 assert row[name] == {None: "", True: "true", False: "false"}.get(value, value), (name, own)

@@ -1,4 +1,4 @@
-"""The examples for Spark, where it is installed: the joined results are those of one process, broken rows included."""
+"""The examples for Spark, if it is installed: joined results equal those of one process, broken rows included."""
 
 import importlib
 import json

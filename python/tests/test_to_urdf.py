@@ -40,7 +40,7 @@ def test_mass_matrix_is_that_of_drake(tmp_path, name, text, base):
 
     (tmp_path / name).write_text(text)
     with warnings.catch_warnings():
-        # Nothing in what was converted is unclear.
+        # A converted robot causes no cautions.
         warnings.simplefilter("error", UserWarning)
         robot = heelstrike.Robot.from_string(convert(str(tmp_path / name)))
     assert robot.coordinates == ["x", "z", "pitch", "hip"]
@@ -59,7 +59,7 @@ def test_mass_matrix_is_that_of_drake(tmp_path, name, text, base):
         plant.SetFreeBodyPose(context, body, RigidTransform(RollPitchYaw(0, pitch, 0), [0, 0, 0]))
         plant.GetJointByName("hip").set_angle(context, hip)
         start = body.floating_velocities_start_in_v()
-        # Angular before linear.
+        # Drake's base velocities are angular first, then linear: vx, vz and the rate about y.
         places = [start + 3, start + 5, start + 1, plant.GetJointByName("hip").velocity_start()]
     expected = plant.CalcMassMatrix(context)[np.ix_(places, places)]
     state = {"friction": 0.5, "place": "lowest", "position": {"base": {"pitch": pitch}, "joints": {"hip": hip}}}
