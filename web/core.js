@@ -1,4 +1,4 @@
-// The core in WebAssembly: questions in, answers out.
+// The core in WebAssembly: takes questions and returns answers.
 
 /** Unpacks the core; gives a function that answers a question, both JSON as text. */
 async function core() {
@@ -14,7 +14,7 @@ async function core() {
     const place = room(bytes.length) >>> 0;
     new Uint8Array(memory.buffer, place, bytes.length).set(bytes);
     const from = answer() >>> 0;
-    // The memory may have moved.
+    // The memory may have moved while the core answered.
     const all = new Uint8Array(memory.buffer);
     return new TextDecoder().decode(all.subarray(from, all.indexOf(0, from)));
   };

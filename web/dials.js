@@ -36,7 +36,7 @@ class Dial {
     const value = this.of(state);
     const shown = typeof value === "number" ? String(Number(value.toPrecision(6))) : "";
     if (typeof value === "number") {
-      // A value outside of the range widens it.
+      // A value outside the range of the slider widens the range.
       this.range.min = Math.min(this.low, Math.floor(value / this.step) * this.step);
       this.range.max = Math.max(this.high, Math.ceil(value / this.step) * this.step);
     }

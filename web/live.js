@@ -1,4 +1,4 @@
-// All together: the state, what moves it, and what the core answers.
+// Connects the state, the controls that change it, and the answers of the core.
 
 /** The scale of the last drawing where the next one fits into it, so that nothing jumps. */
 function steady(fresh, last, isDragged) {
@@ -143,7 +143,7 @@ ready.then((ask) => {
     answer.data = page;
     answer.show(frame, chosen);
     const words = [page.texts[frame.sentence], ...frame.outcomes.map((outcome, number) => `${number + 1}: ${page.texts[outcome.words]}`)].join(" ");
-    // Those who listen hear what changes.
+    // Screen readers announce the change.
     if (place("status").textContent !== words) place("status").textContent = words;
     place("scene").setAttribute("aria-label", `The robot: ${words}`);
   }
@@ -210,7 +210,7 @@ ready.then((ask) => {
     try {
       kept = JSON.parse(decodeURIComponent(location.hash.slice(1)) || "{}");
     } catch {
-      // An address that was cut.
+      // The address was cut off: begin anew.
     }
     tolerance = kept.tolerance ?? null;
     along = kept.along ?? "";
@@ -258,7 +258,7 @@ ready.then((ask) => {
     const before = state;
     const next = moves.filter(([dial]) => dial).reduce((state, [dial, by]) => dial.in(state, dial.of(state) + by), state);
     move(next);
-    // Not into the ground.
+    // A refused state, such as one deep in the ground, is taken back.
     if (!page.frames[0].pose) move(before);
   }
 

@@ -1,25 +1,25 @@
-//! What the live page asks the core, as one function from JSON to JSON in WebAssembly.
+//! The core of the live page in WebAssembly: one function from JSON questions to JSON answers.
 //!
 //! ```text
-//!     page.html --room(bytes)--> where the question goes      answer() --> where the answer begins, which ends with NUL
-//!     {"examples": null}                          robots and states that the page has of its own
+//!     page.html --room(bytes)--> place of the question        answer() --> start of the answer, which ends with NUL
+//!     {"examples": null}                          robots and states that come with the page
 //!     {"robot": URDF}                             what was read; the robot of all further questions
-//!     {"impact": {state, tolerance}}              result, text, drawing
-//!     {"sweep": {study, tolerance}}               regions along a parameter, picture, text
+//!     {"impact": {of: STATE, tolerance}}          result, text, drawing
+//!     {"sweep": {of: STUDY, tolerance}}           regions along a parameter, picture, text
 //! ```
 
 mod question;
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// A question, and then its answer.
+/// The question, later replaced by its answer.
 static TEXT: Mutex<Vec<u8>> = Mutex::new(Vec::new());
 
 fn text() -> MutexGuard<'static, Vec<u8>> {
     TEXT.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Where a question of so many bytes is to be written.
+/// Returns the place where a question of this many bytes must be written.
 #[expect(unsafe_code, reason = "a name that is unique among all that is exported")]
 #[unsafe(no_mangle)]
 pub extern "C" fn room(bytes: usize) -> *mut u8 {
@@ -29,7 +29,7 @@ pub extern "C" fn room(bytes: usize) -> *mut u8 {
     text.as_mut_ptr()
 }
 
-/// Answers the question; where the answer begins.
+/// Answers the question and returns where the answer begins.
 #[expect(unsafe_code, reason = "a name that is unique among all that is exported")]
 #[unsafe(no_mangle)]
 pub extern "C" fn answer() -> *const u8 {

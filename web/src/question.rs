@@ -1,4 +1,4 @@
-//! Questions and answers.
+//! The page's questions and the core's answers.
 
 use heelstrike::budget::SharedBudget;
 use heelstrike::draw::page::{Page, Stops};
@@ -18,16 +18,16 @@ use std::cell::RefCell;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-/// How long an answer may take.
+/// Limit on the time of an answer, by the clock of [`budget`].
 const LONGEST: Duration = Duration::from_secs(1);
 
-/// What the clock goes on by when it is read, which is how long the work between two readings takes.
+/// Time by which that clock advances at each reading, about the time of the work between two readings.
 const READING: Duration = Duration::from_millis(2);
 
-/// Up to so many contacts the text says why the other combinations fail.
+/// Up to this many contacts the text says why the other combinations fail.
 const SUMMED_UP: usize = 6;
 
-/// Robots and states that the page has of its own.
+/// Robots and states that come with the page.
 const EXAMPLES: [[&str; 3]; 3] = [
     ["RAMone", include_str!("../../urdf/ramone.urdf"), include_str!("../../examples/ramone.json")],
     [
@@ -38,7 +38,7 @@ const EXAMPLES: [[&str; 3]; 3] = [
     ["Block that jams", include_str!("../../urdf/block.urdf"), include_str!("../../examples/block_jams.json")],
 ];
 
-/// What the page asks.
+/// A question of the page.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum Question {
@@ -56,7 +56,7 @@ struct Asked {
     tolerance: Option<f64>,
 }
 
-/// What was read of a robot, limits of its coordinates, and a state to begin with.
+/// What was read of a robot, the limits of its coordinates, and a state to begin with.
 #[derive(Serialize)]
 struct Read<'a> {
     robot: Inspection<'a>,
@@ -65,8 +65,8 @@ struct Read<'a> {
     state: Option<Box<RawValue>>,
 }
 
-/// What `heelstrike impact` writes as JSON and as text, the state with all of its coordinates, where it is, and its
-/// drawing.
+/// The JSON and text that `heelstrike impact` writes, the state with all of its coordinates, the place of its root, and
+/// its drawing.
 #[derive(Serialize)]
 struct Answered {
     result: Option<Box<RawValue>>,
@@ -115,7 +115,7 @@ fn asked(model: &mut Option<Model>, question: Question) -> Result<Vec<u8>> {
     }
 }
 
-/// Writing into memory cannot fail.
+/// A value as JSON; writing into memory cannot fail.
 fn json(value: &impl Serialize) -> Vec<u8> {
     serde_json::to_vec(value).unwrap_or_default()
 }
@@ -128,7 +128,7 @@ fn options(contact_tolerance: Option<f64>) -> Options {
     Options { contact_tolerance, explain_up_to: SUMMED_UP, budget: Some(budget()), ..Options::default() }
 }
 
-/// A page has no clock that the core could read: its own one counts how often it is read.
+/// The budget of an answer. WebAssembly gives the core no clock, so this one counts its readings.
 fn budget() -> Budget {
     static READ: AtomicU64 = AtomicU64::new(0);
     let clock = || READING.saturating_mul(u32::try_from(READ.fetch_add(1, Ordering::Relaxed)).unwrap_or(u32::MAX));
@@ -136,7 +136,7 @@ fn budget() -> Budget {
 }
 
 impl Model {
-    /// Meshes are files of their own, which a page has not.
+    /// Reads a robot without meshes, which are files that the page does not have.
     fn read(urdf: &str) -> Result<Self> {
         let (description, reduction) = (Description::from_urdf(urdf)?, Reduction::default());
         let robot = Robot::reduce(&description, &reduction)?;
