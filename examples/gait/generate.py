@@ -329,7 +329,7 @@ def optimize():
     print(f"optimization: {best.message}, {best.nit} iterations")
     grid(FINE)
     z, f = best.x, Cached()
-    for _ in range(6):                                                # Newton's method, to the nearest solution of the equalities
+    for _ in range(6):                                                # to the nearest solution of the equalities
         z = z - np.linalg.lstsq(f.jacobian(1)(z), f.value(1)(z), rcond=None)[0]
     return z
 
