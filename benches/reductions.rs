@@ -1,4 +1,4 @@
-//! What each reduction saves on a robot that it serves: `true` with it, `false` without.
+//! Time that each reduction saves on a robot that it serves: `true` with it, `false` without.
 //!
 //! `cargo bench --bench reductions` prints times; compare the two of a pair within one run, not runs with each other.
 
@@ -80,7 +80,7 @@ fn analysis(bencher: Bencher, files: Files, contacts: usize, friction: Friction,
     bencher.bench_local(|| scratch.analyze(black_box(&problem), black_box(&problem), asked));
 }
 
-/// Upkie, 34 of whose joints are fixed, on a wheel.
+/// Upkie on a wheel; 34 of its joints are fixed.
 #[divan::bench(args = [true, false])]
 fn weld(bencher: Bencher, weld: bool) {
     whole_state(bencher, UPKIE, &state(UPKIE, 1), Reductions { weld, massless: weld, ..Reductions::ALL });

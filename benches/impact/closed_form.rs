@@ -42,7 +42,7 @@ pub struct Impact {
     pub velocity: [f64; 4],
     /// The outcomes, by modes: bit 4 a + b is set for the modes a and b in the order of `Mode::ALL`.
     pub outcomes: u32,
-    /// How many combinations have a sign within [`ROUNDING`].
+    /// Number of combinations that have a sign within [`ROUNDING`].
     pub undecided: u32,
 }
 

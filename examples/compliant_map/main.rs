@@ -1,5 +1,5 @@
-//! Where compliant, overdamped contact takes the paper's minimalistic biped, over the trailing foot's approach speed
-//! and d_t / d_n: `cargo run --release --example compliant_map -- map.csv map.png`.
+//! Maps the end of compliant, overdamped contact of the paper's minimalistic biped over the trailing foot's approach
+//! speed and d_t / d_n: `cargo run --release --example compliant_map -- map.csv map.png`.
 
 mod map;
 

@@ -1,4 +1,5 @@
-//! Where overdamped contact leads the paper's minimalistic biped at alpha = 1.4, which has three rigid outcomes.
+//! Map of the ends of overdamped contact for the paper's minimalistic biped at alpha = 1.4, which has three rigid
+//! outcomes.
 //!
 //! The leading foot strikes as in the paper. The trailing foot, which rests in the paper, strikes too: its approach
 //! speed and the ratio d_t / d_n span the map. Either the trailing foot lifts off or both feet stop; the curve between

@@ -9,10 +9,10 @@ const GRAVITY: f64 = 9.81;
 /// Stiffness of the virtual spring that bears the torso \[N/m\].
 const STIFFNESS: f64 = 800.0;
 
-/// What is claimed, and whether it holds.
+/// A claim in words, and whether it holds.
 pub type Claim = (String, bool);
 
-/// What the lecture says of its biped.
+/// Checks the lecture's claims about its biped.
 pub fn claims() -> Result<Vec<Claim>, Box<dyn Error>> {
     let robot = Robot::from_urdf(include_str!("../../urdf/ramone.urdf"))?;
     let weight = GRAVITY * robot.bodies().iter().map(|body| body.mass).sum::<f64>();

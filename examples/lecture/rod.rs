@@ -21,7 +21,7 @@ const OMEGA: f64 = 3.5;
 const THETA: [f64; 2] = [0.3, 1.5];
 const FRICTION: [f64; 2] = [0.0, 4.0];
 
-/// What the rod can do.
+/// The outcomes of a state of the rod.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     Lifts,
@@ -58,7 +58,7 @@ fn closed_form(theta: f64, friction: f64, omega: f64) -> Kind {
     }
 }
 
-/// What heelstrike proves; `None` if it proves nothing.
+/// The outcomes that heelstrike proves; `None` if it proves nothing.
 fn computed(robot: &Robot, theta: f64, friction: f64, omega: f64) -> Result<Option<Kind>> {
     let [x, z] = [-theta.cos(), -theta.sin()];
     let state = json!({
@@ -136,7 +136,7 @@ fn least_friction() -> Result<(f64, f64)> {
     Ok((theta, border(theta)?))
 }
 
-/// Where p = 0 and where b_n = 0, over inclination and friction.
+/// The curves p = 0 and b_n = 0 over inclination and friction.
 pub fn borders() -> [Vec<(f64, f64)>; 2] {
     let jams = |theta: f64| (1.0 + SLENDER * theta.cos() * theta.cos()) / (SLENDER * theta.cos() * theta.sin());
     let lifts = (GRAVITY / (OMEGA * OMEGA)).asin();

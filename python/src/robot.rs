@@ -28,7 +28,7 @@ pub struct Model {
     pub description: Description,
     pub reduction: Reduction,
     pub robot: heelstrike::Robot,
-    /// How contacts are found.
+    /// Options of every pipeline, such as how contacts are found.
     pub options: Options,
     /// Processor time that an answer may take.
     pub budget: Seconds,
@@ -104,7 +104,7 @@ impl Model {
     }
 }
 
-/// What is asked of one state.
+/// A question about one state.
 #[derive(Clone, Copy)]
 pub struct Asked {
     pub aspect: Aspect,

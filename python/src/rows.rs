@@ -20,7 +20,7 @@ use self_cell::self_cell;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// How many rows a thread takes at once.
+/// Number of rows that a thread takes at once.
 const TOGETHER: usize = 256;
 
 self_cell!(
@@ -50,7 +50,7 @@ pub struct Asker {
     pub last: Mutex<Option<Arc<Common>>>,
 }
 
-/// What all rows of a call have in common.
+/// The common part of all rows of a call.
 pub struct Common {
     /// The fields as Python gave them.
     fields: Option<Py<PyAny>>,

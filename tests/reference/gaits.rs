@@ -123,7 +123,7 @@ impl Gait<'_> {
         stdout.lines().map(|line| serde_json::from_str(line).expect("a result")).collect()
     }
 
-    /// Every touchdown of the reference is found, and no other, with the same end of the same foot.
+    /// Checks that every touchdown of the reference is found, and no other, with the same end of the same foot.
     fn touchdowns_are_those_of_the_reference(&self, table: &Table) {
         let found = self.touchdowns(table, &["--friction", "0.8", "--touching", "strike"]);
         let expected: BTreeMap<(usize, String), Expected> =
@@ -153,7 +153,8 @@ impl Gait<'_> {
         answer.contacts[at].point.expect("a point").x
     }
 
-    /// The same feet take part, by each rule of the reference; with recorded velocities they end in the same modes.
+    /// Checks that the same feet take part, by each rule of the reference, and that touchdowns with recorded velocities
+    /// end in the same modes.
     fn feet_that_touch_are_those_of_the_reference(&self, table: &Table) {
         let expected = self.reference();
         for (rule, touching) in [("stance", "slow"), ("5mm", "near:0.005"), ("20mm", "near:0.02")] {

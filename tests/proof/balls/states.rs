@@ -137,8 +137,8 @@ pub fn tied_models(random: &mut Random) -> Vec<Model> {
 pub fn models() -> Vec<Model> {
     let model = |name, urdf: &str, touching, feet: &[(&str, [f64; 3], f64)]| {
         let model = Model::new(name, urdf, touching, feet);
-        // More contact rows than coordinates make contacts redundant; that is left to the robots with `touching` such
-        // contacts.
+        // More contact rows than coordinates make contacts redundant, so the number is limited, but not below
+        // `touching`.
         let most = if touching > 2 { touching } else { feet.len().min(model.robot.dofs() / 2).max(touching) };
         Model { most, ..model }
     };
