@@ -160,7 +160,9 @@ impl Pipeline<'_> {
             let reason = Reason::Inconsistent("an applied impulse acts in an impact, not in sustained contact".into());
             return Err(Error::new(reason).at("impulse").hint("leave it out, or ask `impact`"));
         }
-        let mut prepared = self.prepare(state)?;
+        // The uncertainty is ignored, so contacts rest as without it.
+        let given = state.uncertainty.is_some().then(|| State { uncertainty: None, ..state.clone() });
+        let mut prepared = self.prepare(given.as_ref().unwrap_or(state))?;
         self.refuse_uneven(&prepared)?;
         let Prepared { velocity, foot, levels, still, impact, .. } = &mut *prepared;
         let Impact { contacts, stance, notes, velocity_before, .. } = &mut **impact;
