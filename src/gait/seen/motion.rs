@@ -30,7 +30,7 @@ pub(super) struct Motion {
     /// For each coordinate, sums over the steps from row to row of v^2, of (dq/dt)^2, of their product, and of the
     /// squared change of dq/dt.
     sums: Vec<[f64; 4]>,
-    /// dq/dt in the step before.
+    /// dq/dt in the step before; empty at the start of a clip.
     rates: Vec<f64>,
     /// Sums of squared differences from dq/dt of the base's velocity, as it is and rotated by the pitch.
     errors: [f64; 2],
@@ -64,6 +64,7 @@ impl Motion {
         }
         if step == ClockStep::NewClip {
             (self.moved, self.stands_since) = (false, None);
+            self.rates.clear();
         }
         for (last, own) in self.last.iter_mut().zip([&state.position, &state.velocity]) {
             own.clone_into(last);
@@ -96,7 +97,10 @@ impl Motion {
     /// Compares recorded velocities with positions. The `state` is `half` a step \[s\] after the middle of the step.
     fn compare(&mut self, rates: &[f64], velocities: &[f64], half: f64, state: &State, robot: &Robot) {
         self.sums.resize(rates.len(), [0.0; 4]);
-        self.rates.resize(rates.len(), 0.0);
+        if self.rates.is_empty() {
+            // The first step of a clip changes nothing.
+            self.rates.extend(rates);
+        }
         self.steps += 1;
         let before = self.rates.iter_mut().zip(rates).map(|(before, &rate)| std::mem::replace(before, rate) - rate);
         for ((sums, change), (&rate, &velocity)) in self.sums.iter_mut().zip(before).zip(rates.iter().zip(velocities)) {

@@ -193,12 +193,12 @@ fn recordings_in_other_units_or_axes_are_noted() {
     }
     // Without `--touchdowns` the first rows of a file are checked. Poses that are not in the order of time have no
     // rates to compare with.
-    let is_noted = |order: fn(usize) -> usize, factor: f64| {
+    let is_noted = |order: fn(usize) -> usize, factor: f64, clip: usize| {
         let (names, rows) = walk_cells();
         let line = |at: usize| {
-            let cell = |(column, name): (usize, &String)| match name.starts_with("v_") {
+            let cell = |(column, name): (usize, &String)| match name.starts_with("v_left") {
                 true => (factor * rows[order(at) % 100][column].parse::<f64>().expect("a rate")).to_string(),
-                false if name == "time" => rows[at][column].clone(),
+                false if name == "time" => rows[at % clip][column].clone(),
                 false => rows[order(at) % 100][column].clone(),
             };
             names.iter().enumerate().map(cell).collect::<Vec<_>>().join(",")
@@ -209,8 +209,10 @@ fn recordings_in_other_units_or_axes_are_noted() {
         assert!(run.stderr.contains(" states: "), "{}", run.stderr);
         run.stderr.contains(misfit)
     };
-    assert!(!is_noted(|at| at, 1.0) && is_noted(|at| at, 57.3) && is_noted(|at| at, 0.0));
-    assert!(!is_noted(|at| 37 * at, 0.0), "they stand still");
+    assert!(!is_noted(|at| at, 1.0, 100) && is_noted(|at| at, 57.3, 100) && is_noted(|at| at, 0.0, 100));
+    assert!(!is_noted(|at| 37 * at, 0.0, 100), "they stand still");
+    // Clips of two rows: what lies between clips is no motion.
+    assert!(!is_noted(|at| 37 * (at / 2) + at % 2, 1.0, 2) && is_noted(|at| 37 * (at / 2) + at % 2, 57.3, 2));
     let deep = stderr(|name, cell| if name == "q_base_z" { cell - 0.5 } else { cell });
     assert!(deep.contains("touchdowns of feet far under z = 0, which were lifted to it: "), "{deep}");
     let degrees =
