@@ -88,9 +88,17 @@ pub(crate) fn is_name(text: &str) -> bool {
     text.starts_with(letter) && text.chars().all(|c| letter(c) || c.is_ascii_digit())
 }
 
-/// Returns the names in an expression, including those of functions.
+/// Returns the names in an expression, without those of the functions that it calls.
 pub(crate) fn names_in(text: &str) -> impl Iterator<Item = &str> {
-    text.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).filter(|piece| is_name(piece))
+    let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let mut rest = text;
+    let pieces = std::iter::from_fn(move || {
+        let piece = &rest[rest.find(is_part)?..];
+        let (piece, behind) = piece.split_at(piece.find(|c| !is_part(c)).unwrap_or(piece.len()));
+        rest = behind;
+        Some((piece, behind))
+    });
+    pieces.filter(|(piece, behind)| is_name(piece) && !behind.trim_start().starts_with('(')).map(|(piece, _)| piece)
 }
 
 #[cfg(test)]
@@ -155,7 +163,7 @@ mod tests {
 
     #[test]
     fn names_have_letters_digits_and_underscores() {
-        assert_eq!(names_in("2*a_1 + sin(b)/1e3-1e-c").collect::<Vec<_>>(), ["a_1", "sin", "b", "c"]);
+        assert_eq!(names_in("2*a_1 + sin(b)/1e3-1e-c - sin * cos (1)").collect::<Vec<_>>(), ["a_1", "b", "c", "sin"]);
         assert!(["a", "_x1", "leftHip"].into_iter().all(is_name));
         assert!(!["", "1a", "left hip", "\u{3b1}", "a-b"].into_iter().any(is_name));
     }
