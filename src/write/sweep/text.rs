@@ -157,8 +157,17 @@ impl Transition {
 fn brief(value: f64) -> String {
     let rounded = format!("{value:.9}");
     match rounded.trim_end_matches('0').trim_end_matches('.') {
-        "-0" | "" => "0".to_owned(),
-        short if value == 0.0 || short != "0" => short.to_owned(),
-        _ => format!("{value:.3e}"),
+        "-0" | "0" if value == 0.0 => "0".to_owned(),
+        "-0" | "0" => format!("{value:.3e}"),
+        short => short.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn small_numbers_have_an_exponent_whatever_their_sign() {
+        let shown = [0.0, -0.0, 1e-10, -1e-10, -0.25, 1e-9].map(super::brief);
+        assert_eq!(shown, ["0", "0", "1.000e-10", "-1.000e-10", "-0.25", "0.000000001"]);
     }
 }
