@@ -151,7 +151,9 @@ fn comparison(robot: &Robot, state: &State, options: &Options) -> Result<Option<
     let mut pipeline = Pipeline::new(robot, options.clone());
     let impact = pipeline.impact(state)?;
     let (problem, energy) = (&impact.problem, impact.kinetic_energy);
-    let outcomes = impact.analysis.as_ref().map_or(&[][..], |analysis| &analysis.outcomes);
+    // An undecided outcome has no numbers to compare with.
+    let decided = impact.analysis.iter().flat_map(|analysis| &analysis.outcomes).filter(|outcome| outcome.decided);
+    let outcomes = &*decided.cloned().collect::<Vec<_>>();
     if outcomes.is_empty() || problem.contacts() == 0 || energy <= 0.0 {
         return Ok(None);
     }
