@@ -108,7 +108,7 @@ impl State {
 fn is_wheel(robot: &Robot, at: usize) -> bool {
     let mut joints = robot.joints.iter().chain(robot.mimic_joints.iter().map(|mimic| &mimic.joint));
     match at.checked_sub(robot.base_dofs()) {
-        Some(joint) => joints.all(|other| other.parent != robot.joints[joint].child),
+        Some(joint) => joints.all(|other| robot.rigid_body(other.parent) != robot.joints[joint].child),
         None => robot.joints.is_empty(),
     }
 }

@@ -82,7 +82,7 @@ fn subject(sentence: &str) -> Vec<&str> {
 }
 
 /// The number of points that are remembered: the nodes of an interval, of its halves and of their halves.
-const RECENT: usize = 16;
+const RECENT: usize = 17;
 
 impl RobotStudy<'_> {
     /// Describes oddities of the states in the middle and at the ends of the ranges. Sentences that differ only in
