@@ -154,6 +154,16 @@ impl DetailOptions {
         let hint = format!("write JSON: {option} ndjson, or -o with that ending");
         Err(Failure::Usage(Error::new(Reason::Inconsistent(reason.into())).hint(hint)))
     }
+
+    /// Refuses what a text of regions does not show; a picture that is `plotted` explains.
+    pub fn check_regions(self, plotted: bool) -> Result<(), Failure> {
+        if !(self.brief || self.matrices || self.explain && !plotted) {
+            return Ok(());
+        }
+        let reason = "text lists regions, and --brief, --explain and --matrices are for the results at samples";
+        let hint = "write JSON: --format json, or -o with that ending; --explain is also for --plot";
+        Err(Failure::Usage(Error::new(Reason::Inconsistent(reason.into())).hint(hint)))
+    }
 }
 
 /// Whether impacts are followed.

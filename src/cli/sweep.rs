@@ -100,8 +100,10 @@ pub(super) fn run(args: &Args) -> Completion {
     writable(args.output.as_deref())?;
     let format = format(args)?;
     args.csv.check(matches!(format, Some(Form::Csv | Form::Tsv)))?;
-    if format.is_some_and(|format| format != Form::Ndjson) {
-        args.detail.check_table("--format")?;
+    match format {
+        Some(Form::Ndjson) => {}
+        Some(_) => args.detail.check_table("--format")?,
+        None => args.detail.check_regions(args.plot.path().is_some())?,
     }
     let (description, reduction, robot) = args.robot.described()?;
     caution(&robot);

@@ -35,7 +35,7 @@ fn names_that_a_terminal_obeys_are_escaped() {
     for (arguments, stdin) in [
         (&["inspect", &robot][..], ""),
         (explained[0], &state),
-        (&["sweep", &robot, "-", "--explain"], study),
+        (&["sweep", &robot, "-"], study),
         (&["accuracy", &robot, "-"], &state),
     ] {
         let run = heelstrike_reads(arguments, stdin).well();

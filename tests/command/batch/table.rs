@@ -77,6 +77,9 @@ fn options_that_need_a_table_are_refused_without_one() {
     batch(&["-", "--output-format", "csv", "--matrices"], strike(1, 0.0)).refusal(2);
     let study = "examples/paper/figure_7.json";
     heelstrike(&["sweep", WALKER, study, "--format", "csv", "--explain"]).refusal_with(2, "no room for --explain");
+    for option in ["--brief", "--explain", "--matrices"] {
+        heelstrike(&["sweep", WALKER, study, option]).refusal_with(2, "hint: write JSON: --format json");
+    }
     for (options, table, words) in [
         (&["--touchdowns"][..], "q_base_z,v_base_z\n0.5,-1\n", "error: <stdin>:1:1: a column \"time\" is missing"),
         (
