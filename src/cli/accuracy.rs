@@ -18,6 +18,9 @@ use crate::{Error, Reason, Robot};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+/// What the suite's cases have of their own.
+const OF_A_STATE: [&str; 6] = ["friction", "contact_tolerance", "strict_limits", "place", "resting_speed", "budget"];
+
 /// Show error against run time, for a robot's state or for a suite of stiff and extreme cases
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
@@ -25,6 +28,10 @@ Examples:
   heelstrike accuracy
   heelstrike accuracy --case chain --plot chains.svg
   heelstrike accuracy urdf/ramone.urdf examples/ramone.json --plot ramone.png")]
+#[command(mut_args(|arg| match OF_A_STATE.contains(&arg.get_id().as_str()) {
+    true => arg.requires("robot").conflicts_with_all(["case", "list"]),
+    false => arg,
+}))]
 pub struct Args {
     /// The robot's URDF file [default: the suite]
     #[arg(value_name = "ROBOT.urdf", requires = "state", conflicts_with = "case")]
@@ -36,7 +43,7 @@ pub struct Args {
     #[arg(long, value_name = "TEXT")]
     case: Option<String>,
     /// List the names of the suite's cases, and run none
-    #[arg(long, conflicts_with_all = ["robot", "case", "plot"])]
+    #[arg(long, conflicts_with_all = ["robot", "case", "plot", "time", "no_proof"])]
     list: bool,
     /// How long each method is timed, in milliseconds
     #[arg(long, value_name = "MILLISECONDS", default_value_t = 20)]

@@ -141,6 +141,10 @@ fn wrong_arguments_and_states_are_refused() {
         (&[&RAMONE[..], &["--plot", "a.gif"]].concat()[..], "", 2, ".svg or .png"),
         (&state[..2], "", 2, "error: "),
         (&cases("no such case"), "", 2, "--case"),
+        (&["accuracy", "--friction", "1"], "", 2, "<ROBOT.urdf>"),
+        (&["accuracy", "--place", "lowest", "--case", "massless"], "", 2, "cannot be used with"),
+        (&["accuracy", "--list", "--budget", "1"], "", 2, "cannot be used with"),
+        (&["accuracy", "--list", "--time", "1"], "", 2, "cannot be used with"),
         (state, "{}\n{}\n", 1, ":2:1"),
         (state, r#"{"positon": {}}"#, 1, "position"),
     ] {
