@@ -236,8 +236,11 @@ impl Answerer<'_> {
 
     /// Appends the result of a state.
     fn result(&mut self, state: &State, around: Around<'_>, block: &mut Block) -> Result<()> {
-        let Question { robot, detail, header, columns, .. } = *self.question;
+        let Question { robot, ref options, detail, header, columns, .. } = *self.question;
         block.summary.own_friction += u64::from(state.scene.has_own_friction(self.question.defaults.friction));
+        // Those of a touchdown are found.
+        let own_contacts = state.scene.contacts.is_some() && around.landing.is_none();
+        block.summary.own_contacts += u64::from(own_contacts && !options.feet.is_empty());
         let answer = match &self.question.total {
             Some(total) => total.within(|| self.pipeline.answer(state)),
             None => self.pipeline.answer(state),

@@ -54,6 +54,9 @@ pub struct Summary {
     /// States that give friction of their own although one is given for all states.
     #[serde(skip_serializing_if = "is_zero")]
     pub own_friction: u64,
+    /// States that name their contacts although feet are given.
+    #[serde(skip)]
+    pub own_contacts: u64,
     /// States with odd numbers: outside limits, or as if in other units.
     #[serde(skip_serializing_if = "OddStates::is_empty")]
     pub odd_states: OddStates,
@@ -244,6 +247,7 @@ impl Summary {
         }
         self.other_modes += following.other_modes;
         self.own_friction += following.own_friction;
+        self.own_contacts += following.own_contacts;
         self.odd_states.add(following.odd_states);
         self.noted.add(following.noted);
         self.early += following.early;

@@ -377,6 +377,7 @@ impl Args {
         (thresholds, seen): (Thresholds, &Seen),
     ) -> io::Result<()> {
         note_all(notes::own_friction(counts.own_friction, "state"));
+        note_all(notes::own_contacts(counts.own_contacts, "state"));
         note_all(
             question.columns.filter(|_| question.detail.brief).and_then(|_| notes::without_holds(counts.uncertain)),
         );

@@ -77,10 +77,12 @@ impl StateArgs {
         let several = Reason::Inconsistent("a picture is drawn of one state, and several are given".into());
         let several = Failure::Usage(Error::new(several).at("--plot").hint("give the states one by one"));
         let several = if plotted { Err(several) } else { Ok(()) };
-        let (mut pipeline, mut drawn, mut own_friction) = (Pipeline::new(&robot, options), None, 0);
+        let (mut pipeline, mut drawn) = (Pipeline::new(&robot, options), None);
+        let (mut own_friction, mut own_contacts) = (0, 0);
         let answered = answer_all("state", &self.state, format, &self.output, several, |state, palette, out| {
             let state = State::from_json(state, &robot, &defaults)?;
             own_friction += u64::from(state.scene.has_own_friction(defaults.friction));
+            own_contacts += u64::from(state.scene.contacts.is_some() && !feet.is_empty());
             let impact = pipeline.answer(&state)?;
             if plotted {
                 drawn = picture::impact(&robot, &feet, &state, &impact, self.mirror.forward());
@@ -90,6 +92,7 @@ impl StateArgs {
             Ok(impact.analyzed().err())
         })?;
         note_all(notes::own_friction(own_friction, "state"));
+        note_all(notes::own_contacts(own_contacts, "state"));
         match &drawn {
             Some(picture) => self.plot.draw(picture, "the state has no place in the plane")?,
             None if plotted => note("no picture is drawn of a state that is refused"),

@@ -121,6 +121,7 @@ pub(super) fn run(args: &Args) -> Completion {
         defaults: args.scene.defaults(&robot)?,
     };
     note_all(notes::own_friction(model.has_own_friction().map_err(refuse)?.into(), "study"));
+    note_all(notes::own_contacts(model.has_own_contacts().map_err(refuse)?.into(), "study"));
     note_all(notes::unused(&study));
     let pieces = Findings::work(&model) + SampleRecord::count(&model);
     let progress = progress::of(pieces);

@@ -148,13 +148,21 @@ impl RobotStudy<'_> {
     /// Returns whether the state has friction of its own, so that the one of `defaults` does not apply. Returns the
     /// error of the first sample if robot or state cannot be read there, in the middle and at the last sample.
     pub fn has_own_friction(&self) -> Result<bool> {
+        let given = self.defaults.friction;
+        self.readable(|state| state.scene.has_own_friction(given))
+    }
+
+    /// The same refusal; else whether the state names its contacts, so that feet of the options are not used.
+    pub fn has_own_contacts(&self) -> Result<bool> {
+        self.readable(|state| state.scene.contacts.is_some() && !self.options.feet.is_empty())
+    }
+
+    fn readable(&self, holds: impl Fn(State) -> bool) -> Result<bool> {
         let parameters = self.study.parameters();
         let mut solver = Solver::new(self);
         let mut read = |part: f64| {
             let point = parameters.iter().map(|parameter| parameter.from + part * parameter.range());
-            let given = self.defaults.friction;
-            let is_other = |state: State| state.scene.has_own_friction(given);
-            solver.at(&point.collect::<Vec<_>>(), |_, state, _| Ok(is_other(state)))
+            solver.at(&point.collect::<Vec<_>>(), |_, state, _| Ok(holds(state)))
         };
         read(0.0).or_else(|first| read(0.5).or_else(|_| read(1.0)).map_err(|_| first))
     }

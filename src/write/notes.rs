@@ -8,12 +8,17 @@ use crate::read::table::Header;
 /// Notes that `count` inputs, each called a `what`, have their own friction, which replaces the common one; `None` if
 /// none has.
 pub fn own_friction(count: u64, what: &str) -> Option<String> {
-    let some = match count {
-        0 => return None,
-        1 => "one does".to_owned(),
-        _ => format!("{count} do"),
-    };
-    Some(format!("`friction` is not used where a {what} has its own, as {some} here"))
+    not_used("`friction` is", &format!("a {what} has its own"), count)
+}
+
+/// The same of feet that are added for all, where states or studies name their contacts.
+pub fn own_contacts(count: u64, what: &str) -> Option<String> {
+    not_used("feet given by `feet` are", &format!("a {what} names its contacts"), count)
+}
+
+fn not_used(given: &str, other: &str, count: u64) -> Option<String> {
+    let some = if count == 1 { "one does".to_owned() } else { format!("{count} do") };
+    (count > 0).then(|| format!("{given} not used where {other}, as {some} here"))
 }
 
 /// Notes the least time that an answer had after others exceeded their budget; `None` if each had its full time.

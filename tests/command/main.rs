@@ -276,6 +276,13 @@ fn a_foot_of_the_command_line_touches_by_its_height() {
         let result = result(&["impact", BLOCK, "-", foot[0], foot[1]], &state);
         assert_eq!(list(&result["contacts"]).len(), contacts, "{height}");
     }
+    let state = r#"{"friction": 1, "contacts": [{"link": "block", "offset": [0, 0, -1]}]}"#;
+    let study = format!(r#"{{"parameters": {{"v": {{"from": 0, "to": 1, "steps": 2}}}}, "state": {state}}}"#);
+    for (command, input, what) in [("impact", state, "state"), ("batch", state, "state"), ("sweep", &study, "study")] {
+        let noted = heelstrike_reads(&[command, BLOCK, "-", foot[0], foot[1]], input).well().stderr;
+        let words = format!("feet given by --contact are not used where a {what} names its contacts, as one does here");
+        assert!(noted.contains(&words), "{command}: {noted}");
+    }
     assert_eq!(result(&["inspect", BLOCK, foot[0], foot[1]], "")["feet"][1]["centre"], json!([0.5, -0.7]));
 }
 
