@@ -26,7 +26,7 @@ use crate::law::{Law, Mode};
 use crate::planar::{Pair, Vector};
 use crate::robot::Robot;
 use crate::scalar::{Magnitude, Real, dot};
-use crate::state::{Scene, SpringEnd, State};
+use crate::state::{Scene, SpringEnd, SpringLaw, State};
 use std::cmp::Ordering;
 
 /// The fraction of their bounds that the errors of accelerations are likely to reach, as a multiple of that of G. Over
@@ -176,6 +176,11 @@ impl Pipeline<'_> {
             if body(spring.a.link) == other {
                 notes.push(format!("virtual[{at}] gives no torque, as no joint lies between its ends"));
             }
+            let mut odd = |is_odd: fn(&SpringLaw) -> bool, what| {
+                notes.extend(spring.laws.iter().any(is_odd).then(|| format!("virtual[{at}] has a negative {what}")));
+            };
+            odd(|law| law.stiffness < 0.0, "stiffness, which pushes away from the target");
+            odd(|law| law.damping < 0.0, "damping, which speeds up what moves");
         }
         if self.assembly.is_constrained() || !still.rows.is_empty() {
             // After constraints or resting contacts, the bounds are infinite or belong to other velocities.

@@ -142,6 +142,25 @@ fn held_joint_carries_its_load_through() {
 }
 
 #[test]
+fn negative_stiffness_and_damping_are_noted() {
+    let robot = arm(Base::Floating);
+    let spring = |more: Value| {
+        let mut spring = json!({"a": {"link": "arm"}, "b": {"link": "body"}});
+        spring.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
+        forces(&robot, json!({"contacts": [], "virtual": [spring]})).notes.clone()
+    };
+    let odd = [json!({"stiffness": [0, -9], "damping": [1, 1]}), json!({"pitch": {"stiffness": 5, "damping": -1}})];
+    for (more, what) in odd.into_iter().zip(["stiffness, which pushes away", "damping, which speeds up"]) {
+        let notes = spring(more);
+        assert!(
+            matches!(&notes[..], [note] if note.starts_with(&format!("virtual[0] has a negative {what}"))),
+            "{notes:?}"
+        );
+    }
+    assert_eq!(spring(json!({"stiffness": [0, 9], "force": [0, -1]})), Vec::<String>::new());
+}
+
+#[test]
 fn springs_are_refused_with_place_and_remedy() {
     let robot = arm(Base::Floating);
     let (arm, origin, axes) = (json!({"link": "arm"}), json!({"world": [0, 0]}), "one number along x and one along z");
