@@ -4,7 +4,7 @@
 //! The snapshots have one line per element. Look at a changed picture itself before you accept its snapshot.
 
 use super::support::urdf;
-use super::{RAMONE, WALKER, file, fs, heelstrike, heelstrike_reads, place, read, walker};
+use super::{BLOCK, RAMONE, WALKER, file, fs, heelstrike, heelstrike_reads, place, read, walker};
 use serde_json::json;
 use std::path::Path;
 
@@ -254,6 +254,14 @@ fn contacts_at_one_place_are_told_apart() {
     // FL_foot is named at its place and at the tips of the arrows that differ.
     let apart = drawn(10.0);
     assert_eq!(["FL_foot", "FR_foot", "2 \u{d7}"].map(|text| count(&apart, text)), [2, 1, 1], "{apart}");
+}
+
+#[test]
+fn many_contacts_at_one_place_are_named_in_short() {
+    let points = vec![json!({"link": "block", "offset": [0, 0, 0]}); 10];
+    let state = json!({"friction": 0.5, "contacts": points, "velocity": {"base": {"z": -1}}});
+    let svg = svg(&["impact", BLOCK, &file("ten.json", state.to_string())], "ten");
+    assert!(svg.contains(">block/0, block/1, block/2, block/3, block/4, block/5 and 4 more<"), "{svg}");
 }
 
 /// A1 with four feet and four points of its calves on the ground.

@@ -6,6 +6,7 @@ use super::color::Color;
 use super::font::{self, TextBox};
 use super::mark::{Mark, arrow};
 use super::{Pixel, PlotPoint, curve};
+use crate::write::words;
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
@@ -99,8 +100,9 @@ impl PlotShape {
                 out.text(TextLine { rim: true, ..TextLine::new(at, text, *size, Anchor::Middle) });
             }
             Self::Names { names, below, color } => {
-                let names = names.iter().filter_map(|(point, name)| Some((area.place(*point)?, name)));
-                names.for_each(|(at, name)| draw_name((at, name), *below, *color, area, taken, out));
+                let names = names.iter().filter_map(|(point, name)| Some((area.place(*point)?, name.as_str())));
+                let names = gathered(names.collect());
+                names.iter().for_each(|(at, name)| draw_name((*at, name), *below, *color, area, taken, out));
             }
         }
     }
@@ -155,8 +157,27 @@ const RING: f64 = 13.0;
 const RINGS: i32 = 8;
 /// More between a name and the next one \[px\].
 const NEXT: f64 = 4.0;
+/// Names at one place, no farther apart than this \[px\], are one if there are more than so many, of about so many letters.
+const SAME: f64 = 1.0;
+const AROUND: usize = 6;
+const LETTERS: usize = 28;
 /// A name farther from its point has a line to it \[px\].
 const FAR: f64 = 22.0;
+
+/// Names of one place as a single one, if they are too many to stand around it.
+fn gathered(names: Vec<(Pixel, &str)>) -> Vec<(Pixel, String)> {
+    let is_near = |a: Pixel, b: Pixel| libm::hypot(a.0 - b.0, a.1 - b.1) < SAME;
+    let mut gathered: Vec<(Pixel, String)> = Vec::new();
+    for &(at, name) in &names {
+        let alike: Vec<&str> = names.iter().filter(|(other, _)| is_near(*other, at)).map(|(_, name)| *name).collect();
+        match alike.len() > AROUND {
+            true if gathered.iter().any(|(known, _)| is_near(*known, at)) => {}
+            true => gathered.push((at, words::list(&alike, LETTERS))),
+            false => gathered.push((at, name.to_owned())),
+        }
+    }
+    gathered
+}
 
 /// Draws a name next to its point, rather above or rather `below` it, clear of what is `taken`.
 fn draw_name(
@@ -208,14 +229,14 @@ mod tests {
         let axis = PlotAxis { range: Some((0.0, 1.0)), ..PlotAxis::default() };
         let span = || Span::new(&axis, std::iter::empty(), 300.0);
         let area = PlotArea { x: span(), y: span() };
-        let names = (0..12).map(|at| ((0.5, 0.5), format!("link_{at}"))).collect();
+        let names = (0..6).map(|at| ((0.5, 0.5), format!("link_{at}"))).collect();
         let names = PlotShape::Names { names, below: false, color: Color::Black };
         let marked = PlotShape::Marks { points: vec![(0.5, 0.5)], mark: Mark::Circle, color: Color::Black, size: 4.0 };
         let edge = PlotShape::Line { points: vec![(0.6, 0.0), (0.6, 1.0)], stroke: Stroke::solid(Color::Gray, 1.0) };
         let mut taken = Taken::by(&[marked, edge, names.clone()], &area);
         names.draw(&area, &mut taken, &mut PlotLayer::default());
         let Taken { marks, thin } = taken;
-        assert_eq!(marks.len(), 13);
+        assert_eq!(marks.len(), 7);
         // A name keeps the next ones at a distance, and not itself from the mark.
         let own = |at: usize, TextBox { middle, half }| match at {
             0 => TextBox { middle, half },
@@ -225,5 +246,16 @@ mod tests {
             let (others, place) = (marks[..at].iter().chain(&thin), own(at, *place));
             assert!(place.is_within(area.size()) && others.clone().all(|other| !other.meets(&place)), "{place:?}");
         }
+    }
+
+    #[test]
+    fn many_names_of_one_point_are_one() {
+        let names: Vec<String> = (0..10).map(|at| format!("foot_{at}")).collect();
+        let places = names.iter().map(|name| ((5.0, 5.0), name.as_str()));
+        let gathered = gathered(places.chain([((9.0, 5.0), "knee")]).collect());
+        assert_eq!(
+            gathered,
+            [((5.0, 5.0), "foot_0, foot_1, foot_2 and 7 more".into()), ((9.0, 5.0), "knee".to_owned())]
+        );
     }
 }

@@ -48,6 +48,8 @@ const LIGHT: f64 = 2.5;
 const HEAVY: f64 = 8.0;
 /// A velocity after whose arrow is shorter than this share of the robot's size is written as a number.
 const SEEN: f64 = 0.04;
+/// Letters in a line of names for each pixel of a panel's width.
+const LETTERS: f64 = 0.1;
 /// What is nearer than this share of the robot's size is at one place.
 const HAIR: f64 = 1e-3;
 /// Names are drawn for at most so many bodies.
@@ -358,9 +360,10 @@ impl<'d> DrawnScene<'d> {
         places
     }
 
-    /// The names of contacts in one line.
+    /// The names of contacts in one line, as many as fit.
     fn joined(&self, contacts: &[usize]) -> String {
-        contacts.iter().map(|&at| &*self.drawing.contacts[at].name).collect::<Vec<_>>().join(", ")
+        let names: Vec<&str> = contacts.iter().map(|&at| &*self.drawing.contacts[at].name).collect();
+        words::list(&names, (LETTERS * self.view.panel(self.drawing.outcomes.len()).size.0) as usize)
     }
 
     /// At the tips of the arrows of contacts at one place: how many impulses coincide, or whose arrow it is.
