@@ -34,7 +34,8 @@ pub(super) struct Span {
     step: f64,
     logarithmic: bool,
     in_pi: bool,
-    /// A value is the number at its tick times ten to this.
+    /// A value is this and the number at its tick times ten to the `power`.
+    offset: f64,
     power: i32,
     /// On the screen \[px\].
     pub length: f64,
@@ -75,6 +76,8 @@ const ROUNDING: f64 = 1e-10;
 /// About the distance between ticks \[px\], and the parts into which they divide a short axis.
 const PITCH: f64 = 75.0;
 const PARTS: f64 = 4.0;
+/// An axis so many times as far from zero as it is long counts from a round number: ticks have few digits.
+const FAR: f64 = 1e5;
 
 /// The least and the greatest value; `None` without any.
 pub fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
@@ -99,10 +102,13 @@ impl Span {
             let room = if low == 0.0 { 1.0 } else { 0.1 * low.abs() };
             (low, high) = (low - room, high + room);
         }
-        let largest = low.abs().max(high.abs());
+        let round = 100.0 * libm::pow(10.0, libm::ceil(libm::log10(high - low)));
+        let is_far = !axis.in_pi && low.abs().max(high.abs()) > FAR * (high - low);
+        let offset = if is_far { significant((low / round).floor() * round, 15) } else { 0.0 };
+        let largest = (low - offset).abs().max((high - offset).abs());
         let is_plain = axis.in_pi || (1e-2..1e5).contains(&largest);
         let power = if is_plain { 0 } else { libm::floor(libm::log10(largest)) as i32 };
-        let mut span = Self { low, high, step: 1.0, logarithmic: false, in_pi: axis.in_pi, power, length };
+        let mut span = Self { low, high, step: 1.0, logarithmic: false, in_pi: axis.in_pi, offset, power, length };
         (span.low, span.high) = (span.shown(low), span.shown(high));
         span.extend(0.0, 0.0);
         span
@@ -120,11 +126,15 @@ impl Span {
             span => (span / 40.0).ceil() * 5.0,
         };
         let (low, high) = ((low / step).floor() * step, (high / step).ceil() * step);
-        Self { low, high, step, logarithmic: true, in_pi: false, power: 0, length }
+        Self { low, high, step, logarithmic: true, in_pi: false, offset: 0.0, power: 0, length }
     }
 
     /// The number at a value's tick.
     fn shown(&self, value: f64) -> f64 {
+        self.scaled(value - self.offset)
+    }
+
+    fn scaled(&self, value: f64) -> f64 {
         match self.power {
             _ if self.logarithmic => libm::log10(value),
             _ if self.in_pi => value / PI,
@@ -138,7 +148,7 @@ impl Span {
         let value = |shown: f64| match self.power {
             _ if self.logarithmic => libm::pow(10.0, shown),
             _ if self.in_pi => shown * PI,
-            power => shown * libm::pow(10.0, f64::from(power)),
+            power => self.offset + shown * libm::pow(10.0, f64::from(power)),
         };
         (value(self.low), value(self.high))
     }
@@ -151,7 +161,7 @@ impl Span {
     /// The pixels of one unit.
     pub fn scale(&self) -> f64 {
         // Far from zero both have the same place.
-        self.length * ((self.shown(1.0) - self.shown(0.0)) / (self.high - self.low))
+        self.length * ((self.scaled(1.0) - self.scaled(0.0)) / (self.high - self.low))
     }
 
     /// Makes the axis span so many times as much about its middle.
@@ -195,13 +205,18 @@ impl Span {
         }
     }
 
-    /// The label, with the power of ten that the ticks leave out in its unit.
+    /// The label, with what the ticks leave out: the offset, and in its unit the power of ten.
     pub fn label(&self, label: &str) -> String {
-        let power = power_of_ten(f64::from(self.power));
-        match label.rsplit_once('[') {
-            _ if self.power == 0 => label.to_owned(),
-            Some((name, unit)) => format!("{name}[{power} {unit}"),
-            None => format!("{label} [{power}]"),
+        let power = (self.power != 0).then(|| power_of_ten(f64::from(self.power)));
+        let offset = match self.offset {
+            0.0 => String::new(),
+            offset => format!(" {} {}", if offset < 0.0 { '+' } else { '−' }, offset.abs()),
+        };
+        match (label.rsplit_once(" ["), power) {
+            (Some((name, unit)), Some(power)) => format!("{name}{offset} [{power} {unit}"),
+            (Some((name, unit)), None) => format!("{name}{offset} [{unit}"),
+            (None, Some(power)) => format!("{label}{offset} [{power}]"),
+            (None, None) => format!("{label}{offset}"),
         }
     }
 }
@@ -277,6 +292,22 @@ mod tests {
             assert_eq!([span.label("p [N s]"), span.label("p")], [format!("p [{power} N s]"), format!("p [{power}]")]);
             assert_eq!(span.step, 1.0);
             assert!((span.share(scale) - 0.25).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn an_axis_far_from_zero_counts_from_a_round_number() {
+        for (from, length, label, last) in [
+            (1.7e9 + 0.25, 0.5, "t − 1700000000 [s]", "0.7"),
+            (1.7e9 - 0.25, 0.5, "t − 1699999900 [s]", "100.2"),
+            (-3e7, 40.0, "t + 30000000 [s]", "40"),
+            (1e9, 1e5, "t [10⁹ s]", "1.00010"),
+        ] {
+            let span = span((from, from + length));
+            let ticks: Vec<Tick> = span.ticks().collect();
+            assert_eq!((span.label("t [s]").as_str(), &*ticks[ticks.len() - 1].text), (label, last));
+            assert!((span.share(from + 0.5 * length) - 0.5).abs() < 1e-6, "{label}");
+            assert_eq!(span.ends(), (from, from + length));
         }
     }
 
