@@ -26,17 +26,22 @@ const DIRECTIONS: usize = 24;
 
 pub fn picture([x, y]: [PlotAxis; 2], question: Aspect, map: &Map) -> Picture {
     let points = |points: &Vec<[f64; 2]>| points.iter().map(|&[x, y]| (x, y)).collect();
+    let letters = letters(&x, &y, map);
+    let is_lettered =
+        |own: &str| letters.iter().any(|shape| matches!(shape, PlotShape::Text { text, .. } if text == own));
     let (mut shapes, mut legend) = (Vec::new(), Vec::new());
     for ((index, area), color) in map.areas.iter().enumerate().zip(fills_of_map(map)) {
         let happening = Happening::of(question, &area.regime, area.verdict, area.refused.as_ref());
-        let name = format!("{}: {}", letter(index), happening.lines().join("\n"));
+        let (letter, happening) = (letter(index), happening.lines().join("\n"));
+        let remark = if is_lettered(&letter) { "" } else { "\n(without room for its letter)" };
+        let name = format!("{letter}: {happening}{remark}");
         // The seam between two fills lies under the border's line.
         let loops = area.loops.iter().map(points).collect();
         shapes.push(PlotShape::Area { loops, fill: Some(color), stroke: None });
         legend.push(LegendEntry::new(name, LegendKey::Fill(color)));
     }
     shapes.extend(map.curves.iter().map(|curve| PlotShape::Line { points: points(&curve.points), stroke: BORDER }));
-    shapes.extend(letters(&x, &y, map));
+    shapes.extend(letters);
     let panel = Panel { shapes, size: SIZE, ..Panel::new(x, y) };
     Picture { title: String::new(), rows: vec![vec![panel]], legend }
 }
@@ -137,7 +142,7 @@ mod tests {
         let line = |x: f64| vec![[x, 0.0], [x, 1.0]];
         let (mut areas, mut curves, mut x) = (Vec::new(), Vec::new(), 0.0);
         for (index, width) in widths.iter().enumerate() {
-            let outcomes = vec![vec![Mode::ALL[index]]];
+            let outcomes = vec![vec![Mode::ALL[index % 4]]];
             let regime = Regime::Answered { contacts: vec!["foot".into()], outcomes, undecided: Vec::new() };
             let loops = vec![line(x).into_iter().chain(line(x + width).into_iter().rev()).collect()];
             let middles = vec![([x + 0.5 * width, 0.5], 0.5 * width)];
@@ -196,6 +201,17 @@ mod tests {
                 "{name}"
             );
         }
+    }
+
+    #[test]
+    fn what_has_no_room_for_its_letter_is_named_so() {
+        let axis = || PlotAxis { range: Some((0.0, 1.0)), ..PlotAxis::default() };
+        let map = strips(&[&[0.04][..], &[0.003; 45]].concat());
+        let lettered = letters(&axis(), &axis(), &map);
+        let lettered = lettered.iter().filter(|shape| matches!(shape, PlotShape::Text { .. })).count();
+        let legend = picture([axis(), axis()], Aspect::Impact, &map).legend;
+        let named = legend.iter().filter(|entry| entry.name.ends_with("(without room for its letter)")).count();
+        assert!(lettered > 0 && named > 0 && lettered + named == legend.len(), "{lettered}, {named}");
     }
 
     #[test]
