@@ -67,7 +67,7 @@ impl Gait {
         let (name, order) = self.order();
         let label = if name == "time" { "time [s]" } else { name };
         let span = plot::range(order.iter().copied()).unwrap_or_default();
-        let room = if span.0 < span.1 { 0.04 * (span.1 - span.0) } else { 0.5 };
+        let room = if span.0 < span.1 { 0.04 * (span.1 - span.0) } else { ALONE };
         let range = (span.0 - room, span.1 + room);
         let x = PlotAxis { range: Some(range), ..PlotAxis::new(label) };
         let contacts = |(_, state, _): (_, &ListedKeyframe, _)| Some(state.keyframe.drawing.as_ref()?.contacts.len());
@@ -188,6 +188,8 @@ impl Gait {
 
 /// More bands are not distinguishable.
 const BANDS: usize = 160;
+/// How far the axis of a single state reaches to either side.
+const ALONE: f64 = 0.5;
 
 /// A band for all neighboring states of one kind, no farther from each than half way to the next one and than `reach`;
 /// no bands if they are not distinguishable.
@@ -198,8 +200,8 @@ fn bands(states: &[ListedKeyframe], order: &[f64], reach: f64) -> Vec<Band> {
         let half = |other: Option<&f64>| other.map(|other| 0.5 * (other - at).abs());
         let before = number.checked_sub(1).and_then(|before| order.get(before));
         let [before, after] = [before, order.get(number + 1)].map(half);
-        // The first and the last state lie in the middle of their parts, too.
-        let side = |own: Option<f64>, other: Option<f64>| own.or(other).unwrap_or(0.0).min(reach);
+        // The first and the last state lie in the middle of their parts, too, and a single one in that of the axis.
+        let side = |own: Option<f64>, other: Option<f64>| own.or(other).unwrap_or(ALONE).min(reach);
         let (from, to) = (at - side(before, after), at + side(after, before));
         match bands.last_mut() {
             Some(band) if last == Some(look.answer) && before.is_some_and(|half| half <= reach) => band.to = to,

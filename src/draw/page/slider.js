@@ -68,7 +68,7 @@ class Slider {
       const { left, width } = track.getBoundingClientRect();
       this.move(Math.round(((clientX - left) / width) * this.last));
     });
-    const part = (stop) => Math.min(100, Math.max(0, (100 * stop) / (this.last || 1)));
+    const part = (stop) => Math.min(100, Math.max(0, (100 * stop) / (this.last || 0.5)));
     for (let from = 0, to; from < frames.length; from = to) {
       for (to = from + 1; to < frames.length && frames[to].region === frames[from].region; ) to += 1;
       const { name, fill } = regions[frames[from].region] ?? { name: "", fill: "#ffffff" };

@@ -135,6 +135,17 @@ fn a_gait_is_walked_from_impact_to_impact() {
 }
 
 #[test]
+fn a_single_state_has_the_whole_strip() {
+    let state = parsed(&read("examples/ramone.json")).to_string();
+    let (page, path) = page(&["batch", RAMONE, "-"], &state, "single.html");
+    // Its band, in both panels, and the key of that.
+    assert_eq!(page.matches("fill=\"#eaf3fb\"").count(), 3, "{page}");
+    let script = "found({ widths: all('.track span').map((part) => part.style.width) });";
+    let Some(found) = found(&path, WINDOW, script) else { return };
+    assert_eq!(found["widths"], json!(["100%"]));
+}
+
+#[test]
 fn what_is_refused_says_why() {
     let height = json!({
         "parameters": {"z": {"from": 0.3, "to": 0.6, "steps": 4}},
