@@ -68,6 +68,18 @@ fn a_thin_region_hides_no_panel() {
     assert!(svg.matches("impulse [N s]").count() >= 2, "{svg}");
 }
 
+/// A block slides only up to a friction of 0.57.
+#[test]
+fn what_is_zero_but_in_a_thin_region_is_named_so() {
+    for (most, except) in [(1, "impulse [N s]"), (1000, "zero in every outcome, except in regions too thin to be seen")]
+    {
+        let study = json!({"parameters": {"mu": {"from": 0, "to": most, "steps": 20}}, "state": {"friction": "mu",
+            "place": "lowest", "velocity": {"base": {"x": 0.1, "z": -1}}}});
+        let svg = svg(&["sweep", BLOCK, &file("thin.json", study.to_string())], "thin");
+        assert!(svg.contains(except) && svg.contains("is zero in every outcome") == (most > 1), "{svg}");
+    }
+}
+
 #[test]
 fn a_robot_in_the_air_is_drawn_above_the_ground() {
     let state = r#"{"position": {"base": {"z": 0.8}}, "velocity": {"base": {"z": -1}}, "friction": 1}"#;

@@ -101,20 +101,25 @@ impl<'a> Curves<'a> {
     /// Panels of a contact, without quantities that are zero everywhere.
     fn of_contact(&self, contact: &str) -> Vec<Panel> {
         let (drawn, zero): (Vec<_>, Vec<_>) =
-            self.quantities.iter().partition(|quantity| self.is_drawn(contact, quantity));
+            self.quantities.iter().partition(|quantity| self.is_anywhere(contact, quantity, false));
         let mut panels: Vec<Panel> = drawn.iter().map(|quantity| self.panel(contact, quantity)).collect();
         if let Some(first) = panels.first_mut() {
-            let zero = zero.iter().map(|quantity| format!("\n{} is zero in every outcome", quantity.name.0));
+            let zero = zero.iter().map(|quantity| {
+                let is_hidden = self.is_anywhere(contact, quantity, true);
+                let except = if is_hidden { ", except in regions too thin to be seen" } else { "" };
+                format!("\n{} is zero in every outcome{except}", quantity.name.0)
+            });
             first.title = visible(contact).into_owned() + &zero.collect::<String>();
         }
         panels
     }
 
-    /// Whether the quantity is not zero in some visible outcome, compared with that of all its contacts.
-    fn is_drawn(&self, contact: &str, quantity: &PlottedQuantity) -> bool {
+    /// Whether the quantity is not zero in some outcome of a visible region, or a `hidden` one, compared with that of all
+    /// its contacts.
+    fn is_anywhere(&self, contact: &str, quantity: &PlottedQuantity, hidden: bool) -> bool {
         let largest = |pairs: &[[f64; 2]]| pairs.as_flattened().iter().fold(0.0, |most: f64, own| most.max(own.abs()));
-        let mut regions =
-            self.survey.regions.iter().zip(self.courses).filter(|(region, _)| is_seen(region, self.survey));
+        let regions = self.survey.regions.iter().zip(self.courses);
+        let mut regions = regions.filter(|(region, _)| is_seen(region, self.survey) != hidden);
         regions.any(|(region, course)| {
             let own = region.regime.contacts().iter().position(|name| name == contact);
             let mut motions = course.places.iter().flat_map(|place| &place.outcomes);
