@@ -36,11 +36,12 @@ pub use robot::{BASES, PLANES};
 use crate::error::excerpt::Excerpt;
 use crate::error::visible;
 use crate::pipeline::Aspect;
-use anstream::ColorChoice;
+use anstream::{AutoStream, ColorChoice};
 use clap::error::{ContextKind, ContextValue};
 use clap::{Parser, Subcommand};
 use diagnostic::{report, report_with};
 use options::choice;
+use output::Output;
 use std::borrow::Cow;
 use std::ffi::OsString;
 use std::io::{self, Write};
@@ -178,17 +179,23 @@ fn with_tip(mut message: clap::Error) -> clap::Error {
 
 /// Writes clap's message, such as the version or an error about an option, and returns the exit status.
 fn usage(message: &clap::Error) -> u8 {
-    let text = message.render().to_string();
+    let styled = message.render();
+    if !message.use_stderr() {
+        // Not by clap: std takes writing to a descriptor that is not open for writing as done.
+        let plain = AutoStream::choice(&io::stdout()) == ColorChoice::Never;
+        let text = if plain { styled.to_string() } else { styled.ansi().to_string() };
+        let written = Output::open(None).map_err(Failure::Output).and_then(|output| output.finish(text.as_bytes()));
+        return written.map_or_else(status, |_| 0);
+    }
+    let text = styled.to_string();
     let shown: Vec<_> = text.split('\n').map(visible).collect();
-    let written = match shown.iter().any(|line| matches!(line, Cow::Owned(_))) {
+    // A failure to write to standard error cannot be reported anywhere.
+    let _ = match shown.iter().any(|line| matches!(line, Cow::Owned(_))) {
         // What was given holds what a terminal obeys.
         true => write!(anstream::stderr(), "{}", shown.join("\n")),
         false => message.print(),
     };
-    match written {
-        Err(error) if !message.use_stderr() => status(Failure::Output(error)),
-        _ => u8::try_from(message.exit_code()).unwrap_or(2),
-    }
+    u8::try_from(message.exit_code()).unwrap_or(2)
 }
 
 /// Reports why a command ended early, and returns the exit status.

@@ -147,6 +147,8 @@ fn an_output_that_is_not_writable_is_reported() {
         &["inspect", RAMONE],
         &["schema", "state"],
         &["man"],
+        &["--version"],
+        &["impact", "--next", "--help"],
     ] {
         let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_heelstrike"));
         let unwritable = fs::File::open("Cargo.toml").expect("a file");
