@@ -154,10 +154,10 @@ pub(super) fn run(args: &Args) -> Completion {
         columns.append_header(&mut head);
     }
     let mut output = args.begin(&question, (input_format, format), &head, origin)?;
-    let ((answered, refused), begun) = (output.kept(), output.is_empty()?);
-    let mut sink = OutputSink::new(output, format.is_text(), &name, &progress);
+    let ((answered, refused), lines) = (output.kept(), output.lines()?);
+    let mut sink = OutputSink::new(output, format.is_text().then_some(lines), &name, &progress);
     sink.gait = Gait::new(args.mirror.forward(), args.recording.touchdowns);
-    if begun {
+    if lines == 0 {
         sink.write(&head)?;
     }
     #[cfg(feature = "columnar")]

@@ -61,12 +61,12 @@ impl BatchOutput {
         }
     }
 
-    /// Whether nothing is there, so that a header is missing, too.
-    pub fn is_empty(&mut self) -> io::Result<bool> {
-        match &mut self.written {
-            Written::New(_) => Ok(true),
-            Written::Continued(continued) => Ok(continued.file.file.stream_position()? == 0),
-        }
+    /// How many lines are there before the next answer; without any, a header is missing, too.
+    pub fn lines(&mut self) -> io::Result<usize> {
+        let Written::Continued(Continued { file: NewFile { file, .. }, .. }) = &mut self.written else { return Ok(0) };
+        let end = file.stream_position()?;
+        file.rewind()?;
+        Ok(BufReader::new(file.take(end)).split(b'\n').count())
     }
 
     /// What holds the answers so far, if another run can continue it.

@@ -30,7 +30,7 @@ pub(super) struct OutputSink<'a> {
     /// How many refusals were reported, and how many there were of each place and reason without its numbers.
     reported: u64,
     alike: HashMap<(Option<String>, String), u64>,
-    /// Lines written so far, of an output that has lines.
+    /// Lines of the output so far, of one that has lines.
     lines: Option<usize>,
     /// For columns with types.
     #[cfg(feature = "columnar")]
@@ -38,9 +38,9 @@ pub(super) struct OutputSink<'a> {
 }
 
 impl<'a> OutputSink<'a> {
-    /// Answers to `input` go to `output`, as text or not, which must not buffer, so that the number of written lines is
-    /// known.
-    pub fn new(output: BatchOutput, is_text: bool, input: &'a str, progress: &'a ProgressBar) -> Self {
+    /// Answers to `input` go to `output`, behind so many `lines` of text, or as no text. It must not buffer, so that the
+    /// number of written lines is known.
+    pub fn new(output: BatchOutput, lines: Option<usize>, input: &'a str, progress: &'a ProgressBar) -> Self {
         Self {
             output,
             input,
@@ -49,7 +49,7 @@ impl<'a> OutputSink<'a> {
             gait: Gait::default(),
             reported: 0,
             alike: HashMap::new(),
-            lines: is_text.then_some(0),
+            lines,
             #[cfg(feature = "columnar")]
             columns: None,
         }

@@ -253,14 +253,17 @@ fn a_full_disk_leaves_the_old_result_and_a_part() {
     let states = file("disk.ndjson", many());
     let output = file("disk.out.ndjson", "an old result");
     let whole = batch(&[&states, "--friction", "0.5"], "").stdout;
-    for blocks in ["8", "64"] {
+    for (blocks, resume) in [("8", None), ("200", None), ("400", Some("--resume"))] {
         let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" \"$@\"");
-        let arguments = ["batch", &disc(), &states, "--friction", "0.5", "-o", &output];
+        let disc = disc();
+        let arguments = ["batch", &disc, &states, "--friction", "0.5", "-o", &output].into_iter().chain(resume);
         let mut shell = Command::new("bash");
         let run =
             shell.args(["-c", &script, env!("CARGO_BIN_EXE_heelstrike")]).args(arguments).output().expect("it runs");
         let stderr = String::from_utf8_lossy(&run.stderr);
         assert!(run.status.code() == Some(1) && stderr.contains("--resume continues them"), "{stderr}");
+        let there = lines(&fs::read(format!("{output}.part")).expect("a part"));
+        assert!(stderr.contains(&format!("it ends after {there} whole lines")), "{there}: {stderr}");
         assert_eq!(read(&output), "an old result");
     }
     assert_eq!(batch(&[&states, "--friction", "0.5", "-o", &output, "--resume"], "").status, 1);
