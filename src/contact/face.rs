@@ -65,14 +65,15 @@ impl Face {
     }
 
     /// Whether a boundary that goes on straight from `point`, which is at this side, to `neighbor` stays in front of
-    /// the side: it may go behind it by `slack` \[m\] where both lie flat on each other.
-    pub fn clears(&self, point: Vector<f64>, neighbor: Vector<f64>, slack: f64) -> bool {
+    /// the side: it may go behind it by `slack` \[m\] where both lie flat on each other, as a `sole` that ends above
+    /// the side does up to 45 degrees.
+    pub fn clears(&self, point: Vector<f64>, neighbor: Vector<f64>, slack: f64, sole: bool) -> bool {
         let way = unit(neighbor - point);
-        let descent = -self.normal.dot(way);
-        if descent <= 0.0 || descent > FLAT {
+        let [along, descent] = [self.tangent.dot(way), -self.normal.dot(way)];
+        let is_flat = descent <= FLAT || sole && descent < along.abs() && self.faces(neighbor);
+        if descent <= 0.0 || !is_flat {
             return descent <= 0.0;
         }
-        let along = self.tangent.dot(way);
         let room = if along > 0.0 { -self.past_end(point) } else { self.past_begin(point) };
         descent * (room / along.abs()).min((neighbor - point).length()) <= slack
     }

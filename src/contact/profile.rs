@@ -9,7 +9,8 @@
 //!
 //! Each corner of one boundary belongs to the side of the other that it is above, or to the corner whose sides it is
 //! past, so that a spot touches once. What is within the tolerance touches; so a sole that lies flat on a tread touches
-//! with its corner and at the edge that it overhangs. At a small angle a side may go behind another by twice it.
+//! with its corner and at the edge that it overhangs. At a small angle a side may go behind another by twice it, and at
+//! up to 45 degrees, as on a plane, if it ends above it.
 
 use super::face::{Face, PARALLEL, unit, upright};
 use super::feet::Foot;
@@ -207,7 +208,7 @@ fn on_segment(terrain: &Terrain, segment: usize, outline: &Outline, corner: usiz
     let clear = |face: &Face| {
         let slack = 2.0 * close.tolerance;
         let beside = outline.beside_corner(corner);
-        beside.is_none_or(|beside| beside.into_iter().all(|neighbor| face.clears(center, neighbor, slack)))
+        beside.is_none_or(|beside| beside.into_iter().all(|neighbor| face.clears(center, neighbor, slack, true)))
     };
     // Behind both sides of a convex corner the one that is left by the shorter way counts.
     let height = face.height(center);
@@ -287,7 +288,7 @@ fn side_on_corner(terrain: &Terrain, corner: usize, outline: &Outline, close: Cl
         let beneath = face.past_begin(at) >= -close.rounding && face.past_end(at) <= close.rounding;
         // A line is all surface; the way along the ground decides its side.
         let solid = outline.sides.len() > 2;
-        let clear = |side: &Face| side.clears(at, before.from, slack) && side.clears(at, after.to, slack);
+        let clear = |side: &Face| [before.from, after.to].into_iter().all(|end| side.clears(at, end, slack, false));
         let nearer = |other: &Face| solid && gap < 0.0 && other.faces(at) && other.height(at) > gap && clear(other);
         if gap.abs() > close.tolerance || !beneath || !clear(face) || outline.beside(side).into_iter().any(nearer) {
             return None;

@@ -85,6 +85,22 @@ fn sorted(mut numbers: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     numbers
 }
 
+#[test]
+fn points_on_a_slope_are_that_slope_to_tilted_soles() {
+    let options = Options { contact_tolerance: Some(0.3), ..Options::default() };
+    for (slope, tilt) in [0.0, -0.3].into_iter().flat_map(|slope| (-80..=80).map(move |tilt| (slope, tilt))) {
+        let place = json!({"base": {"x": 0.1, "pitch": 0.01 * f64::from(tilt) - slope}});
+        let touching = |ground: Value| {
+            let state = json!({"position": place, "friction": 0.5, "place": "lowest", "ground": ground});
+            let found = try_impact(&sole(), options.clone(), state).unwrap();
+            found.contacts.iter().map(|contact| contact.center.components()).collect::<Vec<_>>()
+        };
+        let rise = 3.0 * f64::tan(slope);
+        let points = json!({"profile": [[-3, -rise], [3, rise]]});
+        assert_eq!(touching(points), touching(json!({"slope": slope})), "{slope} {tilt}");
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 96, failure_persistence: None, ..ProptestConfig::default() })]
 
