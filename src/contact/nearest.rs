@@ -7,12 +7,11 @@ use super::feet::Foot;
 use super::outline::Outline;
 use super::placement::Placement;
 use super::point::{Point, Touch, points};
-use super::profile::{self, Closeness};
+use super::profile;
 use super::surface::Surface;
 use super::terrain::Terrain;
 use crate::error::{Error, Reason, Result};
 use crate::planar::Vector;
-use crate::robot::Rim;
 
 /// A sole whose other end is lower than this part of the way to it is meant to be flat on the ground.
 const FLAT: f64 = 0.1;
@@ -31,7 +30,7 @@ impl Footing<'_> {
             let body = |body: usize| self.robot.rigid_body(body);
             let mut of_body = contacts.iter().filter(|contact| body(contact.body) == body(foot.body));
             let touch = match (of_body.next(), of_body.next()) {
-                (None, _) => surface.first_touch(foot, placement, surface.rounding(placement, self.feet.size())),
+                (None, _) => surface.first_touch(foot, placement),
                 (Some(contact), None) => surface.raised_end(foot, placement, contact),
                 _ => None,
             };
@@ -51,7 +50,7 @@ impl Footing<'_> {
         let is_near = |foot: &&Foot| !surface.is_out_of_reach(foot, placement, height);
         let mut near: Vec<Contact> = Vec::new();
         for foot in self.feet.iter().filter(|foot| is_open(foot) && is_near(foot)) {
-            let touch = surface.first_touch(foot, placement, surface.rounding(placement, self.feet.size()));
+            let touch = surface.first_touch(foot, placement);
             let Some(own) = touch.filter(|touch| touch.gap <= height).map(|touch| self.contact(foot.link, touch))
             else {
                 continue;
@@ -77,7 +76,7 @@ impl Footing<'_> {
             if lowest - surface.least_gap(foot, placement) <= depth {
                 continue;
             }
-            let touch = surface.first_touch(foot, placement, surface.rounding(placement, self.feet.size()));
+            let touch = surface.first_touch(foot, placement);
             let below = touch.map(|touch| (foot.link, lowest - touch.gap));
             farthest = below.filter(|(_, own)| *own > depth).or(farthest);
         }
@@ -176,18 +175,10 @@ impl Surface {
     }
 
     /// Where a foot that does not touch is nearest to the ground.
-    fn first_touch(&self, foot: &Foot, placement: &Placement, rounding: f64) -> Option<Touch> {
-        let lowest = |a: &Touch, b: &Touch| a.gap.total_cmp(&b.gap);
+    fn first_touch(&self, foot: &Foot, placement: &Placement) -> Option<Touch> {
         match self {
-            Self::HalfPlane(plane) => points(foot).map(|point| plane.touch(placement, point)).min_by(lowest),
-            Self::Profile(terrain) => {
-                let reach = self.clearance(foot, placement).abs() + 2.0 * rounding;
-                // The clearance of an ellipse may be less than the height that its point has as a contact.
-                let tries = if matches!(foot.outline.rim, Rim::Ellipse { .. }) { 8 } else { 1 };
-                let wider = std::iter::successors(Some(reach), |reach| Some(2.0 * reach)).take(tries);
-                let within = |tolerance| profile::touching(terrain, foot, placement, Closeness { tolerance, rounding });
-                wider.filter_map(|reach| within(reach).ok()).find_map(|touches| touches.into_iter().min_by(lowest))
-            }
+            Self::HalfPlane(plane) => points(foot).map(|point| plane.touch(placement, point)).min_by(Touch::by_gap),
+            Self::Profile(terrain) => profile::nearest(terrain, &Outline::new(foot, placement)),
         }
     }
 
@@ -201,6 +192,6 @@ impl Surface {
             !is_own && touch.gap > 0.0 && touch.gap < FLAT * way.abs()
         };
         let touches = points(foot).map(|point| plane.touch(placement, point)).filter(flat);
-        touches.min_by(|a, b| a.gap.total_cmp(&b.gap))
+        touches.min_by(Touch::by_gap)
     }
 }

@@ -5,10 +5,10 @@
 //!                                any other                                                  the corner's whose rim is nearest
 //! ```
 
-use super::face::{Face, unit};
+use super::face::{Face, unit, upright};
 use super::feet::Foot;
 use super::placement::Placement;
-use super::point::{Circle, Point, points};
+use super::point::{Point, Touch, points};
 use crate::planar::Vector;
 use crate::robot::Rim;
 
@@ -71,9 +71,9 @@ impl<'p> Outline<'p> {
         self.corners[corner] + self.support(-normal)
     }
 
-    /// What of a corner touches ground with this normal.
-    pub fn circle(&self, corner: usize, normal: Vector<f64>) -> Circle {
-        self.placement.circle(self.points[corner], normal)
+    /// A corner's contact with ground of this normal.
+    pub fn touch(&self, corner: usize, normal: Vector<f64>, gap: f64) -> Touch {
+        Touch { circle: self.placement.circle(self.points[corner], normal), ground: upright(normal), gap }
     }
 
     /// The sides that end and begin at a corner; none of a single corner.
@@ -92,14 +92,15 @@ impl<'p> Outline<'p> {
         [&self.sides[(side + count - 1) % count], &self.sides[(side + 1) % count]]
     }
 
-    /// What of a side touches a corner of the ground that is `at` it.
-    pub fn on_side(&self, side: usize, at: Vector<f64>) -> Circle {
+    /// A side's contact with a corner of the ground that is `at` it.
+    pub fn on_side(&self, side: usize, at: Vector<f64>) -> Touch {
         let face = &self.sides[side];
         let (from, to) = (self.points[side], self.points[(side + 1) % self.points.len()]);
         let (behind, ahead) = (face.past_begin(at), -face.past_end(at));
         let along = (to.center - from.center) * (behind / (behind + ahead));
         let point = Point { center: from.center + along, offset: None, ..from };
-        self.placement.circle(point, -face.normal)
+        let normal = -face.normal;
+        Touch { circle: self.placement.circle(point, normal), ground: upright(normal), gap: face.height(at) }
     }
 
     /// The box about the outline, grown by `margin` \[m\]: its low and its high end.
@@ -136,18 +137,17 @@ impl<'p> Outline<'p> {
         }
     }
 
-    /// How deep a point is in the foot \[m\], negative outside.
-    pub fn depth_of(&self, point: Vector<f64>) -> f64 {
-        let height = |side: &Face| -side.height(point);
-        if self.bones.len() > 2 && self.bones.iter().all(|bone| bone.height(point) < 0.0) {
-            return self.sides.iter().map(height).fold(f64::INFINITY, f64::min);
+    /// The contact of a corner of the ground where it is deepest in the foot or, outside, nearest to it.
+    pub fn touch_of(&self, corner: Vector<f64>) -> Option<Touch> {
+        let on = |side: usize| self.on_side(side, corner);
+        if self.bones.len() > 2 && self.bones.iter().all(|bone| bone.height(corner) < 0.0) {
+            return (0..self.sides.len()).map(on).max_by(Touch::by_gap);
         }
-        let above =
-            self.bones.iter().zip(&self.sides).filter(|(bone, side)| bone.height(point) >= 0.0 && side.faces(point));
-        let rims = (0..self.corners.len()).map(|corner| match self.beyond_rim(corner, point) {
-            Some((_, beyond)) => -beyond,
-            None => self.rim.bound(),
+        let is_above = |side: &usize| self.bones[*side].height(corner) >= 0.0 && self.sides[*side].faces(corner);
+        let rims = (0..self.corners.len()).map(|at| match self.beyond_rim(at, corner) {
+            Some((out, beyond)) => self.touch(at, -out, beyond),
+            None => self.touch(at, Vector::new(0.0, 1.0), 0.0 - self.rim.bound()),
         });
-        above.map(|(_, side)| height(side)).chain(rims).fold(f64::NEG_INFINITY, f64::max)
+        (0..self.sides.len()).filter(is_above).map(on).chain(rims).min_by(Touch::by_gap)
     }
 }

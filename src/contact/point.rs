@@ -8,6 +8,7 @@ use crate::planar::{Rotation, Vector};
 use crate::robot::{Rim, Robot};
 use crate::scalar::Real;
 use crate::state::NamedContact;
+use std::cmp::Ordering;
 
 /// A corner and the rim about it, rigid on a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,6 +38,12 @@ pub(super) struct Touch {
     pub ground: Rotation<f64>,
     /// Height of the material point, center - radius * normal, above the ground \[m\].
     pub gap: f64,
+}
+
+impl Touch {
+    pub fn by_gap(&self, other: &Self) -> Ordering {
+        self.gap.total_cmp(&other.gap)
+    }
 }
 
 impl Point {

@@ -12,7 +12,7 @@
 //! with its corner and at the edge that it overhangs. At a small angle a side may go behind another by twice it, and at
 //! up to 45 degrees, as on a plane, if it ends above it.
 
-use super::face::{Face, PARALLEL, unit, upright};
+use super::face::{Face, PARALLEL, unit};
 use super::feet::Foot;
 use super::outline::Outline;
 use super::placement::Placement;
@@ -86,7 +86,7 @@ pub(super) fn touching(
 /// The rearmost and the foremost of a foot's contacts on one segment; of several at one end, or no farther than `bumps`
 /// \[m\] apart, the lowest.
 fn outer(touches: Vec<Touch>, along: impl Fn(&Touch) -> f64, bumps: f64) -> Vec<Touch> {
-    let lower = |a: &&Touch, b: &&Touch| a.gap.total_cmp(&b.gap);
+    let lower = |a: &&Touch, b: &&Touch| a.by_gap(b);
     let end = |way: f64| touches.iter().min_by(|a, b| (way * along(a)).total_cmp(&(way * along(b))).then(lower(a, b)));
     match (end(1.0), end(-1.0)) {
         (Some(rear), Some(front)) if along(front) - along(rear) <= bumps => {
@@ -128,31 +128,40 @@ fn corners_of(segments: &[usize]) -> impl Iterator<Item = usize> + '_ {
     (0..segments.len()).flat_map(move |at| new(at).then(|| segments[at] - 1).into_iter().chain([segments[at]]))
 }
 
-/// How deep a foot is in the ground \[m\], negative above it: the deepest of its corners' rims, of the ground's corners
-/// in the foot, and of sides that cross.
-fn depth(terrain: &Terrain, outline: &Outline, near: &[usize]) -> f64 {
-    let corners = (0..outline.corners.len()).map(|corner| depth_of_rim(terrain, outline, corner, near));
-    let ground = corners_of(near).map(|corner| outline.depth_of(terrain.at_corner(corner)[0].to));
-    let across = near.iter().flat_map(|&segment| {
-        let face = terrain.face(segment);
-        let reach = outline.reach(-face.normal);
-        outline.bones.iter().filter_map(move |bone| crossing(face, bone)).map(move |depth| reach + depth)
+/// Where a foot may be deepest in the ground or, above it, nearest to it: at its corners' rims, the ground's corners, and
+/// sides that cross.
+fn places<'a>(terrain: &'a Terrain, outline: &'a Outline, near: &'a [usize]) -> impl Iterator<Item = Touch> + 'a {
+    let corners = (0..outline.corners.len()).filter_map(|corner| place_of_rim(terrain, outline, corner, near));
+    let ground = corners_of(near).filter_map(|corner| outline.touch_of(terrain.at_corner(corner)[0].to));
+    let across = near.iter().flat_map(move |&segment| {
+        (0..outline.bones.len()).filter_map(move |bone| crossing(terrain.face(segment), outline, bone))
     });
-    corners.chain(ground).chain(across).fold(f64::NEG_INFINITY, f64::max)
+    corners.chain(ground).chain(across)
 }
 
-/// How deep a corner's rim is behind the segments that it is above \[m\], or as a whole below the profile.
-fn depth_of_rim(terrain: &Terrain, outline: &Outline, corner: usize, near: &[usize]) -> f64 {
+/// How deep a foot is in the ground \[m\], negative above it.
+fn depth(terrain: &Terrain, outline: &Outline, near: &[usize]) -> f64 {
+    places(terrain, outline, near).map(|touch| -touch.gap).fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// Where a corner's rim is deepest behind the segments that it is above, or as a whole below the profile.
+fn place_of_rim(terrain: &Terrain, outline: &Outline, corner: usize, near: &[usize]) -> Option<Touch> {
     let center = outline.corners[corner];
     if let Some((depth, normal)) = terrain.depth_of(center) {
-        return depth + outline.reach(-normal);
+        return Some(outline.touch(corner, normal, -(depth + outline.reach(-normal))));
     }
     let above = near.iter().filter_map(|&segment| {
         let face = terrain.face(segment);
         let lowest = outline.lowest(corner, face.normal);
-        (face.height(center) >= 0.0 && face.faces(lowest)).then(|| -face.height(lowest))
+        let is_above = face.height(center) >= 0.0 && face.faces(lowest);
+        is_above.then(|| outline.touch(corner, face.normal, face.height(lowest)))
     });
-    above.fold(f64::NEG_INFINITY, f64::max)
+    above.min_by(Touch::by_gap)
+}
+
+/// Where a foot is nearest to the ground, or deepest in it; `None` of one that is below an end beside it.
+pub(super) fn nearest(terrain: &Terrain, outline: &Outline) -> Option<Touch> {
+    places(terrain, outline, &all(terrain)).min_by(Touch::by_gap).filter(|touch| touch.ground.cos > -PARALLEL)
 }
 
 pub(super) fn clearance(terrain: &Terrain, outline: &Outline) -> f64 {
@@ -179,13 +188,17 @@ pub(super) fn left_behind(terrain: &Terrain, outline: &Outline, tolerance: f64) 
     if hangs(rear, -1.0) { Some(rear.x) } else { hangs(front, 1.0).then_some(front.x) }
 }
 
-/// The shortest way that takes one of two crossing sides off the other \[m\]; `None` if they do not cross.
-fn crossing(a: &Face, b: &Face) -> Option<f64> {
-    let [from, to] = [a.height(b.from), a.height(b.to)];
-    let [begin, end] = [b.height(a.from), b.height(a.to)];
+/// The corner of a side that is behind a segment which the side crosses, as deep as the shortest way that takes one off
+/// the other; `None` if they do not cross.
+fn crossing(face: &Face, outline: &Outline, side: usize) -> Option<Touch> {
+    let bone = &outline.bones[side];
+    let [from, to] = [face.height(bone.from), face.height(bone.to)];
+    let [begin, end] = [bone.height(face.from), bone.height(face.to)];
     let parted = |one: f64, other: f64| one.min(other) < 0.0 && one.max(other) > 0.0;
     let shortest = [from, to, begin, end].map(f64::abs).into_iter().fold(f64::INFINITY, f64::min);
-    (parted(from, to) && parted(begin, end)).then_some(shortest)
+    let behind = if from < 0.0 { side } else { (side + 1) % outline.corners.len() };
+    let depth = || outline.reach(-face.normal) + shortest;
+    (parted(from, to) && parted(begin, end)).then(|| outline.touch(behind, face.normal, -depth()))
 }
 
 /// A corner's rim at a segment.
@@ -221,7 +234,7 @@ fn on_segment(terrain: &Terrain, segment: usize, outline: &Outline, corner: usiz
     if !clear(face) || nearer(segment - 1, rear) || nearer(segment + 1, front) {
         return None;
     }
-    Some(Touch { circle: outline.circle(corner, face.normal), ground: face.axes(), gap })
+    Some(outline.touch(corner, face.normal, gap))
 }
 
 /// A foot's corner, or the rim about it, on a convex corner of the ground.
@@ -251,7 +264,7 @@ fn corner_on_corner(terrain: &Terrain, corner: usize, outline: &Outline, close: 
                 (normal, normal.dot(outline.corners[foot] - at))
             }
         };
-        Some(Touch { circle: outline.circle(foot, normal), ground: upright(normal), gap })
+        Some(outline.touch(foot, normal, gap))
     };
     (0..outline.corners.len()).find_map(on)
 }
@@ -293,8 +306,7 @@ fn side_on_corner(terrain: &Terrain, corner: usize, outline: &Outline, close: Cl
         if gap.abs() > close.tolerance || !beneath || !clear(face) || outline.beside(side).into_iter().any(nearer) {
             return None;
         }
-        let ground = upright(-face.normal);
-        Some(Touch { circle: outline.on_side(side, at), ground, gap })
+        Some(outline.on_side(side, at))
     };
     (0..outline.sides.len()).find_map(across)
 }

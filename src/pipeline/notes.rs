@@ -183,9 +183,7 @@ impl Pipeline<'_> {
         };
         let NearestFoot { link, height, velocity } = foot;
         let (name, moving) = (&self.robot.links[link].name, along_normal(velocity));
-        // A foot that does not touch can be below the ground only beyond the end of a profile.
-        let place = if height < 0.0 { "below its end" } else { "above it" };
-        let shown = rounded(height.abs());
+        let shown = rounded(height);
         let by_base = if self.assembly.plan.floating { "`place: lowest`" } else { "its joints" };
         let remedy = match is_near(&foot) {
             true => format!(
@@ -195,7 +193,7 @@ impl Pipeline<'_> {
             false => format!("put it there by {by_base}"),
         };
         notes.push(format!(
-            "nothing touches the ground: the lowest foot, {name}, is {shown} m {place} and {moving}; {remedy}"
+            "nothing touches the ground: the lowest foot, {name}, is {shown} m above it and {moving}; {remedy}"
         ));
     }
 }

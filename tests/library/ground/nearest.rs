@@ -2,6 +2,7 @@
 
 use super::{FALLING, assert_close, assert_same_outcomes, body, sole, state, step};
 use crate::support::impact::{impact, robot, try_impact};
+use crate::support::random::Random;
 use crate::support::urdf::{self, Axis, POINT, collision, joint, link};
 use heelstrike::pipeline::{Impact, NearestFoot, Options};
 use heelstrike::planar::Vector;
@@ -90,6 +91,49 @@ fn nearest_over_a_profile_is_found_at_its_edge() {
     let over = state([0.0, 0.35, 0.0], FALLING, 0.5, &step(0.0, 0.2));
     let NearestFoot { height, velocity, .. } = nearest(&impact(&sole(), over));
     assert_close(&[height, velocity[0], velocity[1]], &[0.05, 0.0, -1.0]);
+}
+
+/// Over slopes, notches and spikes, of two boxes the nearer one: the distance of a corner of one boundary from a side of the
+/// other.
+#[test]
+fn nearest_over_a_profile_is_at_its_distance() {
+    let foot = |x: f64| collision([x, 0.0], "box size=\"0.4 1 0.2\"");
+    let robot = robot(&urdf::robot(&[
+        link("body", 2.0, [0.0; 2], 0.5, &foot(0.0)),
+        link("other", 1.0, [0.0; 2], 0.5, &foot(1.0)),
+        joint("weld", Axis::Fixed, ["body", "other"], [0.0; 2], ""),
+    ]));
+    let mut random = Random::new(3);
+    for _ in 0..300 {
+        let point = |x: i32| [0.1 * f64::from(x), random.between(-0.4, 0.4)];
+        let ground: Vec<[f64; 2]> = (-30..=30).map(point).collect();
+        let base = json!({"x": random.between(-1.0, 1.0), "pitch": random.between(-3.0, 3.0)});
+        let mut state =
+            json!({"position": {"base": base}, "friction": 1, "place": "lowest", "ground": {"profile": ground}});
+        let lowest = impact(&robot, state.clone()).placement.world(0, Vector::zero()).z;
+        state["position"]["base"]["z"] = json!(lowest + random.between(0.01, 1.0));
+        state.as_object_mut().unwrap().remove("place");
+        let found = impact(&robot, state.clone());
+        let distance = |x: f64| {
+            let corners = [[-0.2, -0.1], [0.2, -0.1], [0.2, 0.1], [-0.2, 0.1], [-0.2, -0.1]];
+            let corners = corners.map(|[along, up]| found.placement.world(0, Vector::new(x + along, up)).components());
+            let beside = |points: &[[f64; 2]], sides: &[[f64; 2]]| {
+                let all = points.iter().flat_map(|point| sides.windows(2).map(|side| from_side(*point, side)));
+                all.fold(f64::INFINITY, f64::min)
+            };
+            beside(&corners, &ground).min(beside(&ground, &corners))
+        };
+        let (own, distances) = (nearest(&found), [0.0, 1.0].map(distance));
+        assert!((own.height - distances[0].min(distances[1])).abs() < 1e-12, "{own:?} {distances:?} {state}");
+        assert!((distances[own.link] - own.height).abs() < 1e-12, "{own:?} {distances:?} {state}");
+    }
+}
+
+/// The distance of a point from the side between two others.
+fn from_side([x, z]: [f64; 2], side: &[[f64; 2]]) -> f64 {
+    let ([dx, dz], [x, z]) = ([side[1][0] - side[0][0], side[1][1] - side[0][1]], [x - side[0][0], z - side[0][1]]);
+    let part = ((x * dx + z * dz) / (dx * dx + dz * dz)).clamp(0.0, 1.0);
+    (x - part * dx).hypot(z - part * dz)
 }
 
 #[test]
