@@ -306,7 +306,11 @@ fn side_on_corner(terrain: &Terrain, corner: usize, outline: &Outline, close: Cl
         if gap.abs() > close.tolerance || !beneath || !clear(face) || outline.beside(side).into_iter().any(nearer) {
             return None;
         }
-        Some(outline.on_side(side, at))
+        // Where it lies flat on a segment, that segment's normal.
+        let is_flat = |own: &&Face| own.normal.dot(face.normal) < 0.0 && own.normal.dot(face.tangent).abs() <= PARALLEL;
+        let touch = outline.on_side(side, at);
+        let ground = [before, after].into_iter().find(is_flat).map_or(touch.ground, Face::axes);
+        Some(Touch { ground, ..touch })
     };
     (0..outline.sides.len()).find_map(across)
 }

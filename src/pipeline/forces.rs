@@ -24,7 +24,7 @@ use crate::error::{Error, Reason, Result, finite};
 use crate::impact::{Analysis, AnalysisOptions, ContactProblem, Errors, ListedRejections, Next, Outcome, Verdict};
 use crate::law::{Law, Mode};
 use crate::planar::{Pair, Vector};
-use crate::robot::Robot;
+use crate::robot::{FootShape, Rim, Robot};
 use crate::scalar::{Magnitude, Real, dot};
 use crate::state::{Scene, SpringEnd, SpringLaw, State};
 use std::cmp::Ordering;
@@ -465,7 +465,9 @@ impl Pipeline<'_> {
                     && contact.radius != 0.0
                     && self.assembly.velocity_of(&center, &prepared.velocity) != Vector::zero()
             };
-            if surface.is_corner(contact) && (slip.is_ne() || rolls()) {
+            // A side that lies flat on the ground has its normal at a corner, too, but turns it.
+            let turns = slip.is_ne() && !steady[contact.body] && self.is_on_side(contact);
+            if turns || surface.is_corner(contact) && (slip.is_ne() || rolls()) {
                 let reason =
                     format!("{} moves over a corner of the ground, where the normal turns with it", contact.name);
                 let hint = "ask before or after the corner, or replace the corner by a short segment";
@@ -473,6 +475,14 @@ impl Pipeline<'_> {
             }
         }
         Ok(())
+    }
+
+    /// Returns whether a detected contact is on a side of a foot, between its corners.
+    fn is_on_side(&self, contact: &Contact) -> bool {
+        let mut own = self.feet.iter().filter(|foot| foot.link == contact.link).map(|foot| &foot.outline);
+        let is_elsewhere =
+            |own: &FootShape| matches!(own.rim, Rim::Circle { .. }) && !own.corners().contains(&contact.center);
+        contact.offset.is_none() && own.all(is_elsewhere)
     }
 
     /// Finds every outcome with an impulse of an impact at contacts that neither approach nor leave; `None` if it is

@@ -88,6 +88,21 @@ fn what_leaves_the_range_of_f64_has_a_remedy() {
     }
 }
 
+/// Flat on a stair whose edge it slides over, a sole turns the normal there once it turns.
+#[test]
+fn a_sole_that_turns_over_an_edge_is_refused() {
+    let sole = robot(&urdf::body(0.5, &collision([0.0; 2], "box size=\"0.4 0.1 0.2\"")));
+    let slides = |turn: f64| {
+        let state = json!({"position": {"base": {"z": 0.1}}, "friction": 0.5,
+            "velocity": {"base": {"x": 1.0, "z": 0.125 * turn, "pitch": turn}},
+            "ground": {"profile": [[-1, 0], [0.125, 0], [0.126, -1], [1, -1]]}});
+        try_forces(&sole, &state)
+    };
+    assert_eq!(slides(0.0).expect("an answer").contacts.len(), 2);
+    let reason = slides(0.5).expect_err("it turns").to_string();
+    assert!(reason.contains("moves over a corner of the ground"), "{reason}");
+}
+
 /// Two links of 0.5 m hang straight down, and a loop pins their end 1 m below their hinge. Their rates keep the loop
 /// closed, but the rotation of each link pulls the end up with 0.5 omega^2.
 #[test]

@@ -1,6 +1,7 @@
 //! Which points of feet touch, that each is found once, and with which normals.
 
 use super::*;
+use crate::support::urdf::{HINGE, collision, joint, link};
 use std::f64::consts::FRAC_1_SQRT_2;
 
 /// Asserts that there is one contact, and its normal.
@@ -136,4 +137,29 @@ fn a_circle_on_a_corner_of_the_ground_touches_it() {
     // A stance is placed on such a corner.
     let stance = r#"{"stance": "body", "friction": 0.5, "ground": {"profile": [[-1, -1], [0, 0], [1, -0.5]]}}"#;
     assert_eq!(impact(&disc(), stance).velocity_before, [[0.0; 2]]);
+}
+
+/// Angles that cancel leave a sole tilted by 1e-17 rad, on which contacts that stick could balance with 1e16 N s.
+#[test]
+fn a_level_sole_across_an_edge_has_the_normal_of_its_tread() {
+    let foot = collision([0.0, -0.4], "box size=\"0.3 0.1 0.04\"");
+    let robot = robot(&urdf::robot(&[
+        link("torso", 5.0, [0.02, 0.2], 0.2, ""),
+        link("thigh", 1.0, [0.0, -0.2], 0.02, ""),
+        link("foot", 1.0, [0.02, -0.2], 0.02, &foot),
+        joint("hip", HINGE, ["torso", "thigh"], [0.0; 2], ""),
+        joint("knee", HINGE, ["thigh", "foot"], [0.0, -0.4], ""),
+    ]));
+    for (pitch, hip) in (1..40).map(|step| 0.01 * f64::from(step)).map(|pitch| (pitch, 0.7 - 3.0 * pitch)) {
+        let base = json!({"x": 0.4 * f64::sin(pitch + hip) + 0.02, "pitch": pitch});
+        let joints = json!({"hip": hip, "knee": -(pitch + hip)});
+        let velocity = json!({"base": {"x": 0.3, "z": -1, "pitch": 0.4}, "joints": {"hip": -0.7, "knee": 0.2}});
+        let state = json!({"position": {"base": base, "joints": joints}, "velocity": velocity,
+            "friction": "infinite", "place": "lowest", "ground": {"profile": step(0.0, -0.5)}});
+        let found = impact(&robot, state);
+        assert_eq!(found.contacts.len(), 2, "{pitch}");
+        assert!(found.contacts.iter().all(|contact| contact.normal() == [0.0, 1.0]), "{:?}", touches(&found));
+        let pushes = outcomes(&found).iter().flat_map(|own| own.impulse.as_flattened());
+        assert!(pushes.fold(0.0, |most: f64, own| most.max(own.abs())) < 1e3, "{pitch}: {:?}", outcomes(&found));
+    }
 }
