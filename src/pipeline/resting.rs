@@ -13,11 +13,12 @@ use super::Pipeline;
 use super::assembly::Assembly;
 use super::still::{Still, WELL_KNOWN};
 use crate::contact::Contact;
-use crate::dynamics::plan::JointMotion;
+use crate::dynamics::plan::{JointMotion, Plan};
 use crate::dynamics::{RoundingBounds, Workspace, point_velocity};
 use crate::error::{Error, Reason, Result, rounded};
 use crate::impact::CONTACT_LIMIT;
 use crate::planar::{Pair, Vector};
+use crate::scalar::{Real, Residue};
 use crate::state::State;
 use std::cmp::Ordering;
 use std::fmt;
@@ -90,11 +91,14 @@ impl Pipeline<'_> {
                     "{name} moves at {slow:.1e} m/s, which is within the rounding of its velocity: if it is at rest, \
                      say so by `stance` or the option `resting_speed`"
                 ));
-            } else if !self.options.brief && own[1] != 0.0 && own[1].abs() <= bounds[1] {
+            } else if !self.options.brief
+                && own[1].abs() <= bounds[1]
+                && (own[1] != 0.0 || bounds[1] > 0.0 && self.is_rounded_to_zero(state, contact.1, foot))
+            {
                 notes.push(format!(
-                    "{name} slides, and moves at {:.1e} m/s along the normal, which is within the rounding of its velocity, so \
+                    "{name} slides, and moves at {} m/s along the normal, which is within the rounding of its velocity, so \
                      rounding decides whether it strikes",
-                    own[1]
+                    rounded(own[1] + 0.0)
                 ));
             } else if !self.options.brief
                 && self.options.resting_speed.is_none()
@@ -108,6 +112,18 @@ impl Pipeline<'_> {
                 ));
             }
         }
+    }
+
+    /// Returns whether the normal velocity of a contact, which f64 has as zero, is not zero in the state's exact numbers.
+    fn is_rounded_to_zero(&self, state: &State, contact: &Contact, foot: Option<&Contact>) -> bool {
+        let mut exact = Assembly::<Residue>::new(Plan::new(self.robot, &[], &[]));
+        exact.configuration.set(&exact.plan, &state.position);
+        exact.place();
+        let point = |contact: &Contact| contact.exact_point(self.robot, state.scene.ground.axes(contact.ground));
+        let mut velocity: Vec<Residue> = state.velocity.iter().map(|&entry| Residue::from_f64(entry)).collect();
+        foot.into_iter().for_each(|foot| exact.rest(&point(foot), &mut velocity));
+        let (point, are_loops_open) = (point(contact), self.assembly.loops.is_empty());
+        are_loops_open && point.axes()[1].dot(exact.velocity_of(&point, &velocity)).is_zero() == Some(false)
     }
 
     /// Takes resting contacts as exactly at rest, once G is known. The c of contacts that depend on them becomes that
