@@ -248,20 +248,29 @@ impl Scratch {
         }
         if !undecided.is_empty() {
             let first = Precision::first(regular || is_searched && self.relaxation.is_regular, problem);
-            let known = Kernel::of_shared(&shared);
-            let mut pass = UndecidedPass { undecided, kernel, shared: known, collected: &mut collected };
+            let (known, collected) = (Kernel::of_shared(&shared), &mut collected);
+            let (rejected, is_decided) = (Vec::new(), false);
+            let mut pass = UndecidedPass { undecided, rejected, is_decided, kernel, shared: known, collected };
             let is_enclosed = !shared.is_empty() && errors.delassus.is_finite() && scale.is_far_from_underflow();
-            if !(is_enclosed && pass.attempt(&scale.enclosed(problem, errors, shared), Precision::Enclosed)) {
-                escalate(remembered, first, &mut pass);
+            let enclosed = is_enclosed.then(|| scale.enclosed(problem, errors, shared));
+            let climb = |pass: &mut UndecidedPass| {
+                if !enclosed.as_ref().is_some_and(|own| pass.attempt(own, Precision::Enclosed)) {
+                    escalate(remembered, first, pass);
+                }
+                pass.finish();
+            };
+            climb(&mut pass);
+            let pending = std::mem::take(&mut pass.collected.pending_families);
+            if !pending.is_empty() {
+                let mut families = FamiliesPass { pending, collected: pass.collected, found: FoundFamilies::default() };
+                escalate(remembered, Precision::Ball, &mut families);
+                let found = families.found;
+                pass.collected.add_families(found);
             }
-            pass.finish();
-        }
-        if !collected.pending_families.is_empty() {
-            let pending = std::mem::take(&mut collected.pending_families);
-            let mut pass = FamiliesPass { pending, collected: &collected, found: FoundFamilies::default() };
-            escalate(remembered, Precision::Ball, &mut pass);
-            let found = pass.found;
-            collected.add_families(found);
+            // Reasons are last: a budget that ends here leaves no outcome open.
+            if pass.turns_to_reasons() {
+                climb(&mut pass);
+            }
         }
         (collected.finish(), regular)
     }

@@ -5,7 +5,7 @@
 //! work the same way, because every loop here and in the modules that use this one asks for a sign in each round.
 
 use crate::budget::is_spent;
-use crate::scalar::{Ordered, Real, Sign, dot, subtract};
+use crate::scalar::{Ordered, Real, Sign, subtract};
 use std::cmp::Ordering;
 
 /// The error of a sign that needs more digits than the numbers have, or more time than the budget leaves.
@@ -91,15 +91,6 @@ pub struct Solutions<T> {
 }
 
 impl<T: Real> Solutions<T> {
-    /// The value of `constant + coefficients . x` on the solutions, as a function of y.
-    pub fn affine(&self, constant: T, coefficients: &[T]) -> LinearFunction<T> {
-        let along = |x: &Vec<T>| dot(coefficients, x);
-        LinearFunction {
-            constant: constant + along(&self.origin),
-            coefficients: self.directions.iter().map(along).collect(),
-        }
-    }
-
     pub fn at(&self, y: &[T]) -> Vec<T> {
         self.moved(self.origin.clone(), y)
     }
@@ -115,6 +106,19 @@ impl<T: Real> Solutions<T> {
 }
 
 impl<T: Ordered> Solutions<T> {
+    /// `constant + coefficients . x` on the solutions, as a function of y.
+    pub fn affine(&self, constant: T, coefficients: &[T]) -> LinearFunction<T> {
+        // Most entries of a direction are zero.
+        let along = |x: &Vec<T>| {
+            let terms = coefficients.iter().zip(x).filter(|(_, own)| own.sign() != Sign::Zero);
+            terms.fold(T::zero(), |sum, (&coefficient, &own)| sum + coefficient * own)
+        };
+        LinearFunction {
+            constant: constant + along(&self.origin),
+            coefficients: self.directions.iter().map(along).collect(),
+        }
+    }
+
     /// The solutions on which all `functions` of y are zero as well; `None` if there are none.
     pub fn where_zero<'f>(
         &self,
@@ -145,7 +149,7 @@ pub fn solve<T: Ordered>(unknowns: usize, mut equations: Vec<Vec<T>>) -> Result<
         let pivot = equations[rank].clone();
         for (other, equation) in equations.iter_mut().enumerate() {
             let factor = equation[column];
-            if other != rank {
+            if other != rank && factor.sign() != Sign::Zero {
                 subtract(&mut equation[column + 1..], &pivot[column + 1..], factor);
                 equation[column] = T::zero();
             }

@@ -101,13 +101,24 @@ fn is_free(modes: &[Mode], laws: &[Law]) -> bool {
 /// A combination whose signs or numbers need more digits.
 pub struct Undecided {
     pub pending: Pending,
-    /// The solution so far, if only its numbers lack digits.
+    /// The solution so far, if only its numbers or the reason of a rejection lack digits.
     blunt: Option<Solved>,
+}
+
+impl Undecided {
+    /// Returns whether the combination is known to be no outcome.
+    fn is_rejected(&self) -> bool {
+        matches!(self.blunt, Some(Solved::Rejected(_)))
+    }
 }
 
 /// The pass over the combinations that need more digits than f64 has.
 pub struct UndecidedPass<'a, 'c> {
     pub undecided: Vec<Undecided>,
+    /// Listed combinations that are no outcomes and are solved only to find the reason.
+    pub rejected: Vec<Undecided>,
+    /// Whether all combinations that may be outcomes are decided, and only reasons are missing.
+    pub is_decided: bool,
     /// The relations of dependent contacts, once they are known.
     pub kernel: Option<Kernel>,
     /// The relations of contacts that share a tangential row, which are known before.
@@ -116,8 +127,14 @@ pub struct UndecidedPass<'a, 'c> {
 }
 
 impl UndecidedPass<'_, '_> {
+    /// Turns to the reasons of rejected combinations; returns false if there are none.
+    pub fn turns_to_reasons(&mut self) -> bool {
+        (self.undecided, self.is_decided) = (std::mem::take(&mut self.rejected), true);
+        !self.undecided.is_empty()
+    }
+
     /// Adds the combinations that no precision finished: those whose numbers lack digits, and those with open signs.
-    pub fn finish(mut self) {
+    pub fn finish(&mut self) {
         for Undecided { pending, blunt } in std::mem::take(&mut self.undecided) {
             if let Some(solved) = blunt {
                 self.collected.add(&pending, solved);
@@ -137,7 +154,7 @@ impl UndecidedPass<'_, '_> {
 
 impl PrecisionTask for UndecidedPass<'_, '_> {
     fn attempt<T: Ordered>(&mut self, exact: &ContactProblem<T>, precision: Precision) -> bool {
-        let open = std::mem::take(&mut self.undecided);
+        let mut open = std::mem::take(&mut self.undecided);
         let before = open.len();
         // Numbers that are not built around the f64 problem have magnitudes of their own.
         let is_enclosed = precision == Precision::Enclosed;
@@ -145,40 +162,42 @@ impl PrecisionTask for UndecidedPass<'_, '_> {
         if !is_enclosed && self.kernel.is_none() {
             self.kernel = T::freeing(|| Kernel::of(exact)).ok();
         }
-        // Combinations that the kernel excludes are solved last, and only if they are listed, to find the reason.
-        let (mut excluded, open): (Vec<_>, Vec<_>) =
-            open.into_iter().partition(|own| self.excludes(&own.pending).is_some());
-        excluded.retain(|own| self.collected.options.rejections.contain(&own.pending.modes));
+        let rejections = self.collected.options.rejections;
+        if !self.is_decided {
+            // Combinations that the kernel excludes are solved later, only to find the reason.
+            let (no, perhaps): (Vec<_>, _) =
+                open.into_iter().partition(|own| own.is_rejected() || self.excludes(&own.pending).is_some());
+            self.rejected.extend(no.into_iter().filter(|own| rejections.contain(&own.pending.modes)));
+            open = perhaps;
+        }
         let is_last = precision == Precision::Interval;
         let (rounds, most) = if is_last { (ROUNDS, PRECISE_COMBINATIONS) } else { (1, usize::MAX) };
         let mut solver = CombinationSolver::new(exact, scale);
-        let decisive = open.len();
-        let mut left = 0;
-        let Self { undecided, collected, .. } = self;
-        for (place, Undecided { pending, blunt }) in open.into_iter().chain(excluded).enumerate() {
+        for (place, Undecided { pending, blunt }) in open.into_iter().enumerate() {
             let stops = place >= most || is_spent_after(rounds);
-            let listed = collected.options.rejections.contain(&pending.modes);
-            let blunt = match if stops { Err(Unsettled) } else { solver.solve(&pending.modes) } {
-                Ok(solved) if solved.is_sharp() && !(listed && solved.is_vague()) => {
-                    // It has the velocity of others because contacts depend on each other, not because it is on a
-                    // border.
-                    let solved = match solved {
-                        Solved::Rejected(Rejection { because: RejectionReason::OnBorder, .. }) if place >= decisive => {
-                            Solved::Rejected(Rejection::of(&pending.modes, RejectionReason::RedundantTwin))
-                        }
-                        solved => solved,
-                    };
-                    collected.add(&pending, solved);
-                    continue;
+            let solved = if stops { Err(Unsettled) } else { solver.solve(&pending.modes) };
+            match solved {
+                Ok(solved) if solved.is_vague() && rejections.contain(&pending.modes) => {
+                    let left = if self.is_decided { &mut self.undecided } else { &mut self.rejected };
+                    left.push(Undecided { pending, blunt: Some(solved) });
                 }
-                Ok(solved) => Some(solved),
-                Err(Unsettled) => blunt,
-            };
-            undecided.push(Undecided { pending, blunt });
-            left += usize::from(place < decisive);
+                // It has the velocity of others because contacts depend on each other: none of them is on a border.
+                Ok(Solved::Rejected(Rejection { because: RejectionReason::OnBorder, .. }))
+                    if self.excludes(&pending).is_some() =>
+                {
+                    let twin = Rejection::of(&pending.modes, RejectionReason::RedundantTwin);
+                    self.collected.add(&pending, Solved::Rejected(twin));
+                }
+                Ok(solved) if solved.is_sharp() => self.collected.add(&pending, solved),
+                Ok(solved) => self.undecided.push(Undecided { pending, blunt: Some(solved) }),
+                Err(Unsettled) => self.undecided.push(Undecided { pending, blunt }),
+            }
         }
-        *precision.share(&mut collected.found.effort) += (before - undecided.len()) as u64;
-        // If only reasons are missing, the first intervals are precise enough.
-        left == 0 && (undecided.is_empty() || is_last)
+        if !self.is_decided {
+            *precision.share(&mut self.collected.found.effort) += (before - self.undecided.len()) as u64;
+        }
+        // For the reasons of combinations that the kernel excludes, the first intervals are precise enough.
+        let is_enough = |own: &Undecided| self.is_decided && is_last && self.excludes(&own.pending).is_some();
+        self.undecided.iter().all(is_enough)
     }
 }

@@ -79,8 +79,11 @@ impl<T: Ordered> Block<T> {
     /// Does the same as [`widest`] for this block alone.
     fn widest(&self, cap: T) -> Result<(Vec<T>, T), Unsettled> {
         let least = least(&self.functions, cap)?;
-        // The unknowns are y and s, the rise above `least`. At y = 0, s = 0 no function is negative.
         let (one, still) = (T::one(), vec![T::zero(); self.entries.len()]);
+        if settled(cap - least)?.is_eq() {
+            return Ok((still, least));
+        }
+        // The unknowns are y and s, the rise above `least`. At y = 0, s = 0 no function is negative.
         let shifted = self.functions.iter().map(|function| function.extended(function.constant - least, -one));
         let top = LinearFunction { constant: cap - least, coefficients: extended(&still, -one) };
         let program: Vec<LinearFunction<T>> = shifted.chain([top]).collect();
@@ -182,6 +185,9 @@ impl<T: Ordered> Dictionary<T> {
         solved[column] = inverse;
         let substitute = |line: &mut Vec<T>| {
             let factor = line[column];
+            if factor.sign() == Sign::Zero {
+                return;
+            }
             for (index, entry) in line.iter_mut().enumerate() {
                 *entry = if index == column { factor * inverse } else { *entry + factor * solved[index] };
             }

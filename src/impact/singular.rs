@@ -153,7 +153,9 @@ impl<'a, T: Ordered> Equations<'a, T> {
             is_of_others |= function.is_constant()? && settled(function.constant)?.is_eq();
         }
         let functions = space.functions();
-        let found = widest(&functions, space.solutions.directions.len(), T::from_f64(UNBOUNDED));
+        // Then nothing is above zero.
+        let cap = T::from_f64(if is_of_others { 0.0 } else { UNBOUNDED });
+        let found = widest(&functions, space.solutions.directions.len(), cap);
         let found = found.and_then(|(inside, least)| Ok((inside, least, settled(least)?)));
         let twin = Rejection::of(modes, RejectionReason::RedundantTwin);
         let (inside, least, standing) = match found {

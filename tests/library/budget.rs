@@ -4,7 +4,7 @@ use crate::support::impact::{ramone, try_impact};
 use crate::support::nearly::nearly_dependent;
 use crate::sweep::studies::with;
 use heelstrike::budget::{BudgetSpent, SharedBudget};
-use heelstrike::impact::{Analysis, AnalysisOptions, OpenCombinations, Scratch};
+use heelstrike::impact::{Analysis, AnalysisOptions, ListedRejections, OpenCombinations, Scratch};
 use heelstrike::pipeline::Options;
 use heelstrike::read::{Problem, Study};
 use heelstrike::sweep::{Findings, Workers};
@@ -52,6 +52,22 @@ fn a_budget_that_suffices_changes_nothing() {
     let [without, with] = [None, Some(looks(1_000_000))].map(|budget| analyzed(3, budget));
     assert_eq!(without, with);
     assert!(without.open.is_none() && without.verdict != Verdict::Undecided);
+}
+
+/// A plank that slides on supports of unequal friction has a family, and combinations that are solved for reasons alone.
+#[test]
+fn families_are_decided_before_reasons() {
+    let rows = [-1.0, 0.0, 1.0].map(|x| [[1.0, 0.0, -1.0], [0.0, 1.0, x]]).concat();
+    let plank = json!({"mass_matrix": [[1, 0, 0], [0, 1, 0], [0, 0, 1]], "contact_jacobian": rows, "velocity": [5, -1, 0],
+        "friction": [0.1, 0.5, 0.9]});
+    let problem = Problem::from_json(&plank.to_string(), &Defaults::default()).expect("a problem");
+    let options = AnalysisOptions { rejections: ListedRejections::Everything, ..AnalysisOptions::default() };
+    let analyze = || Scratch::default().analyze(&problem.contact, &problem, options).expect("an analysis");
+    let whole = analyze();
+    let decided = |own: &Analysis| own.open.is_none();
+    let first = (0..100_000).map(|count| looks(count).within(analyze)).find(decided).expect("a budget");
+    assert_eq!((first.outcomes, first.families.len()), (whole.outcomes, 1));
+    assert_ne!(first.rejected, whole.rejected, "all reasons are known by then");
 }
 
 const STRIKE: &str = include_str!("../../examples/ramone.json");
