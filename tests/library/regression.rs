@@ -266,7 +266,8 @@ fn a_robot_that_cannot_move_answers() {
     let driven = impact(&robot, r#"{"held": ["j"], "velocity": {"joints": {"j": 1.0}}}"#);
     let analysis = driven.analysis.expect("one contact");
     assert_eq!(analysis.rank, Some(0));
-    assert!(analysis.outcomes.iter().all(|outcome| outcome.modes != [Stick]), "{:?}", analysis.outcomes);
+    assert_eq!((analysis.verdict, analysis.proven), (Verdict::NoImpact, true));
+    assert_eq!(analysis.modes(), [[SlideMinus]]);
 }
 
 #[test]

@@ -77,15 +77,13 @@ fn what_leaves_the_range_of_f64_has_a_remedy() {
         link("leaf", 1e-300, [0.0; 2], 1e-300, ""),
         joint("hinge", HINGE, ["base", "leaf"], [0.0; 2], ""),
     ]));
-    for (robot, state) in [
-        (&rod(1.0, 1.0), json!({"gravity": 1e308, "contacts": [], "velocity": {"base": {"x": 1.0}}})),
-        (&massless, json!({"torque": {"hinge": 1e30}, "contacts": []})),
-    ] {
-        match try_forces(robot, &state) {
-            Ok(found) => assert!(outcomes(&found)[0].velocity().all(f64::is_finite), "{found:?}"),
-            Err(error) => assert!(error.remedy().is_some(), "{error}"),
-        }
-    }
+    let heavy = json!({"gravity": 1e308, "contacts": [], "velocity": {"base": {"x": 1.0}}});
+    let found = try_forces(&rod(1.0, 1.0), &heavy).expect("within the range");
+    assert_eq!(outcomes(&found)[0].velocity().collect::<Vec<_>>(), [0.0, -1e308, 0.0]);
+    let error =
+        try_forces(&massless, &json!({"torque": {"hinge": 1e30}, "contacts": []})).expect_err("beyond the range");
+    assert_eq!(error.to_string(), "an acceleration must be a finite number, not inf");
+    assert!(error.remedy().is_some_and(|remedy| remedy.contains("too large for the masses")), "{error}");
 }
 
 /// Flat on a stair whose edge it slides over, a sole turns the normal there once it turns.

@@ -97,6 +97,9 @@ fn compare(Case { robot, feet, state, rate }: Case) -> Result<usize, String> {
     if verdict(&merged) != verdict(&whole) {
         return Err(format!("{:?} and {:?}", verdict(&merged), verdict(&whole)));
     }
+    if !verdict(&whole).is_some_and(|(_, proven)| proven) {
+        return Err("the whole is not proven".to_owned());
+    }
     let mass: f64 = robot.mass();
     for one in outcomes(&merged) {
         let same = outcomes(&whole).iter().any(|other| {
@@ -121,7 +124,8 @@ fn compare(Case { robot, feet, state, rate }: Case) -> Result<usize, String> {
 #[test]
 fn outer_points_act_for_all() {
     let states = std::env::var("HEELSTRIKE_STATES").ok().and_then(|states| states.parse().ok());
-    let [merged, wrong] = total(states.unwrap_or(60), |seed| {
+    let states = states.unwrap_or(60);
+    let [merged, wrong] = total(states, |seed| {
         let case = case(seed);
         let state = case.state.to_string();
         match compare(case) {
@@ -133,7 +137,8 @@ fn outer_points_act_for_all() {
         }
     });
     println!("{merged} points were merged");
-    assert!(merged > 0);
+    // Every other case is flat, with two inner points on average.
+    assert!(merged > states, "{merged}");
     assert_eq!(wrong, 0);
 }
 
