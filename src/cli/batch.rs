@@ -55,7 +55,7 @@ pub struct Args {
     /// The format of the input [default: by its ending, else ndjson]
     #[arg(long, value_name = "FORMAT", value_enum)]
     input_format: Option<Form>,
-    /// Copy this column of a table to the results although its name resembles that of a coordinate [repeatable]
+    /// Copy this column of a table to the results although its name resembles that of a coordinate (repeatable)
     #[arg(long, value_name = "NAME")]
     foreign: Vec<String>,
     #[command(flatten)]

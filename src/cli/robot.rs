@@ -20,7 +20,7 @@ pub(super) struct RobotOptions {
     /// The plane that the robot moves in, forward before up in its root link's axes
     #[arg(long, value_parser = choice(PLANES), default_value = "auto", help_heading = "Robot")]
     pub plane: ChosenPlane,
-    /// Fix a joint at this value (rad or m); the plane is judged in this configuration [repeatable]
+    /// Fix a joint at this value (rad or m); the plane is judged in this configuration (repeatable)
     #[arg(long, value_name = "JOINT=VALUE", value_parser = hold, allow_hyphen_values = true, help_heading = "Robot")]
     pub hold: Vec<Hold>,
     /// Whether the root link moves freely or is fixed to the world [default: as masses and joints suggest]
@@ -29,10 +29,10 @@ pub(super) struct RobotOptions {
     /// How far the axis of a joint may be off the plane's normal, in rad, and count as normal to it [default: 0.001]
     #[arg(long, value_name = "ANGLE", value_parser = tolerance, allow_hyphen_values = true, help_heading = "Robot")]
     pub axis_tolerance: Option<f64>,
-    /// A folder that holds packages, or is one, for meshes named by package:// [repeatable]
+    /// A folder that holds packages, or is one, for meshes named by package:// (repeatable)
     #[arg(long, value_name = "DIR", help_heading = "Robot")]
     pub package_path: Vec<PathBuf>,
-    /// Add a foot: a point of a link, or a circle about it [repeatable]
+    /// Add a foot: a point of a link, or a circle about it (repeatable)
     #[arg(long, value_name = "LINK:X,Y,Z[:RADIUS]", value_parser = added_foot, allow_hyphen_values = true)]
     #[arg(help_heading = "Robot")]
     pub contact: Vec<AddedFoot>,

@@ -6,7 +6,7 @@
 //!     l = -W^-1 K M^-1 J^T L              G' = G - X^T W^-1 X,  X = K M^-1 J^T
 //! ```
 //!
-//! W is never formed. The rows of K become columns of L^-T K^T (see [`delassus`](super::delassus)) and are
+//! W is never formed. The rows of K become columns of L^-T K^T (see [delassus](mod@super::delassus)) and are
 //! orthogonalized one by one (modified Gram-Schmidt) in the inner product a.b = a^T D^-1 b. This gives K = C Z with C
 //! unit lower triangular. Every contact row then loses its component along Z. So G' = Y'^T D^-1 Y' is semidefinite by
 //! construction, and no difference of large matrices is formed. Pivoting in f64 finds the rows that depend on others;

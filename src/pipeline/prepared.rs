@@ -1,5 +1,4 @@
-//! From a state to its contact problem in f64: the work between the steps of the
-//! [`Assembly`](super::assembly::Assembly).
+//! From a state to its contact problem in f64: the work between the steps of the [`Assembly`].
 //!
 //! ```text
 //!     State --plan, place, factorize--> stance, loops: v --contact--> points --> J, c, G --> bounds of their rounding

@@ -244,7 +244,7 @@ impl Header {
         if self.missing.iter().any(|name| name == "q_base_z") {
             let missing = Error::new(Reason::Missing("the base's height, q_base_z,".into()));
             return Err(missing.hint(
-                "touchdowns are found by the heights of feet; without the base's answer the rows themselves, by `place: \
+                "touchdowns are found by the heights of feet; without the base's, answer the rows themselves, by `place: \
                  lowest` or a column stance, without `touchdowns`",
             ));
         }

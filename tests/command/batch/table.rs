@@ -101,7 +101,7 @@ fn joints_alone_are_answered_where_a_foot_is_placed() {
     assert!(placed.lines().iter().all(|line| line["contacts"][0]["name"].is_string()), "{}", placed.stdout);
     // Touchdowns need the base's height, which this table lacks.
     heelstrike_reads(&[&options[..], &["--touchdowns"]].concat(), table)
-        .refusal_with(1, "--place lowest or a column stance, without --touchdowns");
+        .refusal_with(1, "without the base's, answer the rows themselves, by --place lowest or a column stance");
 }
 
 #[test]
