@@ -5,8 +5,8 @@
 //! ```
 //!
 //! Only elements that affect vertex positions are read (COLLADA 1.4.1, chapters 5 and 6): asset, visual scene, nodes,
-//! and the positions of geometries, those of skins in their bind shape. In a file without a visual scene, all
-//! geometries are read without transformation. The up axis is not read, as in RViz, MoveIt, Gazebo and Pinocchio: many
+//! and the positions that faces and lines of geometries use, those of skins in their bind shape. In a file without a
+//! visual scene, all geometries are read without transformation. The up axis is not read, as in RViz, MoveIt, Gazebo and Pinocchio: many
 //! robot files say y although they use the axes of their link. There is no recursion, and node instances are counted,
 //! because a file of a few lines could request 2^100 of them.
 
@@ -23,6 +23,9 @@ const MOST_VERTICES: usize = 4_000_000;
 const LONGEST_NUMBER: usize = 400;
 /// Largest nesting depth of nodes, including instances.
 const DEEPEST: usize = 200;
+
+/// The elements that join vertices.
+const PRIMITIVES: [&str; 7] = ["triangles", "polylist", "polygons", "trifans", "tristrips", "lines", "linestrips"];
 
 /// A linear map followed by a translation.
 type Transform = (Matrix, [f64; 3]);
@@ -123,9 +126,16 @@ impl<'a, 'input: 'a> Shown<'a, 'input> {
         Ok(())
     }
 
-    /// Returns the positions of `geometry` in its own frame.
+    /// Returns the positions that faces and lines of `geometry` use, in its own frame.
     fn positions(&self, geometry: Node<'a, 'input>) -> Result<Vec<[f64; 3]>, String> {
         let mut positions = Vec::new();
+        let mut corners: HashMap<&str, Vec<_>> = HashMap::new();
+        for primitive in geometry.descendants().filter(|node| PRIMITIVES.contains(&node.tag_name().name())) {
+            for input in primitive.children().filter(|node| node.attribute("semantic") == Some("VERTEX")) {
+                let source = input.attribute("source").and_then(|url| url.strip_prefix('#'));
+                corners.entry(source.unwrap_or_default()).or_default().push((primitive, input));
+            }
+        }
         for vertices in geometry.descendants().filter(|node| is(*node, "vertices")) {
             let position = |node: &Node<'_, '_>| is(*node, "input") && node.attribute("semantic") == Some("POSITION");
             let Some(input) = vertices.children().find(position) else { continue };
@@ -146,14 +156,31 @@ impl<'a, 'input: 'a> Shown<'a, 'input> {
             let (offset, stride): (usize, usize) = (count("offset", 0)?, count("stride", 3)?);
             let points = values.get(offset..).unwrap_or_default().chunks(stride.max(3));
             // Other data, such as normals, may follow in the same array.
-            let own = points.take(count("count", usize::MAX)?);
-            positions.extend(own.filter_map(|point| point.first_chunk::<3>()));
+            let own = points.take(count("count", usize::MAX)?).filter_map(|point| point.first_chunk::<3>());
+            let mut used = vec![false; own.clone().count()];
+            let corners = corners.remove(vertices.attribute("id").unwrap_or_default());
+            corners.into_iter().flatten().try_for_each(|(primitive, input)| mark(primitive, input, &mut used))?;
+            positions.extend(own.zip(used).filter_map(|(point, used)| used.then_some(point)));
             if positions.len() > MOST_VERTICES {
                 return Err(format!("more than {MOST_VERTICES} vertices"));
             }
         }
         Ok(positions)
     }
+}
+
+/// Marks the vertices that a primitive uses by this one of its inputs.
+fn mark(primitive: Node<'_, '_>, input: Node<'_, '_>, used: &mut [bool]) -> Result<(), String> {
+    let offset = |input: Node<'_, '_>| input.attribute("offset").and_then(|offset| offset.trim().parse().ok());
+    // Each corner has an index for every input; several may share one.
+    let stride = primitive.children().filter_map(offset).max().unwrap_or(0_usize).saturating_add(1);
+    for indices in primitive.descendants().filter(|node| is(*node, "p") || is(*node, "h")) {
+        for word in text(indices).split_whitespace().skip(offset(input).unwrap_or(0)).step_by(stride) {
+            let vertex = word.parse().ok().and_then(|at: usize| used.get_mut(at));
+            *vertex.ok_or_else(|| format!("\"{}\" is the index of no vertex", short(word)))? = true;
+        }
+    }
+    Ok(())
 }
 
 /// Returns the product of the transformations in `node`, in their order.
@@ -208,8 +235,12 @@ fn text(element: Node<'_, '_>) -> String {
 
 fn number(word: &str) -> Result<f64, String> {
     let word = word.trim();
-    let refused = || format!("\"{}\" is no number", word.chars().take(20).collect::<String>());
+    let refused = || format!("\"{}\" is no number", short(word));
     if word.len() > LONGEST_NUMBER { Err(refused()) } else { word.parse().map_err(|_| refused()) }
+}
+
+fn short(word: &str) -> String {
+    word.chars().take(20).collect()
 }
 
 /// Returns the first child of `node` with this tag.

@@ -38,6 +38,7 @@ fn obj() -> String {
 /// Returns a COLLADA text with `asset` and `scene` in which the geometry has these `points`.
 fn dae(asset: &str, scene: &str, points: &[[f64; 3]]) -> String {
     let numbers: String = points.iter().flatten().map(|number| format!("{number} ")).collect();
+    let corners: String = (0..points.len()).map(|at| format!(" {at}")).collect();
     format!(
         r##"<?xml version="1.0" encoding="utf-8"?>
         <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset>{asset}</asset>
@@ -46,7 +47,7 @@ fn dae(asset: &str, scene: &str, points: &[[f64; 3]]) -> String {
           <source id="positions"><float_array id="p" count="{}">{numbers}</float_array><technique_common>
             <accessor source="#p" count="{}" stride="3"/></technique_common></source>
           <vertices id="v"><input semantic="NORMAL" source="#normals"/><input semantic="POSITION" source="#positions"/></vertices>
-          <triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles>
+          <triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>{corners}</p></triangles>
         </mesh></geometry></library_geometries>{scene}</COLLADA>"##,
         3 * points.len(),
         points.len()
@@ -120,9 +121,31 @@ fn every_format_gives_the_same_vertices() {
     assert_eq!(vertices("a.dae", dae("", "", &[[0.1, 0.2, -0.3]])), [[0.1, 0.2, -0.3]]);
     // The array holds normals after the positions.
     let shared = dae("", &shown, &[&PYRAMID[..], &[[7.0; 3]; 2]].concat());
-    assert_eq!(vertices("a.dae", shared.replace("count=\"7\" stride", "count=\"5\" stride")), sorted(&PYRAMID));
+    let shared = shared.replace("count=\"7\" stride", "count=\"5\" stride").replace(" 5 6</p>", "</p>");
+    assert_eq!(vertices("a.dae", shared), sorted(&PYRAMID));
     let commented = dae("", "", &[[0.1, 0.2, -0.3]]).replacen("0.2", "<!-- y --> 0.2", 1);
     assert_eq!(vertices("a.dae", commented), [[0.1, 0.2, -0.3]]);
+}
+
+#[test]
+fn collada_vertices_that_nothing_uses_are_left_out() {
+    let all = dae("", "", &[&PYRAMID[..], &[[9.0; 3]]].concat());
+    let primitives = |text: &str| {
+        let (before, triangles) = all.split_once("<triangles").expect("triangles");
+        let after = triangles.split_once("</triangles>").expect("an end").1;
+        vertices("a.dae", format!("{before}{text}{after}"))
+    };
+    let input = "<input semantic=\"VERTEX\" source=\"#v\" offset=\"1\"/>";
+    let normals = "<input semantic=\"NORMAL\" source=\"#normals\" offset=\"0\"/>";
+    assert_eq!(
+        primitives(&format!(
+            "<polylist>{normals}{input}<vcount>4</vcount><p>5 0 5 1 5 2 5 3</p></polylist>\
+             <tristrips>{input}<p>9 1 9 2 9 4</p></tristrips>"
+        )),
+        sorted(&PYRAMID)
+    );
+    let hole = format!("<polygons>{input}<ph><p>7 0 7 1 7 2</p><h>7 3 7 4</h></ph></polygons>");
+    assert_eq!(primitives(&hole), sorted(&PYRAMID));
 }
 
 #[test]
@@ -176,6 +199,12 @@ fn files_that_cannot_be_read_have_a_reason() {
             "a.dae",
             dae("", "", &PYRAMID).replacen("count=\"15\"", "count=\"18\"", 1).into(),
             "cannot be read: 18 numbers are announced, 15 are there",
+        ),
+        ("a.dae", dae("", "", &PYRAMID).replace("VERTEX", "NORMAL").into(), "it has no vertices"),
+        (
+            "a.dae",
+            dae("", "", &PYRAMID).replace(" 4</p>", " 5</p>").into(),
+            "cannot be read: \"5\" is the index of no vertex",
         ),
         ("a.dae", "<robot/>".into(), "cannot be read: "),
         ("a.dae", dae("<unit meter=\"x\"/>", "", &PYRAMID).into(), "cannot be read: "),
