@@ -2,6 +2,7 @@
 
 use super::flat;
 use super::records::{Form, Record};
+use super::resemblance::{Compared, plain, without_one_of};
 use crate::read::json::{fields_of, line_and_column};
 use crate::robot::{Base, FreezeReason, Plane};
 use crate::{Error, Reason, Result, Robot};
@@ -177,19 +178,21 @@ impl Header {
     /// Refuses a carried column that is named like a field of a state or resembles a missing column, unless it is named
     /// as foreign.
     fn check_foreign(&self, record: Record, robot: &Robot) -> Result<()> {
-        let without_columns = fields_without_columns();
-        if let Some(at) = self.unread().find(|&at| is_of_states(&self.names[at], &without_columns, robot)) {
+        let (without_columns, own) = (fields_without_columns(), plain_coordinates(robot));
+        if let Some(at) = self.unread().find(|&at| is_of_states(&self.names[at], &without_columns, &own)) {
             return Err(self.in_column(of_states(&self.names[at]), record, at));
         }
         let others = OTHERS.iter().map(|(name, _)| *name).filter(|name| !self.names.iter().any(|given| given == name));
-        let missing: Vec<&str> = self.missing.iter().map(String::as_str).chain(others).collect();
+        let missing = self.missing.iter().map(String::as_str).chain(others);
+        let missing: Vec<(&str, Compared)> = missing.map(|name| (name, Compared::new(name))).collect();
         let resembling = self.unread().filter_map(|at| {
-            let name = &self.names[at];
-            let mut near: Vec<&str> = missing.iter().copied().filter(|missing| resembles(name, missing)).collect();
-            if let Some(&same) = near.iter().find(|near| plain(near) == plain(name)) {
+            let name = Compared::new(&self.names[at]);
+            let mut near: Vec<_> = missing.iter().filter(|(_, missing)| name.resembles(missing)).collect();
+            if let Some(&same) = near.iter().find(|(_, near)| near.plain == name.plain) {
                 near = vec![same];
             }
-            (!near.is_empty()).then_some((at, short(name), near))
+            let near: Vec<&str> = near.into_iter().map(|(near, _)| *near).collect();
+            (!near.is_empty()).then_some((at, short(&self.names[at]), near))
         });
         let resembling: Vec<(usize, String, Vec<&str>)> = resembling.collect();
         let Some((at, name, near)) = resembling.first() else { return Ok(()) };
@@ -209,7 +212,8 @@ impl Header {
 
     /// Returns the header, or an error without a line if a column is a joint's torque, on which forces depend.
     pub fn without_torques(self, robot: &Robot) -> Result<Self> {
-        let is_torque = |&at: &usize| is_of_coordinate(&self.names[at], &["torque", "tau", "effort"], robot);
+        let own = plain_coordinates(robot);
+        let is_torque = |&at: &usize| is_of_coordinate(&self.names[at], &["torque", "tau", "effort"], &own);
         let torques: Vec<usize> = self.unread().filter(is_torque).collect();
         let Some(first) = torques.first() else { return Ok(self) };
         let name = |&at: &usize| quoted(&self.names[at]);
@@ -429,90 +433,36 @@ fn column(name: &str, robot: &Robot) -> Result<TableColumn> {
     Ok(OTHERS.iter().find(|(other, _)| *other == name).map_or(TableColumn::Carried, |&(_, column)| column))
 }
 
-/// Returns the name in lower case, without a unit in brackets; each other character than a letter or digit is `_`, and
-/// dropped at the ends.
-fn plain(name: &str) -> String {
-    let letter = |c: char| if c.is_alphanumeric() { c.to_ascii_lowercase() } else { '_' };
-    let without_unit = name.split(['[', '(']).next().unwrap_or(name);
-    without_unit.chars().map(letter).collect::<String>().trim_matches('_').to_owned()
-}
-
 /// Returns the fields of a state for which a table has no columns.
 fn fields_without_columns() -> Vec<String> {
     fields_of("State").into_iter().filter(|field| OTHERS.iter().all(|(other, _)| other != field)).collect()
 }
 
 /// Returns whether a column is named like one of these fields of a state, or like an entry of one.
-fn is_of_states(name: &str, fields: &[String], robot: &Robot) -> bool {
+fn is_of_states(name: &str, fields: &[String], own: &HashSet<String>) -> bool {
     let name = plain(name);
     let entry = |field: &str| name.strip_prefix(field)?.strip_prefix('_');
-    let of_joint = |field: &&str| entry(field).is_some_and(|joint| in_columns(robot).any(|own| plain(&own) == joint));
+    let of_joint = |field: &&str| entry(field).is_some_and(|joint| own.contains(joint));
     fields.contains(&name)
         || matches!(name.as_str(), "slope" | "ground_slope")
         || entry("gravity").is_some_and(|axis| matches!(axis, "x" | "y" | "z"))
         || ["held", "rotor_inertia"].iter().any(of_joint)
 }
 
-/// Returns what remains of a name if a part that is one of the `words` is removed, as in `base_z` from `base_vel_z`.
-fn without_one_of(name: &str, words: &[&str]) -> Vec<String> {
-    let parts: Vec<&str> = name.split('_').collect();
-    let places = (0..parts.len()).filter(|&at| words.contains(&parts[at]));
-    places.map(|at| [&parts[..at], &parts[at + 1..]].concat().join("_")).collect()
+/// Returns whether a name consists of that of one of the `own` coordinates and one of the `words`.
+fn is_of_coordinate(name: &str, words: &[&str], own: &HashSet<String>) -> bool {
+    without_one_of(&plain(name), words).iter().any(|rest| own.contains(rest))
 }
 
-/// Returns whether a name consists of that of a coordinate and one of the `words`.
-fn is_of_coordinate(name: &str, words: &[&str], robot: &Robot) -> bool {
-    let name = plain(name);
-    // A much longer name cannot match, and comparing it takes time.
-    let longest = in_columns(robot).map(|own| own.len()).max().unwrap_or_default();
-    let is_coordinate = |rest: String| in_columns(robot).any(|own| plain(&own) == rest);
-    name.len() <= longest + 16 && without_one_of(&name, words).into_iter().any(is_coordinate)
+/// Returns the names of the coordinates as they are compared.
+fn plain_coordinates(robot: &Robot) -> HashSet<String> {
+    in_columns(robot).map(|own| plain(&own)).collect()
 }
 
 /// Returns a name as it is written in an option.
 fn quoted(name: &str) -> String {
     let is_word = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-' | '.' | '/');
     if name.chars().all(is_word) { name.to_owned() } else { format!("\"{name}\"") }
-}
-
-/// Returns whether a column `name` may be meant as the column `known`: it is equal except for case and punctuation,
-/// names the coordinate alone or with another word for position or velocity, or has one or two wrong letters.
-fn resembles(name: &str, known: &str) -> bool {
-    let (name, known) = (plain(name), plain(known));
-    // Matches "restitution_coefficient" and "friction of the left foot", but not what friction causes or needs.
-    const OTHER_QUANTITIES: [&str; 7] = ["needed", "force", "torque", "loss", "power", "margin", "joint"];
-    let mut parts = name.split('_');
-    let is_mu = known == "friction" && (name.starts_with("mu_") || name.ends_with("_mu") || name == "mu");
-    if matches!(known.as_str(), "friction" | "restitution")
-        && (is_mu || parts.clone().any(|part| part == known))
-        && !parts.any(|part| OTHER_QUANTITIES.contains(&part))
-    {
-        return true;
-    }
-    // Comparison takes the product of the lengths.
-    if name.len() > known.len() + 16 {
-        return false;
-    }
-    let words = match known.as_bytes() {
-        [b'q', b'_', ..] => &["q", "qpos", "pos", "position", "angle"][..],
-        [b'v', b'_', ..] => &["v", "vel", "velocity", "dq", "qd", "qdot", "qvel", "dot", "rate", "omega"],
-        _ => &[],
-    };
-    if let (Some((_, coordinate)), false) = (known.split_once('_'), words.is_empty()) {
-        let alone = |name: &str| name == coordinate || Some(name) == coordinate.strip_prefix("base_");
-        let with_word = without_one_of(&name, words).iter().any(|rest| alone(rest));
-        // Another quantity of this coordinate, such as a torque, is no part of a state.
-        let other = name.strip_suffix(coordinate).is_some_and(|rest| rest.ends_with('_'));
-        if alone(&name) || with_word || other {
-            return alone(&name) || with_word;
-        }
-    }
-    let wrong = match known.len() {
-        0..4 => 0,
-        4..8 => 1,
-        _ => 2,
-    };
-    name.len().abs_diff(known.len()) <= wrong && strsim::osa_distance(&name, &known) <= wrong
 }
 
 /// Returns the meaning of a coordinate's column: `moving` of the coordinate's index in q if the robot has it.
@@ -552,7 +502,8 @@ fn coordinate(prefix: &str, name: &str, robot: &Robot, moving: fn(usize) -> Tabl
     }
     let known: Vec<String> = in_columns(robot).map(|known| format!("{prefix}{known}")).collect();
     let unknown = Error::new(Reason::UnknownName { what: "coordinate", name: short(name) });
-    if is_of_coordinate(name, &["deg", "degree", "degrees"], robot) || name.contains("[deg") || name.contains("(deg") {
+    let in_degrees = is_of_coordinate(name, &["deg", "degree", "degrees"], &plain_coordinates(robot));
+    if in_degrees || name.contains("[deg") || name.contains("(deg") {
         return Err(unknown.hint("angles are in radians: convert the column, and give it the name of its coordinate"));
     }
     Err(unknown.did_you_mean(&format!("{prefix}{}", short(name)), known.iter().map(String::as_str)))

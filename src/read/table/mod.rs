@@ -18,6 +18,7 @@
 
 mod flat;
 mod records;
+mod resemblance;
 mod header;
 #[cfg(feature = "columnar")]
 mod typed;
