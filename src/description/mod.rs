@@ -25,6 +25,10 @@ pub use pose::{Matrix, Pose, apply, product, turn, unit};
 
 use crate::error::{Error, Location, Result};
 
+/// The caution about joints of Drake's own kinds. Its planar joint has no axis, so the axis must be added.
+pub(crate) const FOREIGN_JOINTS: &str = "joints of another namespace, as <drake:joint>, are not read: write <joint>, with \
+    <axis xyz=\"0 0 1\"/> for a planar one of Drake";
+
 /// A robot as described by its file, checked and connected to one tree.
 ///
 /// ```
@@ -225,17 +229,20 @@ impl Description {
             }
             _ => error,
         };
-        let has_foreign_joint = description.ignored.iter().any(|own| (own.parent, &*own.tag) == ("robot", "joint"));
         let of_other_programs = |error: Error| match error.remedy() {
-            Some(remedy) if has_foreign_joint => {
-                let hint =
-                    format!("{remedy}; joints of another namespace, as <drake:joint>, are not read: write <joint>");
+            Some(remedy) if description.has_foreign_joints() => {
+                let hint = format!("{remedy}; {FOREIGN_JOINTS}");
                 error.hint(hint)
             }
             _ => error,
         };
         description.root = root.map_err(misspelt).map_err(of_other_programs)?;
         Ok(description)
+    }
+
+    /// Returns whether the file has joints that are not read because their namespace is not that of `<robot>`.
+    pub(crate) fn has_foreign_joints(&self) -> bool {
+        self.ignored.iter().any(|own| (own.parent, &*own.tag) == ("robot", "joint"))
     }
 
     /// Returns the index in [`Description::joints`] of the joint with this name; `None` if there is none.

@@ -8,7 +8,8 @@ use super::reference_pose::ReferencePose;
 use super::role::Role;
 use super::{Body, ParentJoint, Robot};
 use crate::description::{
-    Collision, Description, Geometry, Inertial, JointKind, Matrix, Mesh, Mimic, Pose, UrdfJoint, UrdfLink, apply, turn,
+    Collision, Description, FOREIGN_JOINTS, Geometry, Inertial, JointKind, Matrix, Mesh, Mimic, Pose, UrdfJoint,
+    UrdfLink, apply, turn,
 };
 use crate::error::{rounded, shortest_within};
 use std::f64::consts::TAU;
@@ -135,6 +136,11 @@ pub(super) fn about_loops(description: &Description) -> Option<String> {
     let closing = description.ignored.iter().filter(|own| closes_loops(own.parent, &own.tag));
     let closing = names(closing.map(|own| &own.tag))?;
     Some(format!("what closes loops in the file is left out ({closing}): close them by `loops` in each state"))
+}
+
+/// Returns the caution about joints of another namespace. Without the joint from world to root, a tree is still whole.
+pub(super) fn about_foreign_joints(description: &Description) -> Option<String> {
+    description.has_foreign_joints().then(|| FOREIGN_JOINTS.to_owned())
 }
 
 /// Returns whether an element with this tag closes a loop in an extension of URDF.

@@ -67,6 +67,7 @@ pub(super) fn passed_over(description: &Description) -> impl Iterator<Item = Lef
         let why = match (*parent, tag.as_str()) {
             ("joint", "limit") => "joint limits do not enter an impact",
             (parent, tag) if closes_loops(parent, tag) => "a tree of joints has no loops: states close them by `loops`",
+            ("robot", "joint") => "a joint of another namespace, which is not read",
             ("joint", "dynamics") => "an impact has no damping or dry friction of joints; forces have it as `torque`",
             _ => "no part of the robot's mechanics",
         };

@@ -94,6 +94,7 @@ impl Robot {
         cautions.extend(caution::about_spelling(description));
         cautions.extend(caution::about_rotors(description, &roles));
         cautions.extend(caution::about_loops(description));
+        cautions.extend(caution::about_foreign_joints(description));
         cautions.extend(caution::about_axes(description));
         cautions.extend(caution::about_planar(description, &pose, plane));
         cautions.extend(caution::about_lengths(description));

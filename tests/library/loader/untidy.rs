@@ -37,6 +37,18 @@ fn undeclared_prefixes_are_listed_and_passed_over() {
     assert_eq!(robot.left_out(), [left_out("link \"a\"", POINT), listed("camera"), listed("x")]);
 }
 
+/// Without it a tree lacks nothing: the base would float.
+#[test]
+fn a_joint_of_another_namespace_is_named() {
+    let joint = "<drake:joint name=\"j\" type=\"universal\"><parent link=\"world\"/><child link=\"a\"/></drake:joint>";
+    let robot = load(&format!("<robot name=\"r\">\n{LINK}{joint}</robot>"));
+    let what = "joints of another namespace, as <drake:joint>, are not read: write <joint>, with <axis xyz=\"0 0 1\"/> for a \
+                planar one of Drake";
+    assert!(robot.reading().cautions.iter().any(|caution| caution == what), "{:?}", robot.reading().cautions);
+    let why = "a joint of another namespace, which is not read";
+    assert!(robot.left_out().contains(&left_out("<joint> in <robot>", why)), "{:?}", robot.left_out());
+}
+
 const POINT: &str = "its <inertial> has no <inertia>: taken as a point mass";
 
 #[test]
