@@ -6,12 +6,13 @@ use super::plane::Plane;
 use super::reading::{FreezeReason, FrozenJoint};
 use super::reference_pose::ReferencePose;
 use super::role::Role;
-use super::{Body, ParentJoint, Robot};
+use super::{Axis, Base, Body, ParentJoint, Robot};
 use crate::description::{
     Collision, Description, FOREIGN_JOINTS, Geometry, Inertial, JointKind, Matrix, Mesh, Mimic, Pose, UrdfJoint,
     UrdfLink, apply, turn,
 };
 use crate::error::{rounded, shortest_within};
+use crate::planar::Vector;
 use std::f64::consts::TAU;
 
 /// An axis that is off the normal by at most this angle \[rad\] may have been meant to be parallel to it.
@@ -351,36 +352,73 @@ fn of_ball(mass: f64) -> f64 {
     0.4 * mass * radius * radius
 }
 
-/// Returns the caution about bodies without mass that a joint moves, if they extend from joint to joint, touch the
-/// ground or carry no mass.
-pub(super) fn about_massless(robot: &Robot) -> Option<String> {
+/// Returns the cautions about bodies without mass that a joint moves, if they extend from joint to joint, touch the
+/// ground or carry no mass; and about joints that nothing resists in any state, so that the mass matrix is singular.
+pub(super) fn about_massless(robot: &Robot) -> Vec<String> {
     let weighs_nothing = |body: &Body| body.mass == 0.0 && body.moment == 0.0;
     // For each rigid body: whether it extends from joint to joint or touches the ground, and whether any part has mass.
     let rigid: Vec<usize> = (0..robot.bodies.len()).map(|body| robot.rigid_body(body)).collect();
     let [mut has_length, mut weighs] = [vec![false; rigid.len()], vec![false; rigid.len()]];
-    // Like `weighs`, but including all bodies that it carries.
-    let mut carries = vec![false; rigid.len()];
+    // Like `weighs`, but including all bodies that it carries; and whether any of these resists the body's own motion.
+    // Bodies behind a joint with the same axis do not, because that joint can turn back.
+    let [mut carries, mut resists] = [vec![false; rigid.len()], vec![false; rigid.len()]];
+    // A mimic joint of this joint may move a mass.
+    let is_alone = |joint: usize| !robot.mimic_joints.iter().any(|mimic| mimic.mimicked == joint);
+    let hinge = |body: &Body| body.joint.map(|mover| robot.hinge(mover));
+    // The root can turn about any point: about its CoG or, if it has no mass, about its first joint.
+    let first = robot.bodies.iter().filter_map(hinge).find(|(parent, ..)| *parent == 0 && robot.bodies[0].mass == 0.0);
+    let pivot = first.map_or(robot.bodies[0].com, |(_, origin, _)| origin);
+    let motion = |body: usize| match hinge(&robot.bodies[body]) {
+        Some((.., motion)) => (motion, Vector::zero()),
+        None => (Some(Axis::Revolute { sign: 1.0 }), pivot),
+    };
     for (index, body) in robot.bodies.iter().enumerate().rev() {
         weighs[rigid[index]] |= !weighs_nothing(body);
         carries[index] |= !weighs_nothing(body);
-        if let Some((parent, origin, motion)) = body.joint.map(|mover| robot.hinge(mover)) {
+        resists[index] |= match motion(index) {
+            (Some(Axis::Prismatic { .. }), _) => body.mass > 0.0,
+            (_, center) => body.moment > 0.0 || body.mass > 0.0 && body.com != center,
+        };
+        if let Some((parent, origin, own)) = hinge(body) {
+            let yields = match (own, motion(parent)) {
+                (Some(Axis::Revolute { .. }), (Some(Axis::Revolute { .. }), center)) => origin == center,
+                (Some(Axis::Prismatic { direction }), (Some(Axis::Prismatic { direction: other }), _)) => {
+                    direction.x * other.z == direction.z * other.x
+                }
+                _ => false,
+            };
+            let yields = yields && matches!(body.joint, Some(ParentJoint::Joint(joint)) if is_alone(joint));
+            resists[parent] |= carries[index] && !yields;
             carries[parent] |= carries[index];
-            has_length[rigid[parent]] |= motion.is_some() && origin.length() > 0.0;
+            has_length[rigid[parent]] |= own.is_some() && origin.length() > 0.0;
         }
     }
     robot.links.iter().for_each(|link| has_length[rigid[link.body]] |= !link.shapes.is_empty());
-    // A mimic joint of this joint may move a mass.
-    let is_alone = |joint: usize| !robot.mimic_joints.iter().any(|mimic| mimic.mimicked == joint);
     let is_massless = |&(index, body): &(usize, &Body)| match body.joint {
         _ if weighs[index] => false,
         Some(ParentJoint::Joint(joint)) => has_length[index] || !carries[index] && is_alone(joint),
         Some(ParentJoint::Mimic(_)) => has_length[index],
         Some(ParentJoint::Fixed { .. }) | None => false,
     };
-    let massless = names(robot.bodies.iter().enumerate().filter(is_massless).map(|(_, body)| &body.name))?;
-    Some(format!(
-        "without mass, although a joint of its own moves it: {massless}; give it an <inertial>, or name the joint in `held`"
-    ))
+    let (massless, others): (Vec<_>, Vec<_>) = robot.bodies.iter().enumerate().partition(is_massless);
+    let unresisted =
+        others.into_iter().filter(|(index, _)| !resists[*index]).filter_map(|(_, body)| match body.joint {
+            Some(ParentJoint::Joint(joint)) if is_alone(joint) => Some(robot.joints[joint].name.as_str()),
+            None if robot.base == Base::Floating => Some("the base's pitch"),
+            _ => None,
+        });
+    let massless = names(massless.iter().map(|(_, body)| &body.name)).map(|bodies| {
+        format!(
+            "without mass, although a joint of its own moves it: {bodies}; give it an <inertial>, or name the joint in `held`"
+        )
+    });
+    let unresisted = names(unresisted).map(|joints| {
+        format!(
+            "nothing resists a motion of {joints} in any state: give what it moves a mass off its axis or a moment of \
+             inertia, or name the joint in `held`"
+        )
+    });
+    massless.into_iter().chain(unresisted).collect()
 }
 
 /// Returns the cautions about collision meshes that could not be read, and about shapes that URDF does not have.

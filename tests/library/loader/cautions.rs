@@ -203,6 +203,61 @@ fn a_thigh_without_its_inertia_is_named() {
     insta::assert_snapshot!(cautions);
 }
 
+/// Named are those by which the mass matrix is singular in a state without symmetries.
+#[test]
+fn joints_that_nothing_resists_are_named() {
+    const DOWN: urdf::Axis = urdf::Axis::Prismatic([0.0, 1.0]);
+    // Each with its mass, the height of its CoG and its moment.
+    const BODY: [f64; 3] = [2.0, -0.2, 0.1];
+    const BOB: [f64; 3] = [2.0, -0.2, 0.0];
+    const POINT: [f64; 3] = [2.0, 0.0, 0.0];
+    const NOTHING: [f64; 3] = [0.0; 3];
+    let massive = |name: &str, [mass, height, moment]: [f64; 3]| link(name, mass, [0.0, height], moment, "");
+    // Of the joints j, k and l the motion, the height of the origin, the parent and what it moves.
+    let moved = |root: [f64; 3], joints: &[(urdf::Axis, f64, &str, [f64; 3])]| {
+        let joints = joints.iter().zip(["j", "k", "l"]).map(|(&(axis, height, parent, own), name)| {
+            massive(&name.to_uppercase(), own) + &joint(name, axis, [parent, &name.to_uppercase()], [0.0, height], "")
+        });
+        urdf::robot(&[massive("root", root), joints.collect()])
+    };
+    let mimicked = moved(BODY, &[(HINGE, -0.5, "root", POINT), (HINGE, -0.5, "root", BOB)]);
+    for (text, expected) in [
+        (mimicked.replace("<child link=\"K\"/>", "<child link=\"K\"/><mimic joint=\"j\"/>"), None),
+        (mimicked, Some("j")),
+        (moved(BODY, &[(HINGE, -0.5, "root", BOB)]), None),
+        (moved(BODY, &[(HINGE, -0.5, "root", POINT)]), Some("j")),
+        (moved(BODY, &[(HINGE, -0.5, "root", NOTHING), (HINGE, 0.0, "J", BODY)]), Some("j")),
+        (moved(BODY, &[(HINGE, -0.5, "root", POINT), (HINGE, 0.0, "J", POINT), (HINGE, 0.0, "K", BODY)]), Some("j, k")),
+        (moved(BODY, &[(HINGE, -0.5, "root", NOTHING), (DOWN, 0.0, "J", BODY)]), None),
+        (moved(BODY, &[(DOWN, -0.5, "root", NOTHING), (HINGE, 0.0, "J", BODY)]), None),
+        (moved(BODY, &[(DOWN, -0.5, "root", NOTHING), (DOWN, 0.0, "J", BODY)]), Some("j")),
+        (moved(BODY, &[(DOWN, -0.5, "root", POINT), (DOWN, 0.0, "J", BODY)]), None),
+        // The hip of a compass.
+        (moved(POINT, &[(HINGE, 0.0, "root", BODY), (HINGE, 0.0, "root", BODY)]), Some("the base's pitch")),
+        (moved(BOB, &[(HINGE, 0.0, "root", BODY), (HINGE, -0.2, "root", BODY)]), None),
+        (moved(NOTHING, &[(HINGE, 0.1, "root", BODY), (HINGE, 0.1, "root", BODY)]), Some("the base's pitch")),
+        (moved(NOTHING, &[(HINGE, 0.1, "root", BODY), (HINGE, 0.2, "root", BODY)]), None),
+    ] {
+        let robot = load(&text);
+        let found: Vec<_> = robot.reading().cautions.iter().filter(|caution| caution.contains("resists")).collect();
+        let words = |joints| format!("nothing resists a motion of {joints} in any state: give what it moves ");
+        assert!(found.len() == usize::from(expected.is_some()), "{expected:?}: {found:?}");
+        assert!(
+            found.iter().all(|caution| caution.starts_with(&words(expected.unwrap_or("")))),
+            "{expected:?}: {found:?}"
+        );
+        let joints: serde_json::Map<_, _> =
+            names(&robot).iter().zip([0.4, -0.9, 0.3]).map(|(name, at)| (name.to_string(), at.into())).collect();
+        let state = serde_json::json!({
+            "position": {"base": {"z": 1, "pitch": 0.2}, "joints": joints},
+            "contacts": [{"link": "root", "offset": [0.1, 0, -0.3]}],
+        });
+        let answer = crate::support::impact::try_impact(&robot, Default::default(), state).map(|_| ());
+        let singular = answer.is_err_and(|error| error.to_string().contains("the mass matrix is singular"));
+        assert_eq!(singular, expected.is_some(), "{expected:?}");
+    }
+}
+
 #[test]
 fn elements_that_are_not_read_are_named_with_their_lines() {
     let text = massive(&[PITCH]);
