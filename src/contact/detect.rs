@@ -129,7 +129,7 @@ impl Footing<'_> {
             for contact in &mut contacts {
                 let (all, next) = &mut counts[contact.link];
                 if *all > 1 {
-                    contact.name = format!("{}/{next}", contact.name).into();
+                    contact.name = self.feet.numbered(&contact.name, *next).into();
                 }
                 *next += 1;
             }

@@ -3,6 +3,7 @@
 use crate::planar::Vector;
 use crate::robot::{FootShape, Robot};
 use crate::state::NamedContact;
+use std::collections::HashSet;
 use std::sync::Arc;
 
 /// One shape that may touch the ground.
@@ -31,6 +32,8 @@ pub struct Feet {
     feet: Vec<Foot>,
     /// Of the robot's links.
     names: Vec<Arc<str>>,
+    /// What stands between the name of a link and the number of one of its contacts.
+    slashes: String,
     size: f64,
 }
 
@@ -50,7 +53,22 @@ impl Feet {
             }));
         }
         let size = robot.size(feet.iter().map(|foot| (foot.body, &foot.outline)));
-        Self { feet, names: robot.links.iter().map(|link| link.name.as_str().into()).collect(), size }
+        let names: HashSet<&str> = robot.links.iter().map(|link| link.name.as_str()).collect();
+        let mut slashes = "/".to_owned();
+        let is_number_of_other = |name: &str, slashes: &str| {
+            let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
+            stem.strip_suffix(slashes).is_some_and(|stem| names.contains(stem))
+        };
+        while names.iter().any(|name| is_number_of_other(name, &slashes)) {
+            slashes.push('/');
+        }
+        let names = robot.links.iter().map(|link| link.name.as_str().into()).collect();
+        Self { feet, names, slashes, size }
+    }
+
+    /// The name of contact `at` of a link that has several: `link/0`, or `link//0` if other links are called so.
+    pub fn numbered(&self, link: &str, at: usize) -> String {
+        format!("{link}{}{at}", self.slashes)
     }
 
     /// The name of a link.

@@ -36,7 +36,7 @@ use std::sync::Arc;
 pub struct Contact {
     /// The URDF link that carries the shape, merged or not (an index into [`Robot::links`](crate::Robot)).
     pub link: usize,
-    /// The link's name, or link/0, link/1 ... where a link has several contacts.
+    /// The link's name, or link/0, link/1 ... where a link has several contacts; link//0 where others are called so.
     pub name: Arc<str>,
     /// The body that it is rigid on.
     pub body: usize,

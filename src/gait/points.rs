@@ -19,14 +19,15 @@ pub(super) struct Points<'r> {
     plan: Plan,
     configuration: Configuration,
     workspace: Workspace,
+    feet: Feet,
     points: Vec<(usize, Point)>,
 }
 
 impl<'r> Points<'r> {
     pub fn new(robot: &'r Robot, feet: &[NamedContact]) -> Self {
         let mut all: Vec<(usize, Point)> = Vec::new();
-        for (link, point) in Feet::new(robot, feet).iter().flat_map(|foot| points(foot).map(|point| (foot.link, point)))
-        {
+        let feet = Feet::new(robot, feet);
+        for (link, point) in feet.iter().flat_map(|foot| points(foot).map(|point| (foot.link, point))) {
             // Shapes of a link may share a corner, which is one point.
             if !all.contains(&(link, point)) {
                 all.push((link, point));
@@ -34,7 +35,7 @@ impl<'r> Points<'r> {
         }
         let plan = Plan::new(robot, &[], &[]);
         let (configuration, workspace) = Default::default();
-        Self { robot, plan, configuration, workspace, points: all }
+        Self { robot, plan, configuration, workspace, feet, points: all }
     }
 
     pub fn is_empty(&self) -> bool {
@@ -129,7 +130,7 @@ impl<'r> Points<'r> {
         let name = self.robot.links[link(striking)].name.clone();
         let mut of_link = closed.iter().filter(|&&point| link(point) == link(striking));
         let at = of_link.clone().position(|&point| point == striking).unwrap_or(0);
-        let name = if of_link.nth(1).is_some() { format!("{name}/{at}") } else { name };
+        let name = if of_link.nth(1).is_some() { self.feet.numbered(&name, at) } else { name };
         if self.robot.base == Base::Fixed {
             return (0.0, name);
         }

@@ -420,8 +420,8 @@ impl Columns {
 /// Returns the names of all contacts that the feet can make: two corners of a polygon at once, or with touchdowns all
 /// corners. A link with several contacts also has its plain name, for states in which only one of them touches.
 fn contacts(robot: &Robot, feet: &[NamedContact], layout: Layout) -> Vec<String> {
-    let mut counts = vec![0; robot.links.len()];
-    for foot in Feet::new(robot, feet).iter() {
+    let (mut counts, feet) = (vec![0; robot.links.len()], Feet::new(robot, feet));
+    for foot in feet.iter() {
         let corners = foot.outline.corners().len();
         counts[foot.link] += if layout.touchdowns { corners } else { corners.min(2) };
     }
@@ -429,7 +429,7 @@ fn contacts(robot: &Robot, feet: &[NamedContact], layout: Layout) -> Vec<String>
     for (link, count) in robot.links.iter().zip(counts).filter(|&(_, count)| count > 0) {
         names.push(link.name.clone());
         if count > 1 {
-            names.extend((0..count).map(|at| format!("{}/{at}", link.name)));
+            names.extend((0..count).map(|at| feet.numbered(&link.name, at)));
         }
     }
     names

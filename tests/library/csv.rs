@@ -314,6 +314,17 @@ fn the_header_has_every_contact_that_feet_can_give() {
 }
 
 #[test]
+fn contacts_called_like_other_links_have_columns() {
+    let robot = robot(&leg_urdf().replace("shin", "body/0"));
+    let state = states(b"q_base_z,q_knee,v_base_z\n0.1,1.5707963267948966,-1\n", &robot).pop().unwrap().unwrap();
+    let (rows, impact) = rows(&robot, &state, Options::default());
+    assert_eq!(impact.contacts.iter().map(|contact| &*contact.name).collect::<Vec<_>>(), ["body//0", "body//1"]);
+    let modes: Vec<_> = rows[0].iter().filter(|(column, _)| column.starts_with("mode_")).collect();
+    let modes: Vec<_> = modes.into_iter().map(|(column, mode)| (column.as_str(), mode.is_empty())).collect();
+    assert_eq!(modes, [("mode_body", true), ("mode_body//0", false), ("mode_body//1", false), ("mode_body/0", true)]);
+}
+
+#[test]
 fn a_wide_table_of_a_long_robot_is_read_in_seconds() {
     let joints = (0..1500).map(|at| {
         let [parent, child] = [at, at + 1].map(|at| format!("link_{at}"));

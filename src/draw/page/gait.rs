@@ -146,9 +146,7 @@ impl Gait {
             let middle = 0.5 * contacts.len().saturating_sub(1) as f64;
             for outcome in &answer.outcomes {
                 for (at, (contact, &mode)) in contacts.iter().zip(&outcome.modes).enumerate() {
-                    // Contacts of one link are link/0, link/1 ...
-                    let link = contact.name.rsplit_once('/').filter(|(_, count)| count.parse::<u32>().is_ok());
-                    let link = visible(link.map_or(&*contact.name, |(link, _)| link)).into_owned();
+                    let link = visible(&contact.link).into_owned();
                     let known = feet.iter().position(|foot| *foot == link);
                     let foot = known.unwrap_or(feet.len());
                     feet.extend(known.is_none().then_some(link));

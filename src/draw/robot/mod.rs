@@ -68,6 +68,8 @@ pub struct DrawnBody {
 pub struct DrawnContact {
     /// Its name.
     pub name: String,
+    /// The name of its link.
+    pub link: String,
     /// Where it is \[m\].
     pub point: Vector<f64>,
     /// Unit normal of the ground, toward the robot.
@@ -147,8 +149,8 @@ impl Drawing {
             impact.contacts.iter().zip(pairs).map(|(contact, &pair)| contact.ground.apply(pair.into())).collect()
         };
         let contact = |((contact, velocity_before), friction): ((&Contact, _), _)| {
-            let (name, point, normal) = (contact.name.to_string(), contact.point, contact.normal());
-            DrawnContact { name, point, normal, velocity_before, friction }
+            let (name, link) = (contact.name.to_string(), robot.links[contact.link].name.clone());
+            DrawnContact { name, link, point: contact.point, normal: contact.normal(), velocity_before, friction }
         };
         let contacts = impact.contacts.iter().zip(turned(&impact.velocity_before)).zip(impact.problem.friction());
         drawing.contacts = contacts.map(contact).collect();

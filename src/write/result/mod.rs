@@ -166,7 +166,7 @@ pub struct ContactRecord<'a> {
     /// The URDF link that carries the shape; of a robot.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub link: Option<Cow<'a, str>>,
-    /// Its name, which is its link's, or link/0, link/1 ... if a link has several.
+    /// Its name, which is its link's, or link/0, link/1 ... if a link has several (link//0 if others are called link/0).
     pub name: Cow<'a, str>,
     /// The contact point in the world \[m\]; of a robot.
     #[serde(skip_serializing_if = "Option::is_none")]
