@@ -1,15 +1,16 @@
-//! Errors against run time as a picture: a panel for G and one for the outcomes.
+//! The picture of errors against run time: one panel for G and one for the outcomes.
 
 use crate::accuracy::{Factorization, Method, MethodErrors};
 use crate::draw::plot::{Color, LegendEntry, LegendKey, MARK, Mark, Panel, Picture, PlotAxis, PlotShape, range};
 use crate::write::accuracy::{Accuracy, name_of};
 use crate::write::words::grouped;
 
-/// Marks that distinguish cases, if there are not more cases than marks.
+/// The marks that distinguish cases. If there are more cases than marks, all of them have a circle.
 const MARKS: [Mark; 6] = [Mark::Circle, Mark::Square, Mark::Triangle, Mark::Diamond, Mark::Star, Mark::Cross];
 
 impl Accuracy {
-    /// Errors against run time, without the reference, whose hundred digits would squeeze all others together.
+    /// Returns the picture of errors against run time. It omits the reference, whose hundred digits would squeeze all
+    /// others together.
     pub fn picture(&self) -> Picture {
         let named = self.studies.len() <= MARKS.len();
         let title = match self.studies.as_slice() {
@@ -28,7 +29,7 @@ impl Accuracy {
             groups.into_iter().map(|(name, methods)| LegendEntry::new(name, key(methods[0]))).collect();
         if named && self.studies.len() > 1 {
             let cases = self.studies.iter().enumerate().filter(|(_, study)| study.methods.iter().any(|m| is_drawn(&m)));
-            // A mark of any method.
+            // Gray stands for any method.
             let key = |case| LegendKey::Mark(mark(case), Color::Gray);
             legend.extend(cases.map(|(case, study)| LegendEntry::new(&study.name, key(case))));
         }
@@ -46,7 +47,7 @@ impl Accuracy {
             panel("largest error of G", |error| error.delassus),
             panel("largest error of impulses and velocities after", |error| error.outcome),
         ];
-        // All panels have one axis of errors.
+        // All panels have the same range of errors.
         let shapes = panels.iter().flat_map(|panel| &panel.shapes);
         let errors = shapes.flat_map(PlotShape::extent).map(|(_, error)| error);
         let range = range(errors.filter(|error| error.is_finite() && *error > 0.0));

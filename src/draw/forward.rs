@@ -1,4 +1,4 @@
-//! What is drawn with x reversed: a figure whose robot walks the other way.
+//! The direction that pictures call forward, and the mirroring of pictures for robots that walk along -x.
 
 use crate::impact::{Explanation, mirrored};
 use crate::planar::{Pair, Vector};
@@ -6,18 +6,18 @@ use crate::sweep::{Findings, Regime, RegionCurves, Transition};
 use crate::{Mode, Outcome};
 use std::sync::Arc;
 
-/// Which way along x is called forward and drawn to the right.
+/// The direction along x that is called forward and drawn to the right.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Forward {
-    /// Along +x, as in all that is read and written.
+    /// Along +x, as in all input and output.
     #[default]
     Along,
-    /// Along -x: pictures are mirrored, and sliding forward and backward change their names.
+    /// Along -x: pictures are mirrored, and the names of sliding forward and sliding backward are swapped.
     Against,
 }
 
 impl Forward {
-    /// What a title says about it.
+    /// Returns the text that a title ends with; it is empty if nothing is mirrored.
     pub(super) fn remark(self) -> &'static str {
         match self {
             Self::Along => "",

@@ -30,16 +30,16 @@ use serde_json::Value;
 pub struct Keyframe {
     /// The robot, its contacts and the ground; `None` if the state is refused.
     pub drawing: Option<Drawing>,
-    /// What happens, or why there is no answer.
+    /// The answer, or the reason why there is none.
     pub answer: Result<KeyframeAnswer, Error>,
-    /// What a reader should know, in sentences.
+    /// Notes about the input and the answer, as sentences.
     pub notes: Vec<String>,
 }
 
-/// What a keyframe shows of its answer.
+/// The part of an answer that a keyframe shows.
 #[derive(Debug, Clone)]
 pub struct KeyframeAnswer {
-    /// What was asked.
+    /// The question: the impact, or the forces in sustained contact.
     pub aspect: Aspect,
     /// The verdict.
     pub verdict: Verdict,
@@ -49,25 +49,25 @@ pub struct KeyframeAnswer {
     pub outcomes: Vec<Outcome>,
     /// The friction with which no contact would have to slide ([`Impact::friction_needed`]).
     pub friction_needed: Option<f64>,
-    /// How much is open, if the verdict is undecided.
+    /// The number of undecided combinations, if the verdict is undecided.
     pub open: Option<OpenCombinations>,
 }
 
-/// A keyframe with its place in the list of a page.
+/// A keyframe with the line, the id and the time of its state in the input.
 #[derive(Debug, Clone)]
 pub struct ListedKeyframe {
-    /// The line on which it begins, from 1.
+    /// The line on which the state begins, from 1.
     pub line: usize,
     /// The id of the state.
     pub id: Option<Value>,
-    /// In s.
+    /// The time of the state \[s\].
     pub time: Option<f64>,
     /// The state and its answer.
     pub keyframe: Keyframe,
 }
 
 impl Keyframe {
-    /// A state and its impact; `feet` are those in addition to the robot's own shapes.
+    /// Creates the keyframe of a state and its answer. `feet` are added to the robot's own shapes.
     pub fn of_impact(robot: &Robot, feet: &[NamedContact], state: &State, impact: &Impact) -> Self {
         let answer = impact.analyzed().map(|analysis| KeyframeAnswer {
             aspect: impact.aspect(),
@@ -81,14 +81,14 @@ impl Keyframe {
         Self { drawing, answer, notes: impact.notes.clone() }
     }
 
-    /// Mirrors it if forward is along -x.
+    /// Mirrors the keyframe if forward is along -x.
     #[cfg(feature = "plot")]
     fn face(&mut self, forward: Forward) {
         self.drawing.iter_mut().for_each(|drawing| drawing.face(forward));
         self.answer.iter_mut().for_each(|answer| forward.outcomes(&mut answer.outcomes));
     }
 
-    /// That of a refused state.
+    /// Creates the keyframe of a refused state.
     pub fn refused(error: Error) -> Self {
         Self { drawing: None, answer: Err(error), notes: Vec::new() }
     }

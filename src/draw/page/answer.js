@@ -1,6 +1,6 @@
-// What happens: verdict, outcomes, notes, and what turns at the next borders.
+// The answer: verdict, outcomes, notes, and the transitions at the next borders.
 
-/** A number in as many digits as people read. */
+/** Formats a number with `count` significant digits. */
 function digits(value, count = 4) {
   if (value === null || value === undefined) return "–";
   const isShort = Math.abs(value) >= 1e-4 && Math.abs(value) < 10 ** Math.max(6, count);
@@ -9,7 +9,7 @@ function digits(value, count = 4) {
 }
 
 class Answer {
-  /** `choose` takes the number of an outcome. */
+  /** `choose` takes the index of an outcome, or null for all. */
   constructor(element, data, choose) {
     this.element = element;
     this.data = data;

@@ -1,4 +1,4 @@
-//! States as the data of a page: bodies, contacts and outcomes, and the scale of all drawings.
+//! The data of a page: bodies, contacts and outcomes of its states, and the scale of all drawings.
 
 use super::{Interned, PageState};
 use crate::draw::KeyframeAnswer;
@@ -9,7 +9,7 @@ use crate::write::words::Wording;
 use crate::{Error, Outcome, Verdict};
 use serde::Serialize;
 
-/// A state. Texts and bodies are given by their numbers.
+/// A state. Texts and body parts are indices into the page's lists.
 #[derive(Debug, Clone, Serialize)]
 pub(super) struct PageFrame {
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -20,7 +20,7 @@ pub(super) struct PageFrame {
     verdict: Option<Verdict>,
     #[serde(skip_serializing_if = "Option::is_none")]
     proven: Option<bool>,
-    /// The verdict as a sentence, or why there is none.
+    /// The verdict as a sentence, or the reason why there is none.
     sentence: usize,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     notes: Vec<usize>,
@@ -31,9 +31,9 @@ pub(super) struct PageFrame {
 
 #[derive(Debug, Clone, Serialize)]
 struct PageDrawing {
-    /// Of each body its part, and its frame's origin and x axis in the world.
+    /// For each body, the index of its part, and the origin (x, z) and x axis (x, z) of its frame in the world frame.
     bodies: Vec<(usize, f64, f64, f64, f64)>,
-    /// The beginning and the end of each, and its body.
+    /// For each bone, its start (x, z), its end (x, z) and the index of its body.
     bones: Vec<(f64, f64, f64, f64, usize)>,
     joints: Vec<Vector<f64>>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -44,11 +44,11 @@ struct PageDrawing {
     contacts: Vec<PageContact>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     applied: Vec<Arrow>,
-    /// The middle of all that is drawn.
+    /// The middle of the drawing's extent.
     middle: Vector<f64>,
 }
 
-/// The rigid part of a drawn body, in its frame.
+/// The part of a drawn body that does not depend on the configuration, in the body's frame.
 #[derive(Debug, Clone, Serialize)]
 struct BodyPart {
     outlines: Vec<DrawnShape>,
@@ -62,23 +62,23 @@ struct PageContact {
     name: usize,
     point: Vector<f64>,
     normal: Vector<f64>,
-    /// In the world's axes \[m/s\].
+    /// The velocity before the impact, in the world frame \[m/s\].
     before: Vector<f64>,
 }
 
 #[derive(Debug, Clone, Serialize)]
 struct PageOutcome {
-    /// What each contact does, in words.
+    /// The modes of the contacts in words, as the index of a text.
     words: usize,
     #[serde(rename = "marks", skip_serializing_if = "Vec::is_empty")]
     remarks: Vec<usize>,
     margin: Option<f64>,
     index: Option<i8>,
     energy_loss: f64,
-    /// Tangential and normal.
+    /// The tangential and normal components for each contact.
     impulse: Vec<Pair<f64>>,
     after: Vec<Pair<f64>>,
-    /// Of each loop the link on which its impulse is drawn, and the impulse in the world's axes.
+    /// For each loop, the link on which its impulse is drawn, and the impulse in the world frame.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     loops: Vec<(usize, Vector<f64>)>,
 }
@@ -86,31 +86,31 @@ struct PageOutcome {
 /// The scale of all drawings of a page.
 #[derive(Debug, Clone, Copy, Default, Serialize)]
 pub(super) struct PageScale {
-    /// Coordinates are multiples of this \[m\].
+    /// The unit of coordinates, which are multiples of it \[m\].
     #[serde(skip)]
     pub unit: f64,
-    /// The corners of the view, from the middle of the robot along axes on which the view follows it \[m\].
+    /// The corners of the view \[m\]; along axes on which the view follows the robot, relative to the robot's middle.
     low: Vector<f64>,
     high: Vector<f64>,
-    /// Along which axes the view follows the robot.
+    /// Whether the view follows the robot along x and along z.
     follows: [bool; 2],
-    /// Of the heaviest body \[kg\].
+    /// The mass of the heaviest body \[kg\].
     mass: f64,
-    /// An impulse \[N s\], a velocity after \[m/s\] and one before it whose arrows have the usual length.
+    /// The impulse \[N s\], and the velocities after and before the impact \[m/s\], whose arrows have the usual length.
     impulse: f64,
     velocity: f64,
     before: f64,
 }
 
-/// The view stays fixed if all states lie within this multiple of the largest robot's size.
+/// The view is fixed along an axis if all states lie within this multiple of the largest size of the robot.
 const FIXED: f64 = 1.5;
 
-/// How values count toward the usual one, which so large a share of them does not exceed.
+/// The weights of values when the usual value is chosen: the share [`Weight::share`] of all weights does not exceed it.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Weight {
-    /// Each by its size: many that are nearly zero, as of feet at rest, do not hide the others.
+    /// Each value has its size as weight. Many values near zero, such as those of feet at rest, have little effect.
     Size,
-    /// All alike: few next to a pole, where they have no bound, do not hide the others.
+    /// All values have the same weight. A few values next to a pole, where they are unbounded, have little effect.
     Alike,
 }
 
@@ -157,7 +157,7 @@ impl PageScale {
     }
 }
 
-/// The value that most of the positive ones do not exceed.
+/// Returns the value that most of the positive values, by weight, do not exceed; 0 if no value is positive.
 fn usual(values: impl Iterator<Item = f64>, weight: Weight) -> f64 {
     let mut values: Vec<f64> = values.filter(|value| *value > 0.0).collect();
     values.sort_unstable_by(f64::total_cmp);
@@ -171,7 +171,7 @@ fn usual(values: impl Iterator<Item = f64>, weight: Weight) -> f64 {
 }
 
 impl PageFrame {
-    /// A state; its coordinates are multiples of `unit` \[m\].
+    /// Creates the data of a state. Its coordinates are multiples of `unit` \[m\].
     pub fn new(state: &PageState, unit: f64, parts: &mut Interned, texts: &mut Interned) -> Self {
         let PageState { keyframe, region, name } = state;
         let answer = keyframe.answer.as_ref();
@@ -193,7 +193,7 @@ impl PageFrame {
     }
 }
 
-/// Why a state is refused, where and what to do.
+/// Returns why a state is refused, with the place and the remedy, as a sentence.
 fn refusal(error: &Error) -> String {
     let place = error.place().map_or(String::new(), |place| format!("{place}: "));
     let remedy = error.remedy().map_or(String::new(), |remedy| format!(" (hint: {remedy})"));
@@ -261,26 +261,26 @@ impl PageDrawing {
     }
 }
 
-/// The vector with five digits in each entry.
+/// Rounds the entries of a vector to five significant digits.
 fn vector(vector: &Vector<f64>) -> Vector<f64> {
     vector.map(|entry| significant(entry, 5))
 }
 
-/// The unit of coordinates \[m\], a power of ten: a robot of this size spans ten thousand of them or more.
+/// Returns the unit of coordinates \[m\]: a power of ten such that `size` is at least ten thousand units.
 fn unit(size: f64) -> f64 {
     let size = if size > 0.0 && size.is_finite() { size } else { 1.0 };
     libm::pow(10.0, libm::floor(libm::log10(size)) - 4.0)
 }
 
-/// The multiple of `unit`, a power of ten, that is nearest.
+/// Rounds a value to a multiple of `unit`, which is a power of ten.
 fn to_unit(value: f64, unit: f64) -> f64 {
     let whole = (value / unit).round();
-    // A quotient by a power of ten has fewer digits than a product has; zero has no sign.
+    // A quotient by an integer power of ten has fewer digits than a product with `unit`. Adding 0 gives -0 no sign.
     let rounded = if unit < 1.0 { whole / (1.0 / unit).round() } else { whole * unit };
     if rounded.is_finite() { rounded + 0.0 } else { value }
 }
 
-/// The point whose entries are multiples of `unit`.
+/// Rounds the entries of a point to multiples of `unit`.
 fn place(point: Vector<f64>, unit: f64) -> Vector<f64> {
     point.map(|entry| to_unit(entry, unit))
 }
@@ -293,9 +293,9 @@ mod tests {
     fn few_or_tiny_values_do_not_set_the_scale() {
         let feet_at_rest = std::iter::repeat_n(5e-7, 600);
         assert_eq!(usual(feet_at_rest.chain([4.0, 4.4, 4.2]), Weight::Size), 4.4);
-        // One that is far greater does not, either, among many.
+        // A single value that is far greater than many others does not set it, either.
         assert_eq!(usual(std::iter::repeat_n(2.0, 600).chain([40.0]), Weight::Size), 2.0);
-        // Nor do those beside the poles of a study.
+        // Values next to the poles of a study do not set it.
         assert_eq!(usual(std::iter::repeat_n(17.4, 50).chain([8e11, 3e9]), Weight::Alike), 17.4);
     }
 

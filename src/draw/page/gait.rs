@@ -1,4 +1,4 @@
-//! The states of a batch, their margins as a picture, and their page.
+//! The states of a batch: a picture of their margins and needed friction, and their page.
 
 use super::{MOST, Page, PageAxis, PageRegion, PageState, Weight};
 use crate::draw::plot::{
@@ -10,21 +10,21 @@ use crate::pipeline::Aspect;
 use crate::write::words;
 use crate::{Friction, Mode, Verdict};
 
-/// States in their order, at most [`MOST`] of them: of more every second, third ... one is kept.
+/// States in their order. If there are more than [`MOST`], every second, fourth, eighth ... is kept.
 #[derive(Debug, Clone, Default)]
 pub struct Gait {
     forward: Forward,
-    /// Whether the states are single moments, and nothing is known of the time between them.
+    /// Whether the states are single moments, with nothing known about the time between them.
     apart: bool,
     states: Vec<ListedKeyframe>,
-    /// The friction of all contacts, of those that are not kept as well; at most two.
+    /// The different frictions of the contacts of all states, including states that are not kept; at most two of them.
     frictions: Vec<Friction>,
     halvings: u32,
     count: usize,
 }
 
 impl Gait {
-    /// Without states; whether those that come are single moments, `apart` from each other.
+    /// Creates a gait without states. `apart` says whether its states will be single moments.
     pub fn new(forward: Forward, apart: bool) -> Self {
         Self { forward, apart, ..Self::default() }
     }
@@ -48,7 +48,7 @@ impl Gait {
         }
     }
 
-    /// The order of the states: their times if all have one and none decreases, else their lines.
+    /// Returns what orders the states: their times if all have one and none decreases, else their lines.
     fn order(&self) -> (&'static str, Vec<f64>) {
         let times: Option<Vec<f64>> = self.states.iter().map(|state| state.time).collect();
         match times.filter(|times| times.is_sorted()) {
@@ -57,12 +57,12 @@ impl Gait {
         }
     }
 
-    /// Successive states with the same outcomes.
+    /// Groups successive states with the same verdict and outcomes.
     fn runs(&self) -> impl Iterator<Item = &[ListedKeyframe]> {
         self.states.chunk_by(|a, b| happening(a) == happening(b))
     }
 
-    /// Margins and needed friction of the contacts of every impact.
+    /// Returns the picture of the margins and needed friction of the contacts of every impact.
     pub fn picture(&self, robot: &str) -> Picture {
         let (name, order) = self.order();
         let label = if name == "time" { "time [s]" } else { name };
@@ -82,7 +82,7 @@ impl Gait {
             [("margin", |mark| mark.margin), ("friction needed", |mark| mark.friction)];
         let panel = |(quantity, value)| panel(quantity, x.clone(), &marks, size, value);
         let mut panels: Vec<Panel> = values.into_iter().filter_map(panel).collect();
-        // The friction that all contacts have is a line across what is needed, the last panel, unless it is far above.
+        // In the last panel, that of needed friction, a line marks the friction of all contacts unless it is far above.
         let is_near =
             |mu: f64| marks.iter().filter_map(|mark| mark.friction).any(|own| own.is_finite() && mu < FAR * own);
         let given_friction = self.friction().filter(|&mu| is_near(mu));
@@ -121,7 +121,7 @@ impl Gait {
         }
     }
 
-    /// States with an outcome that is not rest, with their numbers.
+    /// Returns the states whose verdict is neither no impact, no contact nor none, with their indices and answers.
     fn impacts(&self) -> impl Iterator<Item = (usize, &ListedKeyframe, &KeyframeAnswer)> {
         self.states.iter().enumerate().filter_map(|(number, state)| {
             let answer = state.keyframe.answer.as_ref().ok()?;
@@ -130,7 +130,7 @@ impl Gait {
         })
     }
 
-    /// The friction of all contacts, if it is one, and has a place on an axis.
+    /// Returns the friction of all contacts; `None` if it differs between contacts, is infinite or is not positive.
     fn friction(&self) -> Option<f64> {
         match self.frictions[..] {
             [Friction::Finite(mu)] if mu > 0.0 => Some(mu),
@@ -138,7 +138,8 @@ impl Gait {
         }
     }
 
-    /// The feet, and the contacts of every impact; those of one outcome stand `beside` each other.
+    /// Returns the names of the feet, and a mark for each contact in each outcome of every impact. The marks of one
+    /// outcome are `beside` apart along x.
     fn marks(&self, order: &[f64], beside: f64) -> (Vec<String>, Vec<GaitMark>) {
         let (mut feet, mut marks): (Vec<String>, Vec<GaitMark>) = (Vec::new(), Vec::new());
         for (number, state, answer) in self.impacts() {
@@ -151,7 +152,7 @@ impl Gait {
                     let foot = known.unwrap_or(feet.len());
                     feet.extend(known.is_none().then_some(link));
                     let place = order[number] + beside * (at as f64 - middle);
-                    // A contact that slides needs that with which none would.
+                    // For a contact that slides, it is the friction with which no contact would slide.
                     let friction = outcome.friction_needed.get(at).copied().flatten().or(answer.friction_needed);
                     let friction = friction.filter(|_| mode != Mode::Separate);
                     marks.push(GaitMark { foot, mode, at: place, margin: outcome.margin, friction });
@@ -161,7 +162,7 @@ impl Gait {
         (feet, marks)
     }
 
-    /// The page of a picture of all states.
+    /// Creates the page of all states with this picture.
     pub fn page(&self, robot: &str, rendered: Rendered) -> Page {
         let (name, order) = self.order();
         let region = |run: &[ListedKeyframe]| {
@@ -184,13 +185,13 @@ impl Gait {
     }
 }
 
-/// More bands are not distinguishable.
+/// The largest number of bands that are distinguishable.
 const BANDS: usize = 160;
-/// How far the axis of a single state reaches to either side.
+/// How far the axis of a single state reaches on each side, in units of the axis.
 const ALONE: f64 = 0.5;
 
-/// A band for all neighboring states of one kind, no farther from each than half way to the next one and than `reach`;
-/// no bands if they are not distinguishable.
+/// Returns a band for each run of neighboring states with the same verdict. A band extends from its states half way to
+/// the next one, and at most by `reach`. Returns no bands if there are too many to distinguish.
 fn bands(states: &[ListedKeyframe], order: &[f64], reach: f64) -> Vec<Band> {
     let mut bands: Vec<Band> = Vec::new();
     let mut last = None;
@@ -198,7 +199,7 @@ fn bands(states: &[ListedKeyframe], order: &[f64], reach: f64) -> Vec<Band> {
         let half = |other: Option<&f64>| other.map(|other| 0.5 * (other - at).abs());
         let before = number.checked_sub(1).and_then(|before| order.get(before));
         let [before, after] = [before, order.get(number + 1)].map(half);
-        // The first and the last state lie in the middle of their parts, too, and a single one in that of the axis.
+        // The first and the last state are in the middle of their parts, and a single state in that of the axis.
         let side = |own: Option<f64>, other: Option<f64>| own.or(other).unwrap_or(ALONE).min(reach);
         let (from, to) = (at - side(before, after), at + side(after, before));
         match bands.last_mut() {
@@ -210,13 +211,13 @@ fn bands(states: &[ListedKeyframe], order: &[f64], reach: f64) -> Vec<Band> {
     if bands.len() > BANDS { Vec::new() } else { bands }
 }
 
-/// The verdict, and the modes of all outcomes; `None` if the state is refused.
+/// Returns the verdict and the modes of all outcomes; `None` if there is no answer.
 fn happening(state: &ListedKeyframe) -> Option<(Verdict, Vec<&[Mode]>)> {
     let answer = state.keyframe.answer.as_ref().ok()?;
     Some((answer.verdict, answer.outcomes.iter().map(|outcome| &*outcome.modes).collect()))
 }
 
-/// A contact in an outcome: the number of its foot, how it ends and where it is along x.
+/// The mark of a contact in an outcome: the index of its foot, its mode, its place along x and its values.
 struct GaitMark {
     foot: usize,
     mode: Mode,
@@ -225,21 +226,22 @@ struct GaitMark {
     friction: Option<f64>,
 }
 
-/// What a panel shows of a mark.
+/// Returns the value of a mark that a panel shows.
 type MarkValue = fn(&GaitMark) -> Option<f64>;
 
-/// The width inside of the axes, and between the contacts of one outcome \[px\].
+/// The width inside the axes, and the largest distance between the contacts of one outcome \[px\].
 const WIDTH: f64 = 640.0;
 const BESIDE: f64 = 9.0;
-/// Values whose largest is so many times their least need a logarithmic axis.
+/// An axis is logarithmic if the largest value exceeds the least positive one by this factor.
 const DECADES: f64 = 50.0;
-/// Values that hardly differ have this share of them as room on their axis on either side.
+/// Values that hardly differ have room on each side of their range: this share of the largest value.
 const FLAT: f64 = 0.1;
 
 /// The colors of feet, in turn.
 const FEET: [Color; 6] = [Color::Blue, Color::Vermilion, Color::Green, Color::Purple, Color::Black, Color::Orange];
 
-/// The line of the friction that is given; it is drawn if it is not so many times what is needed.
+/// The line of the given friction. It is drawn if this friction is less than `FAR` times the friction that a contact
+/// needs.
 const FAR: f64 = 10.0;
 const GIVEN: Stroke = Stroke { dash: Dash::DASHED, ..Stroke::solid(Color::Gray, 1.4) };
 
@@ -251,7 +253,7 @@ const MODES: [(Mode, Mark, &str); 4] = [
     (Mode::SlideMinus, Mark::Left, "slides backward"),
 ];
 
-/// A quantity of contacts; `None` if none has a value.
+/// Returns the panel of a quantity of contacts; `None` if no contact has a finite value.
 fn panel(label: &str, x: PlotAxis, marks: &[GaitMark], size: f64, value: MarkValue) -> Option<Panel> {
     let finite = |mark: &GaitMark| value(mark).filter(|value| value.is_finite());
     let (low, most) = plot::range(marks.iter().filter_map(finite))?;
@@ -275,10 +277,10 @@ fn panel(label: &str, x: PlotAxis, marks: &[GaitMark], size: f64, value: MarkVal
 }
 
 struct StateLook {
-    /// `None` if they are refused.
+    /// The verdict; `None` if there is no answer.
     answer: Option<Verdict>,
     words: &'static str,
-    /// Of bands, and of the track behind the slider.
+    /// The color of bands in the picture and behind the slider.
     fill: Color,
 }
 

@@ -1,4 +1,4 @@
-//! An interactive page: one file of HTML with its data, its plots and the program that shows them; nothing is loaded.
+//! Interactive pages: one HTML file with data, plots and the program that shows them. A page loads nothing else.
 //!
 //! ```text
 //!     study, findings --[study]--┐
@@ -6,8 +6,8 @@
 //!     Picture --rendered--> SVG, windows of its panels ──────────────┘
 //! ```
 //!
-//! A page stops at states with the robot in its configuration and every outcome. Texts and collision shapes that many
-//! states share are in the data once; numbers have the digits that a screen shows.
+//! A page shows one of many states at a time: the robot in its configuration and every outcome. Texts and collision
+//! shapes that many states share are stored once. Numbers have as many digits as a screen shows.
 
 mod frame;
 mod study;
@@ -25,11 +25,11 @@ use serde::Serialize;
 use serde_json::value::RawValue;
 use std::collections::HashMap;
 
-/// The beginning of this page and of the live one.
+/// The beginning of a page; the live page in `web/` begins with it, too.
 const HEAD: &str = include_str!("head.html");
 const TEMPLATE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
-/// In the order in which they need each other.
+/// The scripts; each uses only those before it.
 const PROGRAM: [&str; 5] = [
     include_str!("robot.js"),
     include_str!("plots.js"),
@@ -38,17 +38,17 @@ const PROGRAM: [&str; 5] = [
     include_str!("page.js"),
 ];
 
-/// The most states that a page stops at; of more it takes every second, third ... one.
+/// The largest number of states on a page. Of a longer list, a part at even intervals is shown.
 pub const MOST: usize = 5000;
 
-/// A page to turn and step through, in one file.
+/// An interactive page in one file.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct Page {
     title: String,
-    /// One or two: what the states are ordered by.
+    /// One or two quantities by which the states are ordered.
     axes: Vec<PageAxis>,
     regions: Vec<PageRegion>,
-    /// In the order of the axes, the last of which changes fastest.
+    /// The states in the order of the axes; the last axis changes fastest.
     frames: Vec<PageFrame>,
     parts: Vec<Box<RawValue>>,
     texts: Vec<String>,
@@ -69,15 +69,15 @@ struct PageAxis {
 /// Neighboring states with the same outcomes.
 #[derive(Debug, Clone, Serialize)]
 struct PageRegion {
-    /// A letter, or a word.
+    /// A letter or a word.
     name: String,
-    /// The color of its part of the track.
+    /// The color of the region behind the slider.
     fill: &'static str,
-    /// Its ends, and what changes there.
+    /// The place of each border and what changes there.
     borders: Vec<[String; 2]>,
 }
 
-/// A state that the page stops at, the number of its region and its name in the input.
+/// A state of a page, the index of its region, and its name in the input.
 #[derive(Debug, Clone)]
 struct PageState {
     keyframe: Keyframe,
@@ -85,7 +85,7 @@ struct PageState {
     name: Option<String>,
 }
 
-/// Different texts, by number.
+/// Different texts and their numbers.
 #[derive(Debug, Default)]
 struct Interned {
     all: Vec<String>,
@@ -102,7 +102,7 @@ impl Interned {
 }
 
 impl Page {
-    /// The frames of a page; `svg` is its picture.
+    /// Creates a page with the frames of `states` and this picture.
     fn of(states: &[PageState], weight: Weight, Rendered { svg, windows }: Rendered) -> Self {
         let (mut parts, mut texts) = (Interned::default(), Interned::default());
         let scale = PageScale::of(states, weight);
@@ -113,20 +113,20 @@ impl Page {
         Self { frames, wording, parts, texts: texts.all, scale, windows, svg, ..Self::default() }
     }
 
-    /// A page of one state, whose data is drawn by a page that asks for it.
+    /// Creates a page of one state. The live page draws its data.
     pub fn of_state(title: String, keyframe: Keyframe) -> Self {
         let state = PageState { keyframe, region: None, name: None };
         Self { title, ..Self::of(&[state], Weight::Size, Rendered::default()) }
     }
 
-    /// Its plots.
+    /// Returns the plots as SVG; empty without plots.
     pub fn svg(&self) -> &str {
         &self.svg
     }
 
-    /// The whole page as HTML, with its scripts and data in it.
+    /// Returns the page as HTML, with its scripts and its data.
     pub fn html(&self) -> String {
-        // As text of HTML.
+        // The title is text; its markup is escaped.
         let title = self.title.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
         let parts: [(&str, &str); 7] = [
             ("{head}", HEAD),
@@ -139,7 +139,7 @@ impl Page {
         ];
         let (mut html, mut rest) = (String::new(), TEMPLATE);
         for (place, content) in parts {
-            // Inserted text is never searched for further places.
+            // Inserted text is not searched for further placeholders.
             let (before, after) = rest.split_once(place).unwrap_or((rest, ""));
             html.extend([before, content]);
             rest = after;
@@ -147,7 +147,7 @@ impl Page {
         html + rest
     }
 
-    /// The data as JSON in which no sign means anything to HTML.
+    /// Returns the data as JSON without characters that have a meaning in HTML.
     fn data(&self) -> String {
         // Writing into memory cannot fail.
         let json = serde_json::to_string(self).unwrap_or_default();

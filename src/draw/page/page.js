@@ -1,4 +1,4 @@
-// All together: where the page is, and what moves it.
+// The page as a whole: the current stop, and the inputs that change it.
 
 {
   const data = JSON.parse(document.getElementById("data").textContent);
@@ -6,7 +6,7 @@
   const here = axes.map(() => 0);
   let chosen = null;
 
-  /** The still at these stops; that of the last axis changes fastest. */
+  /** Returns the frame at these stops; the stop of the last axis changes fastest. */
   const still = (stops) => frames[stops.reduce((index, stop, axis) => index * axes[axis].values.length + stop, 0)];
 
   const robot = new Robot(document.getElementById("scene"), document.getElementById("key"), data);
@@ -39,10 +39,10 @@
     document.getElementById("status").textContent = [words, ...outcomes].join(" ");
   }
 
-  /** The next stop along the first axis on the other side of a border, or the last one. */
+  /** Returns the stops after moving along the first axis beyond the next border, or to the end. */
   const beyond = (way) => here.with(0, border(axes[0].values.map((_, stop) => still(here.with(0, stop)).region), here[0], way));
 
-  /** The middle of the region that says most: several outcomes or none before one, the longest of each. */
+  /** Returns the middle of the most interesting run of stops: several outcomes or none before one, then the longest. */
   function telling() {
     const says = ({ verdict, outcomes }) => (verdict === "none" || outcomes.length > 1 ? 3 : verdict === "unique" ? 2 : verdict ? 1 : 0);
     let best = { says: -1, length: 0, at: 0 };
@@ -55,7 +55,7 @@
   }
 
   const along = (axis, way) => here.with(axis, here[axis] + way);
-  /** Along the axis whose slider has the focus, or else along this one. */
+  /** Moves along the axis whose slider has the focus, or else along this axis. */
   const step = (axis, way) => {
     const held = sliders.findIndex(({ input }) => input === document.activeElement);
     go(along(held < 0 ? axis : held, way));

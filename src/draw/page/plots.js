@@ -1,7 +1,7 @@
 // The plots, with a cursor in each of their panels.
 
 class Plots {
-  /** `place` takes the place of a click, in the values of the axes. */
+  /** `place` takes the point of a click, in values of the axes. */
   constructor(element, data, place) {
     this.data = data;
     this.picture = element.querySelector("svg");
@@ -52,14 +52,14 @@ function set(element, attributes) {
   for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, Number(value.toFixed(2)));
 }
 
-/** Where a value of the x axis (0) or the y axis (1) is in the picture; the latter goes up. */
+/** Returns the pixel of a value of the x axis (0) or the y axis (1), which points up. */
 function pixel(window, axis, value) {
   const [from, to] = axis ? window.y : window.x;
   const part = (value - from) / (to - from);
   return window.corner[axis] + window.size[axis] * (axis ? 1 - part : part);
 }
 
-/** The value that is at a pixel. */
+/** Returns the value at a pixel. */
 function value(window, axis, at) {
   const [from, to] = axis ? window.y : window.x;
   const part = (at - window.corner[axis]) / window.size[axis];

@@ -1,6 +1,6 @@
-// The robot where it is, with an arrow for each impulse and velocity, or force and acceleration.
+// The robot in its pose, with an arrow for each impulse and velocity, or force and acceleration.
 
-/** An element of SVG with these attributes. */
+/** Creates an SVG element with these attributes. */
 function svg(name, attributes = {}, ...children) {
   const element = document.createElementNS("http://www.w3.org/2000/svg", name);
   for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
@@ -8,20 +8,20 @@ function svg(name, attributes = {}, ...children) {
   return element;
 }
 
-/** An element of HTML with these properties. */
+/** Creates an HTML element with these properties. */
 function html(name, properties = {}, ...children) {
   const element = Object.assign(document.createElement(name), properties);
   element.append(...children);
   return element;
 }
 
-/** The greatest of 1, 2, 5, 10 ... that is not greater. */
+/** Returns the greatest of ..., 1, 2, 5, 10, ... that is not above `most`. */
 function round(most) {
   const unit = 10 ** Math.floor(Math.log10(most));
   return unit * [5, 2, 1].find((times) => times * unit <= most * (1 + 1e-9));
 }
 
-/** An arrow on the screen; it ends at `to`, with a head. */
+/** Returns an arrow on the screen with its tip at `to`. */
 function arrow(kind, from, to) {
   const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
   const length = Math.hypot(dx, dy);
@@ -36,17 +36,17 @@ function arrow(kind, from, to) {
     svg("polygon", { class: "head", points: corners.map((corner) => corner.join(",")).join(" ") }));
 }
 
-/** Draws stills into an SVG element, all on one scale; a unit of the drawing is a pixel of the screen. */
+/** Draws frames into an SVG element, all on one scale. A unit of the SVG is a pixel of the screen. */
 class Robot {
-  /** Parts of the drawing's height: an arrow of the usual length, and the longest one. */
+  /** Shares of the drawing's height: the usual and the greatest length of an arrow. */
   static USUAL = 0.24;
   static LONGEST = 0.48;
-  /** Parts of its height that are free on either side of the robot, above and below. */
+  /** Shares of the drawing's height that are free on each side of the robot, above and below. */
   static ROOM = { side: 0.18, above: 0.06, below: 0.2 };
-  /** A velocity before whose angle to another arrow has a smaller sine is drawn so far aside [px]. */
+  /** A velocity before is ASIDE [px] aside if the sine of its angle to another arrow or the ground is below ALONG. */
   static ALONG = 0.15;
   static ASIDE = 12;
-  /** The shortest arrow of a velocity after [px]. */
+  /** A velocity after whose arrow is shorter than this is also shown as a direction [px]. */
   static SEEN = 4;
 
   constructor(element, key, data) {
@@ -58,7 +58,7 @@ class Robot {
     this.fit();
   }
 
-  /** Takes the size that the element has on the screen. */
+  /** Adapts the drawing to the size of the element on the screen. */
   fit() {
     const [width, height] = [this.element.clientWidth || 620, this.element.clientHeight || 400];
     this.element.setAttribute("viewBox", `0 0 ${width} ${height}`);
@@ -75,7 +75,7 @@ class Robot {
     this.show(...this.shown);
   }
 
-  /** Shows a still; `chosen` is an outcome's number, or null for all of them. */
+  /** Shows a frame; `chosen` is the index of an outcome, or null for all. */
   show(frame, chosen) {
     this.shown = [frame, chosen];
     this.element.replaceChildren();
@@ -91,7 +91,7 @@ class Robot {
     this.element.append(...this.ground(pose.ground, pose.profile), ...pose.bodies.map((body, at) => this.part(body, at)), ...this.skeleton(pose), ...this.contacts(frame, chosen));
   }
 
-  /** The ground; a slope goes on to both sides. */
+  /** Returns the ground; a slope continues on both sides. */
   ground(surface, isProfile) {
     if (surface.length < 2) return [];
     const points = surface.map(this.at);
@@ -106,7 +106,7 @@ class Robot {
     return [svg("polygon", { class: "soil", points: soil }), svg("polyline", { class: "surface", points: line })];
   }
 
-  /** The collision shapes and the CoG of a body. */
+  /** Returns the collision shapes and the CoG of a body. */
   part([number, x, z, cos, sin], at) {
     const { outlines, com, mass, last } = this.data.parts[number];
     const [left, top] = this.at([x, z]);
@@ -141,7 +141,7 @@ class Robot {
     return [...bones.map(bone), ...joints.map(joint("joint")), ...loops.map(joint("joint loop"))];
   }
 
-  /** Contacts and arrows, on top those of the chosen outcome. */
+  /** Returns the contacts and arrows; those of the chosen outcome are on top. */
   contacts({ pose, outcomes }, chosen) {
     const shapes = [];
     const shown = chosen === null ? outcomes : outcomes.slice(chosen, chosen + 1);
@@ -168,12 +168,12 @@ class Robot {
     return [...shapes, ...this.names(named)];
   }
 
-  /** Whether a velocity after is too small for an arrow. */
+  /** Returns whether a velocity after is too small for an arrow. */
   isSmall(pair) {
     return moves(pair) && Math.hypot(...pair) * this.length.velocity < Robot.SEEN;
   }
 
-  /** Names below points; those of near points stand below each other. */
+  /** Returns names below points. The names of points near each other are below each other. */
   names(named) {
     const rows = [];
     return named.sort((a, b) => a.at[0] - b.at[0]).map(({ at: [x, y], name }) => {
@@ -204,7 +204,7 @@ class Robot {
     return group;
   }
 
-  /** A vector at a point of the world; one that is too long is cut, which its dashes show. */
+  /** Returns the arrow of a vector at a point of the world. An arrow that is too long is cut and dashed. */
   vector(kind, unit, point, [x, z]) {
     const from = this.at(point);
     const length = Math.hypot(x, z) * this.length[unit];
@@ -216,7 +216,7 @@ class Robot {
     return drawn;
   }
 
-  /** A velocity before: it ends at the contact, or next to it if one of the `others` or the ground lies along it. */
+  /** Returns a velocity before. It ends at the contact, or next to it if one of `others` or the ground is along it. */
   arriving(point, [x, z], [nx, nz], others) {
     const drawn = this.vector("before", "before", point, [x, z]);
     const length = Math.hypot(x, z);
@@ -229,7 +229,7 @@ class Robot {
     return drawn;
   }
 
-  /** What the arrows are, each with one of a round length. */
+  /** Fills the legend: an arrow of a round length for each kind of arrow. */
   key() {
     const { frames, scale: { impulse, velocity, before }, wording: { given, taken, moving } } = this.data;
     const some = (chosen) => frames.some((frame) => frame.pose && chosen(frame));
@@ -258,7 +258,7 @@ class Robot {
   }
 }
 
-/** A pair along the tangent, which is the normal turned clockwise, and along the normal, in the world's axes. */
+/** Returns a pair along the tangent, which is the normal turned clockwise, and the normal, in the world frame. */
 function world([nx, nz], [t, n]) {
   return [t * nz + n * nx, n * nz - t * nx];
 }

@@ -1,11 +1,11 @@
-// A slider along each axis, with the regions behind the first one where it is alone, and buttons that move it.
+// A slider for each axis, and buttons. If there is only one slider, the regions are behind it.
 
-/** The stop whose value is nearest. */
+/** Returns the stop whose value is nearest. */
 function nearest(values, value) {
   return values.reduce((best, at, stop) => (Math.abs(at - value) < Math.abs(values[best] - value) ? stop : best), 0);
 }
 
-/** How many digits tell most neighbors apart. */
+/** Returns the number of digits that distinguish most neighbors. */
 function apart(values) {
   const gaps = values.slice(1).map((value, at) => Math.abs(value - values[at])).filter((gap) => gap > 0).sort((a, b) => a - b);
   const most = Math.max(...values.map(Math.abs));
@@ -13,7 +13,7 @@ function apart(values) {
   return Math.min(15, Math.max(4, digits));
 }
 
-/** The next stop on the other side of a border, or the last one; `regions` are those of the stops. */
+/** Returns the first stop beyond the next border, or the last stop; `regions` has the region of each stop. */
 function border(regions, stop, way) {
   const next = (at) => at + way >= 0 && at + way < regions.length;
   let at = stop;
@@ -27,7 +27,7 @@ function border(regions, stop, way) {
 /** How long a stop is shown while the page plays [ms]. */
 const STILL = 90;
 
-/** Buttons for what keys do, and one that plays: `again` starts anew at the end. */
+/** Returns buttons for the actions of keys, and one that plays; at the end, `again` goes back to the start. */
 function buttons({ step, border, again }) {
   let playing = null;
   const button = (sign, words, act) => html("button", { type: "button", ariaLabel: words, title: words, onclick: act }, sign);
@@ -46,7 +46,7 @@ function buttons({ step, border, again }) {
 }
 
 class Slider {
-  /** `move` takes the number of a stop. */
+  /** `move` takes the index of a stop. */
   constructor(element, data, axis, move) {
     this.axis = data.axes[axis];
     this.words = (value) => (Number.isInteger(value) ? String(value).replace("-", "−") : digits(value, apart(this.axis.values)));
@@ -61,7 +61,7 @@ class Slider {
     element.append(html("div", { className: "axis" }, label, this.input, ...(data.axes.length > 1 ? [] : [this.track(data)])));
   }
 
-  /** The regions in the order of the stops; a stop stands in the middle of its part. */
+  /** Returns the track with the regions of the stops; each stop is in the middle of its part. */
   track({ frames, regions }) {
     const track = html("div", { className: "track", ariaHidden: "true" });
     track.addEventListener("click", ({ clientX }) => {
@@ -80,7 +80,7 @@ class Slider {
     return track;
   }
 
-  /** Shows that no number is the value. */
+  /** Shows words in place of a value, with the slider at its end. */
   none(words) {
     this.input.value = this.last;
     this.output.value = words;
@@ -89,7 +89,7 @@ class Slider {
     this.input.setAttribute("aria-valuetext", words);
   }
 
-  /** Shows a stop, and what it is called; `words` are for those who do not see it. A `value` may lie between stops. */
+  /** Shows a stop and its name; `words` are for screen readers. A `value` may lie between stops. */
   show(stop, name, words, value = this.axis.values[stop]) {
     this.input.value = stop;
     this.output.value = this.words(value);

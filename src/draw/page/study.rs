@@ -1,7 +1,7 @@
-//! The page of a study: its samples, and of one parameter also both sides and the middle of every region.
+//! The page of a study. It shows the samples; with one parameter, also both sides and the middle of every region.
 //!
 //! ```text
-//!     a region         |.........|.........|      sides lie next to the borders, farther away than these are located
+//!     a region         |.........|.........|      the sides are farther from the borders than these are uncertain
 //! ```
 
 use super::{MOST, Page, PageAxis, PageRegion, PageState, Weight};
@@ -13,20 +13,20 @@ use crate::state::State;
 use crate::sweep::{Findings, Map, Parameter, RESOLUTION, Regime, Region, RobotStudy, Solver, Survey, Workers};
 use crate::write::sweep::{MapRegion, MapSweep, RegionRecord, Sweep};
 
-/// How far the sides of a region lie from its borders, as part of the parameter's range.
+/// The distance of the sides of a region from its borders, as a share of the parameter's range.
 const AWAY: f64 = 4.0 * RESOLUTION;
 
-/// The states at which the page of a study stops.
+/// The values of the parameters at which a page shows the state of a study.
 #[derive(Debug, Clone)]
 pub struct Stops {
-    /// The values of each parameter; a page stops at each combination.
+    /// The values of each parameter. The page has a state for each combination.
     values: Vec<Vec<f64>>,
-    /// For each parameter, a page stops at one of so many samples.
+    /// For each parameter, n if the page shows one of n samples.
     every: Vec<usize>,
 }
 
 impl Stops {
-    /// The stops of a study.
+    /// Chooses the stops of a study.
     pub fn new(model: &RobotStudy, findings: &Findings) -> Self {
         let parameters = model.study.parameters();
         let mut every = vec![1; parameters.len()];
@@ -39,7 +39,7 @@ impl Stops {
         };
         let mut values = samples(&every);
         while values.iter().map(Vec::len).product::<usize>() > MOST {
-            // Thin out the parameter with the most stops, step by step.
+            // Thin out the parameter with the most stops until the page is small enough.
             let last = values.len() - 1;
             every[if values[0].len() < values[last].len() { last } else { 0 }] += 1;
             values = samples(&every);
@@ -57,12 +57,12 @@ impl Stops {
         Self { values, every }
     }
 
-    /// How many there are.
+    /// Returns the number of stops.
     pub fn count(&self) -> usize {
         self.values.iter().map(Vec::len).product()
     }
 
-    /// The values of the parameters at a stop; the last parameter changes fastest.
+    /// Returns the values of the parameters at a stop. The last parameter changes fastest.
     fn point(&self, mut index: usize) -> Vec<f64> {
         let mut point = vec![0.0; self.values.len()];
         for (value, values) in point.iter_mut().zip(&self.values).rev() {
@@ -81,7 +81,7 @@ impl Stops {
 }
 
 impl Page {
-    /// The page of a study: what was found, the stops, its picture; `workers` count each stop.
+    /// Creates the page of a study from its findings, stops and picture. Each stop is reported to `workers`.
     pub fn of_study(
         model: &RobotStudy,
         found: &Findings,
@@ -119,7 +119,7 @@ impl Page {
     }
 }
 
-/// The state at a point and its outcomes, without the state's uncertainty.
+/// Returns the keyframe and the regime at a point. The uncertainty of the state is ignored.
 fn look(model: &RobotStudy, solver: &mut Solver, point: &[f64]) -> (Keyframe, Regime) {
     let seen = solver.at(point, |robot, state, pipeline| {
         let state = State { uncertainty: None, ..state };

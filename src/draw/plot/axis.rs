@@ -1,4 +1,4 @@
-//! Axes: what they span, and where their ticks are.
+//! Axes: their ranges, ticks and labels.
 
 use super::{Pixel, PlotPoint};
 use std::f64::consts::PI;
@@ -7,15 +7,15 @@ use std::f64::consts::PI;
 pub struct PlotAxis {
     /// The quantity, with its unit.
     pub label: String,
-    /// Whether its scale is logarithmic; values that are not positive are then not drawn.
+    /// Whether the scale is logarithmic. If so, values that are not positive are not drawn.
     pub logarithmic: bool,
-    /// Its ends, which a logarithmic one moves outward to whole powers of ten; `None` to span all that is drawn.
+    /// The ends of the axis; a logarithmic axis moves them outward to whole powers of ten. `None` to span all values.
     pub range: Option<(f64, f64)>,
-    /// If it has no range: values beyond these do not widen it.
+    /// Limits for an axis without a range: values beyond them do not widen it.
     pub within: Option<(f64, f64)>,
-    /// Whether it has neither ticks nor label, because a neighboring panel has the same axis.
+    /// Whether ticks and label are omitted, for instance because a neighboring panel has the same axis.
     pub bare: bool,
-    /// Whether it measures angles \[rad\] whose ticks are multiples of pi / 2.
+    /// Whether the values are angles \[rad\], with ticks at multiples of pi / 2.
     pub in_pi: bool,
 }
 
@@ -25,25 +25,25 @@ impl PlotAxis {
     }
 }
 
-/// What an axis spans, in the numbers at its ticks: exponents, or multiples of a power of ten.
+/// The range of an axis, in the numbers at its ticks: exponents, multiples of pi, or multiples of a power of ten.
 #[derive(Debug, Clone)]
 pub(super) struct Span {
     low: f64,
     high: f64,
-    /// Between ticks.
+    /// The distance between ticks.
     step: f64,
     logarithmic: bool,
     in_pi: bool,
-    /// A value is this and the number at its tick times ten to the `power`.
+    /// A value is the `offset` plus the number at its tick times ten to the `power`.
     offset: f64,
     power: i32,
-    /// On the screen \[px\].
+    /// The length on the screen \[px\].
     pub length: f64,
 }
 
 #[derive(Debug)]
 pub(super) struct Tick {
-    /// Where it is, 0 at the beginning of the axis and 1 at its end.
+    /// The place of the tick: 0 at the beginning of the axis, 1 at its end.
     pub share: f64,
     pub text: String,
 }
@@ -60,32 +60,33 @@ impl PlotArea {
         (self.x.length, self.y.length)
     }
 
-    /// Where a point is, from the upper left corner of the axes; `None` if it has no place on them.
+    /// Returns the place of a point, from the upper left corner of the axes; `None` if it has no place on them.
     pub fn place(&self, (x, y): PlotPoint) -> Option<Pixel> {
         let at = (self.x.length * self.x.share(x), self.y.length * (1.0 - self.y.share(y)));
         (at.0.is_finite() && at.1.is_finite()).then_some(at)
     }
 }
 
-/// Room beyond all points on either side, as a share of what they span.
+/// The room beyond the values at each end, as a share of their range.
 const ROOM: f64 = 0.04;
-/// The share of a logarithmic axis that a mark takes.
+/// The room beyond the values at each end of a logarithmic axis, as a share of their range in exponents.
 const MARK: f64 = 0.02;
-/// Values that agree to this share of them are the same.
+/// Values with a smaller relative difference count as equal.
 const ROUNDING: f64 = 1e-10;
-/// About the distance between ticks \[px\], and the parts into which they divide a short axis.
+/// The approximate distance between ticks \[px\], and the number of parts into which ticks divide a short axis.
 const PITCH: f64 = 75.0;
 const PARTS: f64 = 4.0;
-/// An axis so many times as far from zero as it is long counts from a round number: ticks have few digits.
+/// An axis whose distance from zero exceeds its length by this factor counts from a round number, so that its ticks
+/// have few digits.
 const FAR: f64 = 1e5;
 
-/// The least and the greatest value; `None` without any.
+/// Returns the least and the greatest value; `None` if there are no values.
 pub fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     values.map(|value| (value, value)).reduce(|(low, high), (least, most)| (low.min(least), high.max(most)))
 }
 
 impl Span {
-    /// Of an axis of this `length` \[px\] along which `values` lie.
+    /// Computes the range of an axis of this `length` \[px\] for `values`.
     pub fn new(axis: &PlotAxis, values: impl Iterator<Item = f64>, length: f64) -> Self {
         let usable = values.filter(|value| value.is_finite() && (!axis.logarithmic || *value > 0.0));
         let (lowest, highest) = axis.within.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
@@ -96,7 +97,7 @@ impl Span {
         }
         let room = if axis.range.is_some() { 0.0 } else { ROOM * (most - least) };
         let (mut low, mut high) = (least - room, most + room);
-        // What differs by rounding alone is one value.
+        // Values that differ only by rounding count as one value.
         let same = axis.range.is_none() && most - least <= ROUNDING * least.abs().max(most.abs());
         if low >= high || same {
             let room = if low == 0.0 { 1.0 } else { 0.1 * low.abs() };
@@ -114,9 +115,9 @@ impl Span {
         span
     }
 
-    /// Of a logarithmic axis, in exponents.
+    /// Computes the range of a logarithmic axis from the least and the greatest exponent.
     fn of_powers(least: f64, most: f64, length: f64) -> Self {
-        // No mark lies on an axis.
+        // The room keeps marks off the edge of the panel.
         let room = MARK * (most - least);
         let low = (least - room).floor();
         let high = (most + room).ceil().max(low + 1.0);
@@ -129,7 +130,7 @@ impl Span {
         Self { low, high, step, logarithmic: true, in_pi: false, offset: 0.0, power: 0, length }
     }
 
-    /// The number at a value's tick.
+    /// Returns the number that a tick at this value shows.
     fn shown(&self, value: f64) -> f64 {
         self.scaled(value - self.offset)
     }
@@ -153,18 +154,18 @@ impl Span {
         (value(self.low), value(self.high))
     }
 
-    /// Where on the axis a value is, 0 at its beginning and 1 at its end; not finite if it has no place there.
+    /// Returns the place of a value: 0 at the beginning of the axis, 1 at its end; not finite if it has no place on it.
     pub fn share(&self, value: f64) -> f64 {
         (self.shown(value) - self.low) / (self.high - self.low)
     }
 
-    /// The pixels of one unit.
+    /// Returns the length of one unit \[px\].
     pub fn scale(&self) -> f64 {
-        // Far from zero both have the same place.
+        // Without `share`: far from zero, the places of 0 and 1 would round to the same number.
         self.length * ((self.scaled(1.0) - self.scaled(0.0)) / (self.high - self.low))
     }
 
-    /// Makes the axis span so many times as much about its middle.
+    /// Multiplies the range by `factor` about its middle.
     pub fn widen(&mut self, factor: f64) {
         let more = 0.5 * (factor - 1.0) * (self.high - self.low);
         self.extend(more, more);
@@ -179,10 +180,10 @@ impl Span {
         (self.low, self.high) = (self.low - below, self.high + above);
         if !self.logarithmic {
             let least = (self.high - self.low) * PITCH.min(self.length / PARTS) / self.length;
-            // Halves of pi, or whole multiples.
+            // In units of pi: multiples of pi / 2, or of pi.
             self.step = if self.in_pi && least <= 0.5 { 0.5 } else { step(least) };
             if self.ticks().nth(1).is_none() {
-                // One number is no scale.
+                // A single tick would not show the scale.
                 self.step = step(0.4 * self.step);
             }
         }
@@ -205,7 +206,7 @@ impl Span {
         }
     }
 
-    /// The label, with what the ticks leave out: the offset, and in its unit the power of ten.
+    /// Returns the label with what the ticks omit: the offset after its name, and the power of ten in its unit.
     pub fn label(&self, label: &str) -> String {
         let power = (self.power != 0).then(|| power_of_ten(f64::from(self.power)));
         let offset = match self.offset {
@@ -221,19 +222,19 @@ impl Span {
     }
 }
 
-/// With so many significant digits.
+/// Rounds a value to a number of significant digits.
 pub(in crate::draw) fn significant(value: f64, digits: usize) -> f64 {
     format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
 }
 
-/// The first of 1, 2, 5, 10 ... that is not less.
+/// Returns the smallest of the numbers ..., 1, 2, 5, 10, ... that is not less than `least`.
 fn step(least: f64) -> f64 {
     let unit = libm::pow(10.0, libm::floor(libm::log10(least)));
     let steps = [1.0, 2.0, 5.0].map(|times| times * unit);
     steps.into_iter().find(|step| *step >= least * (1.0 - 1e-9)).unwrap_or(10.0 * unit)
 }
 
-/// A number with so many decimals, and zero without a sign.
+/// Formats a number with fixed decimals; zero has no sign.
 fn fixed(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     match text.strip_prefix('-') {
@@ -243,7 +244,7 @@ fn fixed(value: f64, decimals: usize) -> String {
     }
 }
 
-/// A multiple of half of pi, as in −π/2.
+/// Formats a multiple of pi, rounded to halves, as in −π/2.
 fn multiple_of_pi(share: f64) -> String {
     let halves = (2.0 * share).round();
     let sign = if halves < 0.0 { "−" } else { "" };
@@ -255,7 +256,7 @@ fn multiple_of_pi(share: f64) -> String {
     }
 }
 
-/// The power of ten of an exponent, as in 10⁻⁶.
+/// Formats a power of ten, as in 10⁻⁶.
 fn power_of_ten(exponent: f64) -> String {
     let digit = |sign: char| "⁰¹²³⁴⁵⁶⁷⁸⁹".chars().nth(sign.to_digit(10)? as usize);
     format!("10{}", format!("{exponent:.0}").chars().map(|sign| digit(sign).unwrap_or('⁻')).collect::<String>())
@@ -317,7 +318,7 @@ mod tests {
             let span = Span::new(&PlotAxis::default(), [value, value * (1.0 + 1e-15)].into_iter(), 400.0);
             assert!((span.share(value) - 0.5).abs() < 1e-9);
         }
-        // A spike beyond the limits widens nothing.
+        // A spike beyond the limits does not widen the axis.
         let axis = PlotAxis { within: Some((-1.0, 1.0)), ..PlotAxis::default() };
         let span = Span::new(&axis, [-0.5, 0.5, 1e6].into_iter(), 400.0);
         assert!((span.share(0.25) - 0.5).abs() < 1e-9 && span.share(1e6) > 1.0);

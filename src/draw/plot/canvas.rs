@@ -1,4 +1,4 @@
-//! Paths, circles and texts that have their place on the screen, and how SVG writes them.
+//! Paths, circles and texts with their places on the screen, and their SVG.
 
 use super::color::Color;
 use super::{Pixel, font};
@@ -7,12 +7,12 @@ use std::fmt::{self, Display};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stroke {
     pub color: Color,
-    /// In px.
+    /// The width \[px\].
     pub width: f64,
     pub dash: Dash,
 }
 
-/// Lengths of a line's dashes and gaps in turn \[px\].
+/// The lengths of a line's dashes and gaps in turn \[px\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dash(pub(super) &'static [f32]);
 
@@ -23,7 +23,7 @@ impl Dash {
     const DASH_DOT: Self = Self(&[9.0, 3.0, 2.0, 3.0]);
     const LONG: Self = Self(&[18.0, 4.0]);
     const DASH_DOT_DOT: Self = Self(&[9.0, 3.0, 2.0, 3.0, 2.0, 3.0]);
-    /// The most different ones first.
+    /// All dashes, the easiest to distinguish first.
     pub const ALL: [Self; 6] =
         [Self::SOLID, Self::DASHED, Self::DOTTED, Self::DASH_DOT, Self::LONG, Self::DASH_DOT_DOT];
 }
@@ -36,18 +36,19 @@ impl Stroke {
 
 #[derive(Debug)]
 pub(super) struct Canvas {
-    /// What it is, and what it shows, for people who do not see it.
+    /// The SVG's title and its description for screen readers.
     pub title: String,
     pub description: String,
     pub size: Pixel,
     pub layer: PlotLayer,
 }
 
-/// What is drawn, the first element below the others.
+/// Elements; each is drawn above those before it.
 #[derive(Debug, Default)]
 pub(super) struct PlotLayer(pub Vec<Element>);
 
-/// A window is a layer that is cut at a rectangle, whose upper left corner is the layer's origin.
+/// An element of a layer. A window is a layer that is clipped at a rectangle; the rectangle's upper left corner is the
+/// origin of the layer.
 #[derive(Debug)]
 pub(super) enum Element {
     Shape { outline: CanvasOutline, fill: Option<Color>, stroke: Option<Stroke> },
@@ -55,7 +56,8 @@ pub(super) enum Element {
     Window { corner: Pixel, size: Pixel, layer: PlotLayer },
 }
 
-/// A path is lines from corner to corner; what lies in an odd number of closed ones is filled.
+/// An outline. A path consists of pieces with straight lines between their corners. A fill covers the points inside an
+/// odd number of closed pieces.
 #[derive(Debug)]
 pub(super) enum CanvasOutline {
     Path { pieces: Vec<Vec<Pixel>>, closed: bool },
@@ -64,20 +66,20 @@ pub(super) enum CanvasOutline {
 
 #[derive(Debug)]
 pub(super) struct TextLine {
-    /// On its baseline.
+    /// The anchor's point on the baseline.
     pub at: Pixel,
     pub content: String,
-    /// Height of the font \[px\].
+    /// The font size \[px\].
     pub size: u32,
     pub anchor: Anchor,
     pub color: Color,
-    /// Whether a white rim keeps it readable over lines.
+    /// Whether a white rim keeps the text readable over lines.
     pub rim: bool,
-    /// Whether it runs upward.
+    /// Whether the text runs upward.
     pub upward: bool,
 }
 
-/// The part of a text that is at its place.
+/// The part of a text that is at its point.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Anchor {
     Start,
@@ -85,17 +87,17 @@ pub(super) enum Anchor {
     End,
 }
 
-/// The width of a text's white rim on either side \[px\].
+/// The width of a text's white rim on each side \[px\].
 pub(super) const RIM: f64 = 1.5;
 
 impl TextLine {
-    /// A black text without a rim, and without its middle if it is very long.
+    /// Creates a black text without a rim. A very long text loses its middle.
     pub fn new(at: Pixel, content: &str, size: u32, anchor: Anchor) -> Self {
         let content = font::drawn(content).into_owned();
         Self { at, content, size, anchor, color: Color::Black, rim: false, upward: false }
     }
 
-    /// Where its baseline is if its middle is at this height.
+    /// Returns the y of the baseline of a text whose middle is at this y \[px\].
     pub fn baseline(middle: f64, size: u32) -> f64 {
         middle + 0.5 * font::CAPITAL * f64::from(size)
     }
@@ -115,7 +117,7 @@ impl PlotLayer {
         self.0.push(Element::Shape { outline: CanvasOutline::Path { pieces, closed: true }, fill, stroke });
     }
 
-    /// A rectangle from its upper left corner.
+    /// Adds a rectangle with this upper left corner.
     pub fn rectangle(&mut self, (x, y): Pixel, (width, height): Pixel, fill: Option<Color>, stroke: Option<Stroke>) {
         self.area(vec![vec![(x, y), (x + width, y), (x + width, y + height), (x, y + height)]], fill, stroke);
     }
@@ -124,7 +126,7 @@ impl PlotLayer {
         self.0.push(Element::Shape { outline: CanvasOutline::Circle { center, radius }, fill, stroke });
     }
 
-    /// Whether everything has its place; nothing has one if the numbers that are drawn leave the range of f64.
+    /// Returns whether all coordinates are finite; they are not if the drawn numbers leave the range of f64.
     pub fn is_placed(&self) -> bool {
         let is_placed = |&(x, y): &Pixel| x.is_finite() && y.is_finite();
         self.0.iter().all(|element| match element {
@@ -145,7 +147,7 @@ impl PlotLayer {
 }
 
 impl Canvas {
-    /// The picture as SVG; texts stay texts.
+    /// Returns the picture as SVG, with texts as text elements.
     pub fn svg(&self) -> String {
         let mut clips: Vec<String> = Vec::new();
         for element in &self.layer.0 {
@@ -168,7 +170,7 @@ impl Canvas {
     }
 }
 
-/// The name of a clip. If two pictures stand on one page, clips of the same name are the same.
+/// Returns the id of a clip. If two pictures are on one page, clips with the same id are equal.
 fn clip((width, height): Pixel) -> String {
     format!("clip{}x{}", Short(width), Short(height))
 }
@@ -237,14 +239,14 @@ impl Display for TextLine {
     }
 }
 
-/// As text of XML, without what that cannot hold.
+/// Escapes a text for XML and removes control characters and others that XML does not allow.
 fn escaped(text: &str) -> String {
     let printable = |letter: &char| !letter.is_control() && !matches!(letter, '\u{fffe}' | '\u{ffff}');
     let text: String = text.chars().filter(printable).collect();
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-/// A number with two decimals at most: nobody sees a hundredth of a pixel.
+/// A number that is written with at most two decimals: a hundredth of a pixel is invisible.
 struct Short(f64);
 
 impl Display for Short {

@@ -1,4 +1,4 @@
-//! Colors that people with any color vision distinguish, on a screen and in gray print.
+//! Colors that people with any color vision can distinguish, on a screen and in gray print.
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Color {
@@ -12,21 +12,21 @@ pub enum Color {
     Gray,
     Pale,
     White,
-    /// A pale fill under lines; neighbors differ in hue and in lightness.
+    /// A pale fill under lines. Tints of successive numbers differ in hue and in lightness.
     Tint(usize),
 }
 
-/// Light and less light in turn.
+/// The tints, lighter and darker in turn.
 const TINTS: [&str; 14] = [
     "#eaf3fb", "#f3cfa8", "#e3f4e4", "#b4d2ea", "#fff4cc", "#d6bcda", "#fbe9ef", "#bad6b0", "#e4f7f8", "#e8bdb6",
     "#f3eefb", "#d9cf9e", "#f7eee2", "#a9d4d2",
 ];
 
 impl Color {
-    /// How many different tints there are; those of even numbers are lighter than those of odd ones.
+    /// The number of different tints. Even tints are lighter than odd ones.
     pub const TINTS: usize = TINTS.len();
 
-    /// The notation of SVG and CSS; for lines and marks the colors of Okabe and Ito (2008).
+    /// Returns the color as `#rrggbb`. The colors of lines and marks are those of Okabe and Ito (2008).
     pub const fn hex(self) -> &'static str {
         match self {
             Self::Black => "#000000",
@@ -52,7 +52,7 @@ impl Color {
 mod tests {
     use super::*;
 
-    /// Lightness CIE L* of a color, 0 to 100.
+    /// The lightness CIE L* of a color, from 0 to 100.
     fn lightness(color: Color) -> f64 {
         let [red, green, blue] = color.rgb().map(|value| {
             let value = f64::from(value) / 255.0;

@@ -1,4 +1,4 @@
-//! A curve on the screen, cut where it leaves the panel and without corners that nobody sees.
+//! Curves on the screen, clipped at the panel and reduced to the corners that are visible.
 //!
 //! ```text
 //!     points [px] --parts inside--> pieces --Douglas and Peucker 1973--> the fewest corners within a tenth of a pixel
@@ -6,14 +6,15 @@
 
 use super::Pixel;
 
-/// Corners that are left out lie no farther from the curve than this \[px\].
+/// Omitted corners lie no farther than this from the drawn curve \[px\].
 const SEEN: f64 = 0.1;
-/// A curve that needs more corners than this is drawn more coarsely.
+/// The largest number of corners of a piece. If more are needed, it is drawn more coarsely.
 const MOST: usize = 4000;
-/// How far beyond the panel a curve goes on \[px\], so that its end and the corners of wide strokes are not seen.
+/// How far a curve continues beyond the panel \[px\], which hides its end and the corners of wide strokes.
 const BEYOND: f64 = 20.0;
 
-/// For each side of a panel of some width and height, how far a point is inside of it, or just beyond.
+/// For each side of a panel of this size, the distance of a point from the line [`BEYOND`] outside that side \[px\];
+/// negative outside.
 const SIDES: [fn(Pixel, Pixel) -> f64; 4] = [
     |(x, _), _| x + BEYOND,
     |(x, _), (width, _)| width + BEYOND - x,
@@ -21,7 +22,7 @@ const SIDES: [fn(Pixel, Pixel) -> f64; 4] = [
     |(_, y), (_, height)| height + BEYOND - y,
 ];
 
-/// The pieces of the curve through `points` that lie within `width` and `height` \[px\], or just beyond.
+/// Returns the pieces of the curve through `points` that lie within a panel of this size \[px\], or just beyond.
 pub(super) fn visible(points: &[Pixel], size: Pixel) -> Vec<Vec<Pixel>> {
     let mut pieces: Vec<Vec<Pixel>> = Vec::new();
     let mut open = false;
@@ -39,11 +40,10 @@ pub(super) fn visible(points: &[Pixel], size: Pixel) -> Vec<Vec<Pixel>> {
     pieces.iter().map(|piece| thinned(piece)).collect()
 }
 
-/// The part of the area within a closed loop of `corners` that lies within the panel, or just beyond: its corners.
+/// Clips the area inside a closed loop of `corners` just beyond a panel of this size \[px\]. Returns the new corners.
 pub(super) fn enclosed(corners: &[Pixel], size: Pixel) -> Vec<Pixel> {
     let Some((&first, rest)) = corners.split_first() else { return Vec::new() };
-    // A loop's ends are one point; where it has gone half its way it is cut, so that each half is a curve with two
-    // ends.
+    // The ends of a loop are the same point. It is cut in half, so that each half is a curve with two ends.
     let (once, again) = rest.split_at(rest.len() / 2);
     let turn = once.last().copied().unwrap_or(first);
     let halves = [[&[first], once].concat(), [&[turn], again, &[first]].concat()];
@@ -55,7 +55,7 @@ pub(super) fn enclosed(corners: &[Pixel], size: Pixel) -> Vec<Pixel> {
     SIDES.iter().fold(thin.collect(), |corners, side| cut(&corners, |point| side(point, size)))
 }
 
-/// The part of a polygon whose points are `inside` by zero or more (Sutherland and Hodgman 1974).
+/// Clips a polygon to the points at which `inside` is not negative (Sutherland and Hodgman 1974).
 fn cut(corners: &[Pixel], inside: impl Fn(Pixel) -> f64) -> Vec<Pixel> {
     let mut kept = Vec::with_capacity(corners.len());
     for (at, &to) in corners.iter().enumerate() {
@@ -72,7 +72,7 @@ fn cut(corners: &[Pixel], inside: impl Fn(Pixel) -> f64) -> Vec<Pixel> {
     kept
 }
 
-/// The part of a segment inside of the panel (Liang and Barsky 1984).
+/// Clips a segment to the panel, or just beyond (Liang and Barsky 1984); `None` if nothing of it remains.
 fn within(from: Pixel, to: Pixel, size: Pixel) -> Option<(Pixel, Pixel)> {
     let (mut first, mut last) = (0.0_f64, 1.0_f64);
     for side in SIDES {
@@ -105,7 +105,7 @@ fn thinned(points: &[Pixel]) -> Vec<Pixel> {
     }
 }
 
-/// Corners so that no point is farther than `tolerance` from the line through them.
+/// Returns corners whose connecting line is nowhere farther than `tolerance` from a point.
 fn corners(points: &[Pixel], tolerance: f64) -> Vec<Pixel> {
     let Some(end) = points.len().checked_sub(1) else { return Vec::new() };
     let mut kept: Vec<bool> = (0..=end).map(|at| at == 0 || at == end).collect();

@@ -1,7 +1,7 @@
-//! The one font of all pictures, embedded so that they are the same everywhere, and the room that texts take.
+//! The one font of all pictures, and the sizes of texts. It is embedded so that pictures are the same on every machine.
 //!
-//! `DejaVuSans.ttf` is a subset of DejaVu Sans 2.37: Latin, Greek and Cyrillic letters and the signs in use, without
-//! hints and layout tables. Its license is in `DejaVuSans.license.txt`. fontTools 4 made it by
+//! `DejaVuSans.ttf` is a subset of DejaVu Sans 2.37: Latin, Greek and Cyrillic letters and the symbols in use, without
+//! hints and layout tables. Its license is in `DejaVuSans.license.txt`. fontTools 4 created it with
 //!
 //! ```text
 //!     pyftsubset DejaVuSans.ttf --layout-features= --no-hinting --notdef-outline
@@ -16,33 +16,33 @@ use std::borrow::Cow;
 use ttf_parser::{Face, GlyphId};
 
 const BYTES: &[u8] = include_bytes!("DejaVuSans.ttf");
-/// What an SVG asks for.
+/// The font family in SVG.
 pub(super) const FAMILY: &str = "DejaVu Sans, sans-serif";
 
-/// The height of capital letters above the baseline, as a share of the font's size.
+/// The height of capital letters as a share of the font size.
 pub(super) const CAPITAL: f64 = 0.73;
 
-/// The font; `None` would mean that the program is damaged.
+/// Returns the font; it is `None` only if the program is damaged.
 pub(super) fn face() -> Option<Face<'static>> {
     Face::parse(BYTES, 0).ok()
 }
 
-/// The glyphs of a line and how far each one advances, in the font's units.
+/// Returns the glyphs of a line with their advances, in the font's units.
 pub(super) fn glyphs(face: &Face, line: &str) -> impl Iterator<Item = (GlyphId, f64)> {
     line.chars().map(|letter| {
-        // The font's first glyph stands for letters that it does not have.
+        // The font's first glyph replaces characters that it does not contain.
         let glyph = face.glyph_index(letter).unwrap_or(GlyphId(0));
         (glyph, f64::from(face.glyph_hor_advance(glyph).unwrap_or_default()))
     })
 }
 
-/// A line of text is drawn with at most so many characters, and a text of several lines with at most so many.
+/// The largest number of characters drawn of a line, and of a text of several lines.
 const LINE: usize = 400;
 const TEXT: usize = 4000;
-/// How many of them a longer one keeps at its end.
+/// The number of characters that a shortened text keeps at its end.
 const TAIL: usize = 40;
 
-/// The text without its middle if it is longer than it is drawn.
+/// Replaces the middle of a text of more than `most` characters by an ellipsis.
 fn shortened(text: &str, most: usize) -> Cow<'_, str> {
     if text.chars().nth(most).is_none() {
         return text.into();
@@ -52,12 +52,12 @@ fn shortened(text: &str, most: usize) -> Cow<'_, str> {
     format!("{head}…{tail}").into()
 }
 
-/// A text as it is drawn.
+/// Returns a text of several lines as it is drawn.
 pub(super) fn readable(text: &str) -> Cow<'_, str> {
     shortened(text, TEXT)
 }
 
-/// A line as it is drawn.
+/// Returns a line as it is drawn.
 pub(super) fn drawn(text: &str) -> Cow<'_, str> {
     match visible(text) {
         Cow::Borrowed(text) => shortened(text, LINE),
@@ -65,7 +65,7 @@ pub(super) fn drawn(text: &str) -> Cow<'_, str> {
     }
 }
 
-/// The width of a line of text \[px\].
+/// Returns the width of a line of text \[px\].
 pub(super) fn width(text: &str, size: u32) -> f64 {
     let width = |face: Face| {
         let units: f64 = glyphs(&face, &drawn(text)).map(|(_, advance)| advance).sum();
@@ -74,7 +74,7 @@ pub(super) fn width(text: &str, size: u32) -> f64 {
     face().map_or(0.0, width)
 }
 
-/// The text in lines of at most `room` \[px\], broken at spaces; a longer word keeps its own line.
+/// Breaks a text at spaces into lines of at most `room` \[px\]. A wider word has a line of its own.
 pub(super) fn lines(text: &str, size: u32, room: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for paragraph in readable(text).lines() {
@@ -92,38 +92,38 @@ pub(super) fn lines(text: &str, size: u32, room: f64) -> Vec<String> {
     lines
 }
 
-/// The rectangle that a text takes \[px\].
+/// The rectangle of a text \[px\].
 #[derive(Debug, Clone, Copy)]
 pub struct TextBox {
     pub middle: Pixel,
-    /// Half its width and height.
+    /// Half the width and half the height.
     pub half: Pixel,
 }
 
 impl TextBox {
-    /// Half the width and height of a line of text in a font of this size, with a small margin.
+    /// Returns half the width and half the height of a line of text in a font of this size, with a small margin.
     pub fn half_of(text: &str, size: u32) -> Pixel {
         (0.5 * width(text, size) + 3.0, 0.5 * CAPITAL * f64::from(size) + 3.0)
     }
 
-    /// A square around a point.
+    /// Returns the square around a point; `reach` is half its side.
     pub(super) fn around(middle: Pixel, reach: f64) -> Self {
         Self { middle, half: (reach, reach) }
     }
 
-    /// Whether it lies within a panel of this size.
+    /// Returns whether the rectangle lies within a panel of this size.
     pub fn is_within(&self, (width, height): Pixel) -> bool {
         let ((x, y), (across, up)) = (self.middle, self.half);
         across <= x && x <= width - across && up <= y && y <= height - up
     }
 
-    /// Whether it covers another one, or almost touches its side.
+    /// Returns whether the rectangle overlaps another, or comes closer than 2 px to its left or right side.
     pub(super) fn meets(&self, other: &Self) -> bool {
         let (dx, dy) = ((self.middle.0 - other.middle.0).abs(), (self.middle.1 - other.middle.1).abs());
         dx < self.half.0 + other.half.0 + 2.0 && dy < self.half.1 + other.half.1
     }
 
-    /// The distance of a point from its edge; negative inside.
+    /// Returns the distance of a point from the edge of the rectangle \[px\]; negative inside.
     pub fn distance(&self, (x, y): Pixel) -> f64 {
         let (across, up) = ((x - self.middle.0).abs() - self.half.0, (y - self.middle.1).abs() - self.half.1);
         if across > 0.0 || up > 0.0 { libm::hypot(across.max(0.0), up.max(0.0)) } else { across.max(up) }

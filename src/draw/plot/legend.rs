@@ -1,26 +1,25 @@
-//! The meanings of a picture's signs.
+//! Legends: the symbols of a picture and their meanings.
 
 use super::canvas::{Anchor, PlotLayer, Stroke, TextLine};
 use super::color::Color;
 use super::mark::{MARK, Mark, arrow};
 use super::{Pixel, font};
 
-/// A sign and its meaning.
+/// A symbol and its meaning.
 #[derive(Debug, Clone)]
 pub struct LegendEntry {
-    /// In words; on several lines if it has line breaks, or is too long for one.
+    /// The meaning in words. It takes several lines if it has line breaks or is too long.
     pub name: String,
     pub key: LegendKey,
 }
 
-/// The sign of a line, a mark, an area, or an arrow or a distance, whose length is in units of the first panel's x
-/// axis.
+/// The symbol of an entry. The lengths of arrows and distances are in units of the first panel's x axis.
 #[derive(Debug, Clone)]
 pub enum LegendKey {
     Line(Stroke),
     Mark(Mark, Color),
     Fill(Color),
-    /// A line in areas of these colors, side by side.
+    /// A line across areas of these colors, side by side.
     LineIn(Stroke, Vec<Color>),
     Arrow {
         stroke: Stroke,
@@ -35,24 +34,24 @@ impl LegendEntry {
     }
 }
 
-/// Height of the font, from one row to the next, and from one line of an entry to the next \[px\].
+/// Font size, distance between rows, and distance between lines of one entry \[px\].
 const SIZE: u32 = 12;
 const ROW: f64 = 20.0;
 const LINE: f64 = 16.0;
 /// The width of a key, long enough for two periods of most dashes \[px\].
 const KEY: f64 = 36.0;
-/// From a key to its name, and from one column to the next \[px\].
+/// Distance from a key to its name, and from one column to the next \[px\].
 const GAP: f64 = 8.0;
 const NEXT: f64 = 22.0;
 
 /// A legend in as many columns as fit below the panels.
 pub(super) struct Legend<'p> {
     columns: Vec<Column<'p>>,
-    /// The pixels of one unit of the first panel's x axis.
+    /// The length of one unit of the first panel's x axis \[px\].
     scale: f64,
 }
 
-/// Entries below each other, each with the lines of its name, and the widths of the widest key and line \[px\].
+/// Entries below each other with the lines of their names, and the widths of the widest key and line \[px\].
 struct Column<'p> {
     entries: &'p [LegendEntry],
     lines: Vec<Vec<String>>,
@@ -61,7 +60,7 @@ struct Column<'p> {
 }
 
 impl<'p> Column<'p> {
-    /// Entries in a column that is at most so wide \[px\].
+    /// Creates a column that is at most `most` wide \[px\].
     fn new(entries: &'p [LegendEntry], most: f64, scale: f64) -> Self {
         let key = entries.iter().map(|entry| entry.key.width(scale)).fold(0.0, f64::max);
         let lines: Vec<_> = entries.iter().map(|entry| font::lines(&entry.name, SIZE, most - key - GAP)).collect();
@@ -79,7 +78,7 @@ impl<'p> Column<'p> {
 }
 
 impl<'p> Legend<'p> {
-    /// A legend at most as wide as the panels \[px\]; one unit of the first one's x axis has `scale` pixels.
+    /// Creates a legend at most `width` wide \[px\]. One unit of the first panel's x axis has `scale` pixels.
     pub fn new(entries: &'p [LegendEntry], width: f64, scale: f64) -> Self {
         let columns = |rows: usize| -> Vec<Column> {
             entries.chunks(rows).map(|entries| Column::new(entries, width, scale)).collect()
@@ -92,7 +91,7 @@ impl<'p> Legend<'p> {
         (total(&self.columns), self.columns.iter().map(|column| column.heights().sum()).fold(0.0, f64::max))
     }
 
-    /// Draws it with its upper left corner at a pixel.
+    /// Draws the legend with its upper left corner at this pixel.
     pub fn draw(&self, (mut left, top): Pixel, out: &mut PlotLayer) {
         for column in &self.columns {
             let mut middle = top + 0.5 * ROW;
@@ -123,7 +122,7 @@ impl LegendKey {
         }
     }
 
-    /// Draws it from a pixel on, at most `most` wide, in whose middle a mark is.
+    /// Draws the key to the right of a pixel; a mark is centered in the width `most` \[px\].
     fn draw(&self, (x, y): Pixel, scale: f64, most: f64, out: &mut PlotLayer) {
         let width = self.width(scale);
         let rectangle = |x, width, fill, out: &mut PlotLayer| {

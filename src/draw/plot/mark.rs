@@ -11,29 +11,29 @@ pub enum Mark {
     Ring,
     Square,
     Triangle,
-    /// Triangles that point along x, and against it.
+    /// Triangles that point to the right and to the left.
     Right,
     Left,
-    /// A square on its corner.
+    /// A square that stands on a corner.
     Diamond,
     Star,
     Cross,
-    /// The sign of a center of gravity.
+    /// The symbol of a CoG: a disc with two filled quarters.
     Center,
 }
 
-/// The usual size of a mark \[px\].
+/// The usual size of a mark: half its width \[px\].
 pub const MARK: f64 = 4.0;
 
-/// Length and half the width of an arrow's head \[px\], and the most that it takes of a short arrow.
+/// Length and half width of an arrow's head \[px\], and the largest share of a short arrow that the head takes.
 const HEAD: f64 = 10.0;
 const HALF_HEAD: f64 = 3.6;
 const SHORT_HEAD: f64 = 0.6;
-/// The white rim of an arrow \[px\].
+/// The width of the white rim on each side of an arrow \[px\].
 const RIM: f64 = 0.8;
 
 impl Mark {
-    /// Draws it about a point, half as wide as `size`.
+    /// Draws the mark around a point; `size` is half its width \[px\].
     pub(super) fn draw(self, (x, y): Pixel, color: Color, size: f64, out: &mut PlotLayer) {
         let corners = |directions: &[(f64, f64)]| -> Vec<Pixel> {
             directions.iter().map(|&(right, up)| (x + size * right, y - size * up)).collect()
@@ -74,7 +74,7 @@ impl Mark {
 pub(super) fn arrow(from: Pixel, to: Pixel, stroke: Stroke, out: &mut PlotLayer) {
     let (dx, dy) = (to.0 - from.0, to.1 - from.1);
     let length = libm::hypot(dx, dy);
-    // Less than a pixel has no direction.
+    // An arrow shorter than a pixel has no visible direction.
     if length < 1.0 {
         return;
     }
@@ -82,11 +82,11 @@ pub(super) fn arrow(from: Pixel, to: Pixel, stroke: Stroke, out: &mut PlotLayer)
     let head = HEAD.min(SHORT_HEAD * length);
     let half = HALF_HEAD * head / HEAD;
     let base = (to.0 - head * along.0, to.1 - head * along.1);
-    // The shaft ends inside of the head.
+    // The shaft ends inside the head.
     let end = (base.0 + 0.1 * head * along.0, base.1 + 0.1 * head * along.1);
     let side = |sign: f64| (base.0 + sign * half * across.0, base.1 + sign * half * across.1);
     let (shaft, tip) = (vec![from, end], vec![vec![to, side(1.0), side(-1.0)]]);
-    // A white rim sets it off from the background; between dashes it would be visible.
+    // A white rim separates the shaft from the background. Dashed shafts have none: it would show between the dashes.
     if stroke.dash == Dash::SOLID {
         out.line(shaft.clone(), Stroke::solid(Color::White, stroke.width + 2.0 * RIM));
     }

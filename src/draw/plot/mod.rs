@@ -1,4 +1,4 @@
-//! Pictures, as SVG and PNG.
+//! Pictures as SVG and PNG.
 //!
 //! ```text
 //!     Picture: rows of panels, a legend
@@ -7,8 +7,8 @@
 //!                                                                                                 --png--> PNG
 //! ```
 //!
-//! The same input gives the same bytes everywhere: texts are measured, and drawn in a PNG, with one embedded font,
-//! never with the system's. However many points a curve has, an SVG has no more of them than are seen.
+//! The same input gives the same bytes on every machine. Texts are measured, and drawn in a PNG, with an embedded font;
+//! fonts of the system are never used. An SVG contains only the points of a curve that make a visible difference.
 
 mod color;
 mod font;
@@ -38,63 +38,66 @@ use legend::Legend;
 use panel::{PlacedPanel, Track};
 use serde::Serialize;
 
-/// A point or a distance on the screen: right and down \[px\].
+/// A point or a distance on the screen: to the right, then down \[px\].
 pub type Pixel = (f64, f64);
 
 /// A point in the coordinates of a panel's axes.
 pub type PlotPoint = (f64, f64);
 
-/// Panels in rows, and a legend below them.
+/// A title, rows of panels, and a legend below them.
 #[derive(Debug, Clone, Default)]
 pub struct Picture {
-    /// Above the picture.
+    /// The text above the panels.
     pub title: String,
-    /// From top to bottom; panels of a row stand side by side, those of a column below each other.
+    /// The rows from top to bottom. The panels of a row are side by side, and the panels of all rows align in columns.
     pub rows: Vec<Vec<Panel>>,
-    /// The meanings of the signs.
+    /// The symbols and their meanings.
     pub legend: Vec<LegendEntry>,
 }
 
-/// A picture as SVG, and where its data are in it.
+/// A picture as SVG, and the places of its panels.
 #[derive(Debug, Clone, Default)]
 pub struct Rendered {
     pub svg: String,
-    /// The inside of each panel that is drawn, row by row.
+    /// The area inside the axes of each panel that is drawn, row by row.
     pub windows: Vec<PlotWindow>,
 }
 
-/// The inside of a panel's axes in the picture: what a cursor needs to know.
+/// The area inside a panel's axes, in the picture and in values; it places a cursor.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct PlotWindow {
-    /// Its upper left corner \[px\].
+    /// The upper left corner \[px\].
     pub corner: Pixel,
-    /// Its width and height \[px\].
+    /// Width and height \[px\].
     pub size: Pixel,
-    /// The values at the left and right end of its x axis, and at the lower and upper end of its y axis.
+    /// The values at the left and right end of the x axis, and at the lower and upper end of the y axis.
     pub x: (f64, f64),
     pub y: (f64, f64),
 }
 
-/// Around the whole picture \[px\].
+/// The margin around the whole picture \[px\].
 const EDGE: f64 = 12.0;
-/// Between panels, and between them and the legend \[px\].
+/// The gap between panels, and between panels and legend \[px\].
 const GAP: f64 = 12.0;
-/// Height of the title's font \[px\].
+/// The font size of the title \[px\].
 const TITLE: u32 = 16;
 
 impl Picture {
-    /// The picture as SVG; `None` if nothing in it can be drawn, or not to scale.
+    /// Returns the picture as SVG; `None` if nothing in it can be drawn, or if a coordinate or an axis is not finite.
     pub fn svg(&self) -> Option<String> {
         self.render().map(|rendered| rendered.svg)
     }
 
-    /// The picture as SVG, with the places of its panels; `None` as for [`Picture::svg`].
+    /// Returns the picture as SVG with the places of its panels; `None` as for [`Picture::svg`].
     pub fn render(&self) -> Option<Rendered> {
         let (canvas, windows) = self.layout()?;
         Some(Rendered { svg: canvas.svg(), windows })
     }
 
-    /// The picture as PNG, twice as large as the SVG says; `None` as for [`Picture::svg`].
+    /// Returns the picture as PNG, with twice the SVG's width and height in pixels; `None` as for [`Picture::svg`].
+    ///
+    /// # Errors
+    /// Returns an error if the picture has too many pixels or cannot be encoded.
     pub fn png(&self) -> Result<Option<Vec<u8>>> {
         self.layout().map(|(canvas, _)| png::png(&canvas)).transpose()
     }
@@ -144,7 +147,7 @@ impl Picture {
         (canvas.layer.is_placed() && windows.iter().all(is_scaled)).then_some((canvas, windows))
     }
 
-    /// What the panels and the legend say, in sentences.
+    /// Describes the panels and the legend in sentences, for the SVG's `desc`.
     fn description<'p>(&self, panels: impl Iterator<Item = &'p PlacedPanel<'p>>) -> String {
         let axes = |Panel { x, y, .. }: &Panel| {
             Some(format!("{} against {}", y.label, x.label)).filter(|_| !y.label.is_empty() && !x.label.is_empty())

@@ -1,4 +1,4 @@
-//! A panel: its axes on the screen, and shapes within them.
+//! Panels: axes on the screen, and shapes inside them.
 
 use super::axis::{PlotArea, PlotAxis, Span, Tick};
 use super::canvas::{Anchor, Element, PlotLayer, Stroke, TextLine};
@@ -8,23 +8,23 @@ use super::{Pixel, PlotPoint, font};
 
 #[derive(Debug, Clone)]
 pub struct Panel {
-    /// Above it; lines after the first are smaller.
+    /// The text above the panel; lines after the first are smaller.
     pub title: String,
     pub x: PlotAxis,
     pub y: PlotAxis,
-    /// Width and height inside of the axes \[px\].
+    /// Width and height inside the axes \[px\].
     pub size: Pixel,
     /// Whether the axes are drawn.
     pub framed: bool,
-    /// Whether a unit is as long on both axes, which then may span more than they must.
+    /// Whether both axes have the same scale. If so, an axis may span more than the shapes need.
     pub equal: bool,
     /// Shaded intervals in the background, in the order of x.
     pub bands: Vec<Band>,
-    /// What is drawn, the first one below the others.
+    /// The shapes; each is drawn above those before it.
     pub shapes: Vec<PlotShape>,
 }
 
-/// An interval of x that is shaded with a pale color, and a letter at its upper end; a narrow one is a line.
+/// A shaded interval of x with a letter at the top of the panel. A band too narrow to be shaded is drawn as a line.
 #[derive(Debug, Clone)]
 pub struct Band {
     pub from: f64,
@@ -33,7 +33,7 @@ pub struct Band {
     pub fill: Color,
 }
 
-/// A row or a column of panels: its length inside of the axes, and what it needs before and after them \[px\].
+/// The size of a row or a column of panels: inside the axes, and before and after them \[px\].
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Track {
     pub before: f64,
@@ -42,7 +42,7 @@ pub(super) struct Track {
 }
 
 impl Track {
-    /// The most that any of these needs.
+    /// Returns the greatest of each length.
     pub fn most(tracks: impl Iterator<Item = Self>) -> Self {
         tracks.fold(Self::default(), |most, track| Self {
             before: most.before.max(track.before),
@@ -56,26 +56,26 @@ impl Track {
     }
 }
 
-/// Heights of the fonts of titles, labels and letters, and of numbers and smaller titles \[px\].
+/// The font size of titles, labels and letters \[px\].
 const LABEL: u32 = 14;
-/// The least height of a label's font beside a low panel \[px\].
+/// The smallest font size of the label of a low panel's y axis, and the font size of numbers and smaller titles \[px\].
 const SMALL: u32 = 9;
 const NUMBER: u32 = 12;
-/// From one line of a panel's title to the next \[px\].
+/// The distance between lines of a panel's title \[px\].
 const LINE: f64 = 18.0;
-/// The length of a tick, and from a tick to its number \[px\].
+/// The length of a tick, and the distance from a tick to its number \[px\].
 const TICK: f64 = 5.0;
 const NEAR: f64 = 3.0;
-/// The room of the labels of the x axis and of the y axis \[px\].
+/// The room for the labels of the x axis and the y axis \[px\].
 const BELOW: f64 = 22.0;
 const LEFT: f64 = 30.0;
-/// Around a panel without axes, and above one with axes \[px\].
+/// The margin of a panel without axes, and the least margin above and to the right of axes \[px\].
 const BARE: f64 = 6.0;
 const ABOVE: f64 = 10.0;
-/// From the axes to the letters of bands, and from one letter to the next below it \[px\].
+/// The distance from the axes to the letters of bands, and from one letter to the letter below it \[px\].
 const MARGIN: f64 = 6.0;
 const STORY: f64 = 16.0;
-/// Letters of bands closer than this stand below each other \[px\], at most so many.
+/// Letters of bands that are closer than this stand below each other \[px\], in at most `STORIES` rows.
 const ROOM: f64 = 14.0;
 const STORIES: usize = 4;
 
@@ -84,13 +84,13 @@ const GRID: Stroke = Stroke::solid(Color::Pale, 1.0);
 const EDGE: Stroke = Stroke::solid(Color::Gray, 0.8);
 
 impl Panel {
-    /// A panel of the usual size with these axes and nothing in it.
+    /// Creates an empty panel of the usual size with these axes.
     pub fn new(x: PlotAxis, y: PlotAxis) -> Self {
         let (title, bands, shapes) = (String::new(), Vec::new(), Vec::new());
         Self { title, x, y, size: (540.0, 420.0), framed: true, equal: false, bands, shapes }
     }
 
-    /// The title, broken where the panel ends, and which lines belong to its first one.
+    /// Returns the title in lines no wider than the panel, each with whether it is part of the first, larger line.
     fn title_lines(&self) -> Vec<(String, bool)> {
         let (first, rest) = self.title.split_once('\n').unwrap_or((&self.title, ""));
         let lines = |text, size| font::lines(text, size, self.size.0);
@@ -99,7 +99,7 @@ impl Panel {
     }
 }
 
-/// A panel whose axes have their place on the screen.
+/// A panel whose axes have their ranges and lengths.
 #[derive(Debug)]
 pub(super) struct PlacedPanel<'p> {
     pub panel: &'p Panel,
@@ -107,7 +107,7 @@ pub(super) struct PlacedPanel<'p> {
 }
 
 impl<'p> PlacedPanel<'p> {
-    /// The panel; `None` if nothing in it has a place on its axes.
+    /// Computes the axes of a panel; `None` if nothing in it has a place on them.
     pub fn new(panel: &'p Panel) -> Option<Self> {
         let (width, height) = panel.size;
         let points: Vec<PlotPoint> = panel.shapes.iter().flat_map(PlotShape::extent).collect();
@@ -121,7 +121,7 @@ impl<'p> PlacedPanel<'p> {
         let mut placed = Self { panel, area: PlotArea { x, y } };
         let stories = placed.letters().iter().map(|letter| letter.story + 1).max();
         if let (Some(stories), None) = (stories, panel.y.range) {
-            // No curve runs through the letters.
+            // The y axis leaves room for the letters above the curves.
             placed.area.y.leave(MARGIN + stories as f64 * STORY);
         }
         let on = |value: f64, axis: &PlotAxis| value.is_finite() && (!axis.logarithmic || value > 0.0);
@@ -129,7 +129,7 @@ impl<'p> PlacedPanel<'p> {
         is_drawn.then_some(placed)
     }
 
-    /// The room that it needs across and down.
+    /// Returns the room that the panel needs horizontally and vertically.
     pub fn tracks(&self) -> [Track; 2] {
         let Panel { x, y, framed, size: (width, height), .. } = self.panel;
         let title = self.panel.title_lines().len() as f64 * LINE;
@@ -141,13 +141,13 @@ impl<'p> PlacedPanel<'p> {
             let width = |tick: Tick| font::width(&tick.text, NUMBER);
             let widest = self.area.y.ticks().map(width).fold(0.0, f64::max);
             left = if y.bare { ABOVE } else { widest + TICK + NEAR + label(y, LEFT) };
-            // Half the last number may stand beyond the axis.
+            // Half of the last number may extend beyond the axis.
             right = self.area.x.ticks().last().map_or(0.0, |tick| 0.5 * width(tick)).max(ABOVE);
         }
         [Track { before: left, inside: *width, after: right }, Track { before: top, inside: *height, after: bottom }]
     }
 
-    /// Draws it with the upper left corner inside of its axes at `corner`; its label is so far to the `left` of them.
+    /// Draws the panel. `corner` is the upper left corner of the axes; the y axis's label is `left` px to their left.
     pub fn draw(&self, corner: Pixel, left: f64, out: &mut PlotLayer) {
         let panel = self.panel;
         let title = panel.title_lines();
@@ -186,7 +186,7 @@ impl<'p> PlacedPanel<'p> {
         }
     }
 
-    /// Both axes with their ticks, numbers and labels.
+    /// Draws both axes with their ticks, numbers and labels.
     fn axes(&self, (left, top): Pixel, room: f64, out: &mut PlotLayer) {
         let Panel { x, y, size: (width, height), .. } = self.panel;
         let (middle, bottom) = ((left + 0.5 * width, top + 0.5 * height), top + height);
@@ -216,7 +216,7 @@ impl<'p> PlacedPanel<'p> {
         out.rectangle((left, top), (*width, *height), None, Some(AXIS));
     }
 
-    /// Where a band begins and ends \[px\].
+    /// Returns where a band begins and ends \[px\]; `None` if it has no place on the axis.
     fn sides(&self, band: &Band) -> Option<(f64, f64)> {
         let side = |value| Some(self.panel.size.0 * self.area.x.share(value)).filter(|side| side.is_finite());
         let (from, to) = (side(band.from)?, side(band.to)?);
@@ -233,7 +233,7 @@ impl<'p> PlacedPanel<'p> {
         out.lines(vec![edge(from), edge(to)], EDGE);
     }
 
-    /// The letters of bands; those of narrow bands stand below each other.
+    /// Places the letters of bands. The letters of narrow bands stand below each other.
     fn letters(&self) -> Vec<BandLetter<'p>> {
         let width = self.panel.size.0;
         let mut ends = [f64::NEG_INFINITY; STORIES];
@@ -253,10 +253,10 @@ impl<'p> PlacedPanel<'p> {
 
 struct BandLetter<'a> {
     text: &'a str,
-    /// The middle of its width \[px\].
+    /// The x of the letter's middle \[px\].
     middle: f64,
-    /// How many other letters stand above it.
+    /// The row of the letter, from 0 at the top.
     story: usize,
-    /// Whether it is wider than its band.
+    /// Whether the letter is wider than its band.
     is_wide: bool,
 }

@@ -1,4 +1,4 @@
-//! A picture as pixels (the only user of tiny-skia and png).
+//! Pictures as PNG. This is the only user of tiny-skia and png.
 
 use super::canvas::{Anchor, Canvas, CanvasOutline, Element, PlotLayer, RIM, Stroke, TextLine};
 use super::color::Color;
@@ -7,13 +7,13 @@ use crate::{Error, Reason, Result};
 use tiny_skia::{FillRule, LineJoin, Mask, Paint, Path, PathBuilder, Pixmap, Rect, StrokeDash, Transform};
 use ttf_parser::OutlineBuilder;
 
-/// How much larger it is than the SVG says.
+/// Pixels of the PNG per pixel of the SVG.
 const SCALE: f32 = 2.0;
 
-/// Pixels of a meter of paper: 192 per inch, as an SVG has 96.
+/// Pixels per meter of paper: 192 per inch, as an SVG has 96.
 const DENSITY: u32 = 7559;
 
-/// The most pixels, of four bytes each.
+/// The largest number of pixels, of four bytes each.
 const MOST: u64 = 1 << 26;
 
 pub(super) fn png(canvas: &Canvas) -> Result<Vec<u8>> {
@@ -27,7 +27,7 @@ pub(super) fn png(canvas: &Canvas) -> Result<Vec<u8>> {
     encoded(&pixels, &canvas.title).map_err(|error| refused(&error.to_string()))
 }
 
-/// As PNG, of which no pixel is transparent.
+/// Encodes pixels as PNG without transparency.
 fn encoded(pixels: &Pixmap, title: &str) -> std::result::Result<Vec<u8>, png::EncodingError> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, pixels.width(), pixels.height());
@@ -41,10 +41,10 @@ fn encoded(pixels: &Pixmap, title: &str) -> std::result::Result<Vec<u8>, png::En
     Ok(bytes)
 }
 
-/// What paints a layer.
+/// Paints a layer into pixels.
 struct Brush<'p> {
     pixels: &'p mut Pixmap,
-    /// From the layer to the pixels.
+    /// The transformation from the layer to the pixels.
     place: Transform,
     clip: Option<Mask>,
 }
@@ -104,7 +104,7 @@ impl Brush<'_> {
         for (glyph, advance) in font::glyphs(&face, &text.content) {
             let mut outline = GlyphOutline(PathBuilder::new());
             face.outline_glyph(glyph, &mut outline);
-            // Glyphs have their y axis upward.
+            // The y axis of glyphs points up.
             let place = Transform::from_row(scale, 0.0, 0.0, -scale, width, 0.0);
             if let Some(path) = outline.0.finish().and_then(|path| path.transform(place)) {
                 line.push_path(&path);

@@ -1,4 +1,4 @@
-//! What is drawn in a panel, in the coordinates of its axes.
+//! The shapes in a panel, in the coordinates of its axes.
 
 use super::axis::PlotArea;
 use super::canvas::{Anchor, PlotLayer, Stroke, TextLine};
@@ -10,27 +10,27 @@ use crate::write::words;
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
-/// Something that is drawn, in the coordinates of its panel's axes; fonts, marks and strokes are in px.
+/// A shape in the coordinates of its panel's axes; fonts, marks and strokes are in px.
 #[derive(Debug, Clone)]
 pub enum PlotShape {
     /// A line through all points; a point that has no place on the axes interrupts it.
     Line { points: Vec<PlotPoint>, stroke: Stroke },
-    /// A mark of half this width at each point.
+    /// A mark at each point; `size` is half its width.
     Marks { points: Vec<PlotPoint>, mark: Mark, color: Color, size: f64 },
-    /// Closed loops of corners; what lies within an odd number of them is filled.
+    /// Closed loops of corners. The points inside an odd number of loops are filled.
     Area { loops: Vec<Vec<PlotPoint>>, fill: Option<Color>, stroke: Option<Stroke> },
-    /// A circle, its radius in units of the x axis; round if both axes have one scale.
+    /// A circle whose radius is in units of the x axis.
     Circle { center: PlotPoint, radius: f64, fill: Option<Color>, stroke: Option<Stroke> },
-    /// An arrow to its tip; a short one has a smaller head.
+    /// An arrow with its tip at `to`; a short arrow has a smaller head.
     Arrow { from: PlotPoint, to: PlotPoint, stroke: Stroke },
-    /// A line of text with its middle at a point, with a white rim that keeps it readable over lines.
+    /// A line of text centered at a point, with a white rim that keeps it readable over lines.
     Text { at: PlotPoint, text: String, size: u32 },
-    /// Names of points, which keep clear of each other, and may stand rather below their points than above.
+    /// Names of points, which do not overlap. They stand beside or above their points if possible, with `below` below.
     Names { names: Vec<(PlotPoint, String)>, below: bool, color: Color },
 }
 
 impl PlotShape {
-    /// The points that its panel's axes must span.
+    /// Returns the points that the axes of its panel must include.
     pub(in crate::draw) fn extent(&self) -> Vec<PlotPoint> {
         match self {
             Self::Line { points, .. } | Self::Marks { points, .. } => points.clone(),
@@ -42,7 +42,7 @@ impl PlotShape {
         }
     }
 
-    /// The lines that it consists of, if any, and their stroke.
+    /// Returns the lines that the shape consists of and their stroke; `None` if it has no lines.
     fn lines(&self) -> Option<(Vec<Vec<PlotPoint>>, Stroke)> {
         match self {
             Self::Line { points, stroke } => Some((vec![points.clone()], *stroke)),
@@ -59,7 +59,7 @@ impl PlotShape {
         }
     }
 
-    /// Draws it into `out`; names keep clear of what is `taken`.
+    /// Draws the shape into `out`. Names avoid the places that are `taken`, and are added to them.
     pub(super) fn draw(&self, area: &PlotArea, taken: &mut Taken, out: &mut PlotLayer) {
         match self {
             Self::Line { points, stroke } => {
@@ -72,7 +72,7 @@ impl PlotShape {
             Self::Marks { points, mark, color, size } => {
                 let (mut drawn, (width, height)) = (BTreeSet::new(), area.size());
                 let seen = points.iter().filter_map(|&point| area.place(point)).filter(|&(x, y)| {
-                    // A mark within a tenth of a pixel of another one is not seen.
+                    // Of marks within a tenth of a pixel only the first is drawn.
                     let is_inside = (0.0..=width).contains(&x) && (0.0..=height).contains(&y);
                     is_inside && drawn.insert(((10.0 * x).round() as i64, (10.0 * y).round() as i64))
                 });
@@ -108,7 +108,7 @@ impl PlotShape {
     }
 }
 
-/// Where names do not stand: on marks, thick lines and other names, and on thin lines if there is another place.
+/// Places that names avoid: always marks, thick lines and other names; thin lines only if another place is free.
 #[derive(Debug, Default)]
 pub(super) struct Taken {
     marks: Vec<TextBox>,
@@ -116,7 +116,7 @@ pub(super) struct Taken {
 }
 
 impl Taken {
-    /// By these shapes, of which some have names.
+    /// Returns the places that these shapes take; nothing if no shape has names.
     pub fn by(shapes: &[PlotShape], area: &PlotArea) -> Self {
         let mut taken = Self::default();
         if !shapes.iter().any(|shape| matches!(shape, PlotShape::Names { .. })) {
@@ -143,28 +143,29 @@ impl Taken {
     }
 }
 
-/// Lines that are so wide are thick; they are taken at points so far apart \[px\], of which a line has at most so many.
+/// The least width of a thick line, and the distance between the points at which a line counts as taken \[px\]. Each
+/// segment is divided into at most `MOST` parts.
 const THICK: f64 = 4.0;
 const MOST: f64 = 400.0;
-/// The parts of a circle's rim.
+/// The number of segments that stand for a circle.
 const ROUND: u32 = 48;
-/// Height of the font \[px\].
+/// The font size of names \[px\].
 const SIZE: u32 = 11;
-/// From a point to its name \[px\].
+/// The distance from a point to its name \[px\].
 const GAP: f64 = 8.0;
-/// From one ring of places to the next \[px\].
+/// The distance from one ring of places to the next \[px\].
 const RING: f64 = 13.0;
 const RINGS: i32 = 8;
-/// More between a name and the next one \[px\].
+/// The additional distance of a name from later names on its left and right \[px\].
 const NEXT: f64 = 4.0;
-/// Names at one place, no farther apart than this \[px\], are one if there are more than so many, of about so many letters.
+/// More than `AROUND` names whose points are closer than `SAME` \[px\] become one text of about `LETTERS` letters.
 const SAME: f64 = 1.0;
 const AROUND: usize = 6;
 const LETTERS: usize = 28;
-/// A name farther from its point has a line to it \[px\].
+/// A name farther than this from its point has a line to it \[px\].
 const FAR: f64 = 22.0;
 
-/// Names of one place as a single one, if they are too many to stand around it.
+/// Joins the names of one place into a single text if there are too many to stand around it.
 fn gathered(names: Vec<(Pixel, &str)>) -> Vec<(Pixel, String)> {
     let is_near = |a: Pixel, b: Pixel| libm::hypot(a.0 - b.0, a.1 - b.1) < SAME;
     let mut gathered: Vec<(Pixel, String)> = Vec::new();
@@ -179,7 +180,7 @@ fn gathered(names: Vec<(Pixel, &str)>) -> Vec<(Pixel, String)> {
     gathered
 }
 
-/// Draws a name next to its point, rather above or rather `below` it, clear of what is `taken`.
+/// Draws a name beside or above its point, with `below` below it, and if possible away from the places `taken`.
 fn draw_name(
     (at, name): (Pixel, &str),
     below: bool,
@@ -203,9 +204,9 @@ fn draw_name(
     out.text(TextLine { rim: true, color, ..TextLine::new(baseline, name, SIZE, Anchor::Start) });
 }
 
-/// Places for a name so wide, the nearest first.
+/// Returns places for a name of this `width` \[px\], nearest first.
 fn places((x, y): Pixel, width: f64, below: bool) -> impl Iterator<Item = TextBox> {
-    // A point that is named below lies on a line that a name next to it would cover.
+    // Points that are named below lie on a line, such as the ground, that a name at their height would cover.
     let (nearest, down, level) = if below { (1, 1.0, 1.0) } else { (0, -1.0, 0.0) };
     (nearest..=RINGS).flat_map(move |ring| {
         let reach = f64::from(ring) * RING;
@@ -237,7 +238,7 @@ mod tests {
         names.draw(&area, &mut taken, &mut PlotLayer::default());
         let Taken { marks, thin } = taken;
         assert_eq!(marks.len(), 7);
-        // A name keeps the next ones at a distance, and not itself from the mark.
+        // The additional distance of a name applies to later names, not to the mark.
         let own = |at: usize, TextBox { middle, half }| match at {
             0 => TextBox { middle, half },
             _ => TextBox { middle, half: (half.0 - NEXT, half.1) },

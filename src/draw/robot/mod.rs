@@ -1,5 +1,5 @@
-//! A robot in its configuration, its contacts and the outcomes of its impact, as points, shapes and arrows of the
-//! plane.
+//! Drawings: a robot in its configuration, its contacts and the outcomes of its impact as points, shapes and vectors of
+//! the plane.
 //!
 //! ```text
 //!     Robot + Placement + feet             --> bodies: bones, shapes, CoG; joints
@@ -8,7 +8,7 @@
 //!     Drawing --> the data of an interactive page                                      ../page
 //! ```
 //!
-//! Points are in the world's axes, `[x, z]` in meters; only shapes and CoGs are in the frames of their bodies.
+//! Points are in the world frame, `[x, z]` in meters. Only shapes and CoGs are in the frames of their bodies.
 
 #[cfg(feature = "plot")]
 pub mod picture;
@@ -24,87 +24,89 @@ use serde::Serialize;
 /// A robot in its configuration, its contacts and the outcomes of its impact.
 #[derive(Debug, Clone, Default)]
 pub struct Drawing {
-    /// Of forces impulses are forces \[N\], and velocities after it accelerations \[m/s^2\].
+    /// The question. For [`Aspect::Forces`], impulses stand for forces \[N\] and velocities after the impact for
+    /// accelerations \[m/s^2\].
     pub aspect: Aspect,
     /// Rigid bodies, in the robot's order.
     pub bodies: Vec<DrawnBody>,
-    /// Where joints are.
+    /// The places of the joints \[m\].
     pub joints: Vec<Vector<f64>>,
-    /// Where loops are closed.
+    /// The points at which loops are closed \[m\].
     pub loops: Vec<Vector<f64>>,
-    /// The ground's surface from left to right, as far as the drawing reaches; empty without a ground.
+    /// The surface of the ground from left to right, to some distance beyond the robot \[m\]; empty without a ground.
     pub ground: Vec<Vector<f64>>,
-    /// Whether the ground is a profile, with nothing beyond its ends.
+    /// Whether the ground is a profile, which has ends.
     pub is_profile: bool,
     /// The closed contacts.
     pub contacts: Vec<DrawnContact>,
     /// Impulses that the state applies \[N s\].
     pub applied: Vec<Arrow>,
-    /// What happens at the contacts.
+    /// The outcomes, in the order of the analysis.
     pub outcomes: Vec<DrawnOutcome>,
 }
 
-/// A rigid body; its frame's origin is where its joint is.
+/// A rigid body. The origin of its frame is its joint.
 #[derive(Debug, Clone)]
 pub struct DrawnBody {
-    /// The origin of its frame \[m\].
+    /// The origin of the body's frame, in the world frame \[m\].
     pub origin: Vector<f64>,
-    /// The x axis of its frame.
+    /// The x axis of the body's frame: a unit vector in the world frame.
     pub x_axis: Vector<f64>,
-    /// Its collision shapes, in its frame.
+    /// The collision shapes, in the body's frame.
     pub shapes: Vec<DrawnShape>,
-    /// Its CoG, in its frame; `None` if it has no mass.
+    /// The CoG, in the body's frame \[m\]; `None` if the body has no mass.
     pub com: Option<Vector<f64>>,
-    /// The ends of its bones, which begin at its origin: joints of its children, shapes, a CoG apart from them.
+    /// The ends of the bones, in the world frame \[m\]. Bones are lines from the body's origin to the joints of its
+    /// children, to points of loops, to shapes, or to a CoG far from these.
     pub bones: Vec<Vector<f64>>,
-    /// Whether it has no children.
+    /// Whether the body has no children.
     pub is_last: bool,
-    /// In kg.
+    /// The mass \[kg\].
     pub mass: f64,
 }
 
 /// A closed contact of a picture.
 #[derive(Debug, Clone)]
 pub struct DrawnContact {
-    /// Its name.
+    /// The name of the contact.
     pub name: String,
     /// The name of its link.
     pub link: String,
-    /// Where it is \[m\].
+    /// The contact point \[m\].
     pub point: Vector<f64>,
-    /// Unit normal of the ground, toward the robot.
+    /// The unit normal of the ground, which points toward the robot.
     pub normal: Vector<f64>,
-    /// In m/s.
+    /// The velocity before the impact, in the world frame \[m/s\].
     pub velocity_before: Vector<f64>,
-    /// Its friction.
+    /// The friction of the contact.
     pub friction: Friction,
 }
 
-/// The impulse of the ground on each contact \[N s\], and the contacts' velocities after the impact \[m/s\].
+/// The impulses and velocities of an outcome, in the world frame.
 #[derive(Debug, Clone)]
 pub struct DrawnOutcome {
-    /// The impulse on each contact \[N s\].
+    /// The impulse of the ground on each contact \[N s\].
     pub impulse: Vec<Vector<f64>>,
-    /// Of each loop the impulse on that of its links which it pushes up, away from the ground, and this link's name.
+    /// For each loop, the impulse \[N s\] on the link that it pushes up, and the name of this link.
     pub loop_impulse: Vec<(String, Vector<f64>)>,
     /// The velocity of each contact after the impact \[m/s\].
     pub velocity_after: Vec<Vector<f64>>,
 }
 
-/// A vector, in its own unit, at the point where it acts \[m\].
+/// A vector at the point where it acts.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct Arrow {
-    /// Where it begins \[m\].
+    /// The point where the vector acts, in the world frame \[m\].
     pub point: Vector<f64>,
-    /// The vector that it stands for.
+    /// The vector in its own unit, in the world frame.
     pub vector: Vector<f64>,
 }
 
-/// A bone that is shorter than this share of the robot's size has no visible direction.
+/// Bones shorter than this share of the robot's size are omitted: their direction is not visible.
 const SHORT: f64 = 0.02;
 
 impl Drawing {
-    /// A robot with its bodies at `placement` and the feet that are `named` in addition to its own shapes.
+    /// Draws a robot with its bodies at `placement`. The feet in `named` are added to its own shapes.
     pub fn of_robot(robot: &Robot, placement: &Placement, named: &[NamedContact]) -> Self {
         let body = |(at, body): (usize, &Body)| DrawnBody {
             origin: placement.world(at, Vector::zero()),
@@ -131,7 +133,7 @@ impl Drawing {
         drawing
     }
 
-    /// A state of the robot and every outcome of its impact; `feet` are those in addition to its own shapes.
+    /// Draws a state of the robot and every outcome of its impact. `feet` are added to its own shapes.
     pub fn of_impact(robot: &Robot, feet: &[NamedContact], state: &State, impact: &Impact) -> Self {
         let State { scene, .. } = state;
         let named: Vec<NamedContact> = feet.iter().chain(scene.contacts.iter().flatten()).copied().collect();
@@ -173,21 +175,21 @@ impl Drawing {
         drawing
     }
 
-    /// Everything except the ground and the arrows.
+    /// Returns the extent of everything except the ground and the arrows.
     pub fn extent(&self) -> Extent {
         let bodies = self.bodies.iter().flat_map(|body| body.drawn().chain(body.com.map(|com| body.world(com))));
         let contacts = self.contacts.iter().map(|contact| contact.point);
         Extent::of(bodies.chain(contacts))
     }
 
-    /// The greatest impulse of all outcomes, those of loops included, and of those that the state applies \[N s\].
+    /// Returns the magnitude of the greatest impulse: of the ground, in a loop, or applied by the state \[N s\].
     pub fn greatest_impulse(&self) -> f64 {
         let applied = self.applied.iter().map(|applied| &applied.vector);
         greatest(self.outcomes.iter().flat_map(DrawnOutcome::impulses).chain(applied))
     }
 
-    /// The greatest velocity of a contact before the impact and after it, on one scale \[m/s\]; of forces its velocity,
-    /// and its acceleration \[m/s^2\].
+    /// Returns the greatest velocities of contacts before and after the impact. For an impact, both are the greatest
+    /// before or after it \[m/s\]; for forces, they are the greatest velocity \[m/s\] and acceleration \[m/s^2\].
     pub fn greatest_velocities(&self) -> [f64; 2] {
         let before = greatest(self.contacts.iter().map(|contact| &contact.velocity_before));
         let after = greatest(self.outcomes.iter().flat_map(|outcome| &outcome.velocity_after));
@@ -196,7 +198,7 @@ impl Drawing {
 }
 
 impl DrawnOutcome {
-    /// Those of the ground, and those of loops.
+    /// Returns the impulses of the ground and those in loops.
     fn impulses(&self) -> impl Iterator<Item = &Vector<f64>> {
         self.impulse.iter().chain(self.loop_impulse.iter().map(|(_, impulse)| impulse))
     }
@@ -207,12 +209,12 @@ fn greatest<'a>(vectors: impl Iterator<Item = &'a Vector<f64>>) -> f64 {
 }
 
 impl DrawnBody {
-    /// The world's point that is `local` in its frame.
+    /// Returns the point in the world frame \[m\] that is `local` in the body's frame \[m\].
     pub fn world(&self, local: Vector<f64>) -> Vector<f64> {
         self.origin + self.x_axis * local.x - self.x_axis.perpendicular() * local.z
     }
 
-    /// Points in the world that its bones and shapes lie between.
+    /// Returns points in the world frame whose extent contains the body's origin, bones and shapes.
     fn drawn(&self) -> impl Iterator<Item = Vector<f64>> {
         let corners = self.shapes.iter().flat_map(|shape| match shape {
             &DrawnShape::Disc { center, radius } => {
@@ -224,8 +226,8 @@ impl DrawnBody {
         self.bones.iter().copied().chain([self.origin]).chain(corners)
     }
 
-    /// Adds bones to the shapes of a body without children, and to a CoG that lies on nothing that is drawn. A bone
-    /// that is not longer than `short` \[m\] is left out.
+    /// Adds bones to the shapes of a body without children or bones, and to a CoG outside everything that is drawn.
+    /// Bones that are not longer than `short` \[m\] are omitted.
     fn grow_bones(&mut self, short: f64) {
         let origin = self.origin;
         let is_long = |end: &Vector<f64>| (*end - origin).length() > short;
@@ -245,14 +247,14 @@ impl DrawnBody {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum DrawnShape {
-    /// A disc, or with radius 0 a point.
+    /// A disc; with radius 0, a point.
     #[allow(missing_docs, reason = "a circle about a point")]
     Disc { center: Vector<f64>, radius: f64 },
-    /// By its corners.
+    /// A polygon with these corners.
     Polygon(Vec<Vector<f64>>),
 }
 
-/// Directions in which a round shape is touched to draw it.
+/// The number of directions in which the farthest points of a round shape are computed.
 const DIRECTIONS: u32 = 48;
 
 impl DrawnShape {
@@ -264,7 +266,7 @@ impl DrawnShape {
         }
     }
 
-    /// The middle of what it spans.
+    /// Returns the center of a disc, or the mean of a polygon's corners.
     fn center(&self) -> Vector<f64> {
         match self {
             Self::Disc { center, .. } => *center,
@@ -276,7 +278,7 @@ impl DrawnShape {
     }
 }
 
-/// The corners with their rims as a polygon: its farthest point in each of many directions.
+/// Approximates corners with rims by a polygon of the farthest points in [`DIRECTIONS`] directions.
 fn swept(corners: &[Vector<f64>], rim: Rim) -> Vec<Vector<f64>> {
     let farthest = |at: u32| {
         let (sin, cos) = libm::sincos(f64::from(at) * std::f64::consts::TAU / f64::from(DIRECTIONS));
@@ -298,11 +300,11 @@ pub struct Extent {
     pub high: Vector<f64>,
 }
 
-/// How far the ground reaches beyond the robot on either side, as a share of its size.
+/// How far the ground reaches beyond the robot on each side, as a multiple of its size.
 const BEYOND: f64 = 2.0;
 
 impl Extent {
-    /// Around these points; without points the origin.
+    /// Returns the extent of these points; that of the origin if there are none.
     pub fn of(points: impl Iterator<Item = Vector<f64>>) -> Self {
         let infinite = Vector::new(f64::INFINITY, f64::INFINITY);
         let around = |(low, high): (Vector<f64>, Vector<f64>), point| (low.least(point), high.greatest(point));
@@ -310,22 +312,22 @@ impl Extent {
         if low.x <= high.x { Self { low, high } } else { Self::default() }
     }
 
-    /// The diagonal \[m\].
+    /// Returns the diagonal \[m\].
     pub fn size(self) -> f64 {
         (self.high - self.low).length()
     }
 
-    /// The diagonal \[m\]; a single point is drawn as if it were a meter long.
+    /// Returns the diagonal \[m\]; 1 m for a single point.
     fn scale(self) -> f64 {
         Some(self.size()).filter(|&size| size > 0.0).unwrap_or(1.0)
     }
 
-    /// The same with `room` \[m\] on every side.
+    /// Returns the extent with additional `room` \[m\] on every side.
     fn widened(self, room: f64) -> Self {
         Self { low: self.low.map(|entry| entry - room), high: self.high.map(|entry| entry + room) }
     }
 
-    /// The ground's surface below a robot of this size, and well to both sides.
+    /// Returns the surface of the ground below a robot of this size \[m\] and well to both sides.
     fn surface(self, ground: &Ground, size: f64) -> Vec<Vector<f64>> {
         let (left, right) = (self.low.x - BEYOND * size, self.high.x + BEYOND * size);
         match ground {
@@ -345,7 +347,7 @@ impl Extent {
     }
 }
 
-/// The point of a segment that is above this x.
+/// Returns the point of a segment at this x.
 fn between([from, to]: [Vector<f64>; 2], x: f64) -> Vector<f64> {
     Vector::new(x, from.z + (x - from.x) / (to.x - from.x) * (to.z - from.z))
 }

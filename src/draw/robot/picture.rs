@@ -1,4 +1,4 @@
-//! A robot in its pose as a picture: one panel per outcome, or the robot alone with its names.
+//! Pictures of a robot in its pose: one panel per outcome, or the robot alone with the names of bodies and joints.
 
 use super::{Arrow, Drawing, DrawnBody, DrawnContact, DrawnOutcome, DrawnShape, Extent, between};
 use crate::contact::Placement;
@@ -21,41 +21,44 @@ const APPLIED: Stroke = Stroke { dash: Dash::DOTTED, ..Stroke::solid(Color::Purp
 const AFTER: Stroke = Stroke::solid(Color::Blue, 2.2);
 const BEFORE: Stroke = Stroke { dash: Dash::DASHED, ..Stroke::solid(Color::Black, 1.4) };
 const ROOT: Stroke = Stroke::solid(Color::Black, 1.6);
-/// Joints and their names in the picture of a robot alone.
+/// The color of joints and their names in the picture of a robot alone.
 const JOINT: Color = Color::Blue;
 const BONE: Stroke = Stroke::solid(Color::Gray, 4.0);
 const EDGE: Stroke = Stroke::solid(Color::Gray, 0.8);
 const SURFACE: Stroke = Stroke::solid(Color::Black, 1.6);
 const NORMAL: Stroke = Stroke { dash: Dash::DOTTED, ..Stroke::solid(Color::Black, 1.0) };
-/// The fill of bodies without children, feet and hands, and of others.
+/// The fill of bodies without children, such as feet and hands, and that of other bodies.
 const LAST: Color = Color::Tint(1);
 const INNER: Color = Color::Tint(0);
 
 const COLUMNS: usize = 4;
-/// Shares of the robot's size: the room around all that is drawn, the normal of a contact.
+/// Shares of the robot's size: the room around the drawing, and the length of a contact's normal.
 const ROOM: f64 = 0.06;
 const SHORT: f64 = 0.08;
-/// The room below all that is drawn, for names; axes of the root, the longest arrow, that of the legend.
+/// Shares of the robot's size: the room below the drawing for names, the axes of the root, the longest arrow, and the
+/// longest arrow in the legend.
 const BELOW: f64 = 0.1;
 const AXES: f64 = 0.18;
 const LONGEST: f64 = 0.4;
 const KEY: f64 = 0.1;
-/// A velocity before whose angle to another arrow has a smaller sine is drawn so far aside.
+/// A velocity before is drawn aside by `ASIDE` of the robot's size if the sine of its angle to another arrow or to the
+/// ground is smaller than `ALONG`.
 const ALONG: f64 = 0.15;
 const ASIDE: f64 = 0.02;
-/// Half the width of a CoG's sign, of the lightest and the heaviest body \[px\].
+/// Half the width of the symbol of a CoG, for a body of negligible mass and for the heaviest body \[px\].
 const LIGHT: f64 = 2.5;
 const HEAVY: f64 = 8.0;
-/// A velocity after whose arrow is shorter than this share of the robot's size is written as a number.
+/// A velocity after is written as a number if its arrow is shorter than this share of the robot's size.
 const SEEN: f64 = 0.04;
-/// Letters in a line of names for each pixel of a panel's width.
+/// The number of letters in a line of names, per pixel of a panel's width.
 const LETTERS: f64 = 0.1;
-/// What is nearer than this share of the robot's size is at one place.
+/// Points closer than this share of the robot's size are at one place.
 const HAIR: f64 = 1e-3;
-/// Names are drawn for at most so many bodies.
+/// The largest number of bodies for which names are drawn.
 const NAMED: usize = 60;
 
-/// Impulses and velocities as arrows, a panel for each outcome; `None` if the outcomes were refused.
+/// Returns a picture with impulses and velocities as arrows, with a panel for each outcome; `None` if there is no
+/// analysis because there are too many contacts.
 pub fn impact(
     robot: &Robot,
     feet: &[NamedContact],
@@ -90,12 +93,12 @@ pub fn impact(
     })
 }
 
-/// The robot with its joints at zero, or where they are frozen, and the names of its bodies.
+/// Returns the picture of the robot with its joints at zero, or where they are frozen, and with names.
 pub fn robot(robot: &Robot, feet: &[NamedContact], forward: Forward) -> Picture {
     posed(robot, feet, &Placement::of_robot(robot, &vec![0.0; robot.dofs()]), forward)
 }
 
-/// The robot with its bodies at `placement`, and their names.
+/// Returns the picture of the robot with its bodies at `placement`, and with the names of bodies and joints.
 pub fn posed(robot: &Robot, feet: &[NamedContact], placement: &Placement, forward: Forward) -> Picture {
     let mut drawing = Drawing::of_robot(robot, placement, feet);
     drawing.face(forward);
@@ -106,7 +109,7 @@ pub fn posed(robot: &Robot, feet: &[NamedContact], placement: &Placement, forwar
     let mut shapes = DrawnScene::new(&drawing).robot(JOINT);
     let axes = Vector::axes().map(tip);
     shapes.extend(axes.map(|tip| PlotShape::Arrow { from: point(root.origin), to: point(tip), stroke: ROOT }));
-    // Names of axes stand next to them, before whatever may be at their tips.
+    // The names of the axes stand before their tips, where there may be something else.
     let beside = Vector::axes().map(|axis| point(tip(axis * 0.85)));
     let mut names: Vec<(PlotPoint, String)> = beside.into_iter().zip(["x", "z"].map(str::to_owned)).collect();
     if robot.bodies.len() <= NAMED {
@@ -157,7 +160,7 @@ pub(in crate::draw) fn modes(contacts: impl IntoIterator<Item: AsRef<str>>, outc
     if outcome.modes.is_empty() { "nothing changes".to_owned() } else { words::modes(contacts, &outcome.modes) }
 }
 
-/// How sure and how special it is.
+/// Returns remarks on an outcome: a border, a family, impulses that are not unique, what is undecided or not proven.
 pub(in crate::draw) fn remarks(outcome: &Outcome, aspect: Aspect) -> Vec<String> {
     let border = outcome.border.as_ref().map(|border| format!("on a border: {}", words::at_zero(border)));
     let one_of_many = match aspect {
@@ -175,12 +178,12 @@ pub(in crate::draw) fn remarks(outcome: &Outcome, aspect: Aspect) -> Vec<String>
 }
 
 impl Extent {
-    /// With room around all that is drawn, even around a single point.
+    /// Returns the extent with room on every side, even around a single point.
     fn with_room(self) -> Self {
         self.widened(ROOM * self.scale())
     }
 
-    /// An empty panel of this extent, one of so many.
+    /// Returns an empty panel of this extent for a picture with `panels` panels.
     fn panel(self, panels: usize) -> Panel {
         let axis = |low: f64, high: f64| PlotAxis { range: Some((low, high)), ..PlotAxis::default() };
         let Vector { x: across, z: up } = self.high - self.low;
@@ -192,7 +195,7 @@ impl Extent {
 }
 
 impl DrawnBody {
-    /// The place of its name.
+    /// Returns the place of the body's name, in the world frame \[m\].
     fn middle(&self) -> Vector<f64> {
         match self.bones.first() {
             Some(end) => (self.origin + *end) * 0.5,
@@ -205,11 +208,11 @@ struct DrawnScene<'d> {
     drawing: &'d Drawing,
     /// The robot's size \[m\].
     size: f64,
-    /// The lengths of arrows of 1 N s and of 1 m/s, or 1 N, 1 m/s and 1 m/s^2, the same for all outcomes \[m\].
+    /// The lengths \[m\] of arrows of 1 N s and 1 m/s, or 1 N, 1 m/s and 1 m/s^2; the same for all outcomes.
     impulse_scale: f64,
     before_scale: f64,
     after_scale: f64,
-    /// All that is drawn and the ground if it is near, with room around it.
+    /// The extent of the drawing, its arrows and the ground if that is near, with room around them.
     view: Extent,
 }
 
@@ -235,7 +238,8 @@ impl<'d> DrawnScene<'d> {
         self.drawing.outcomes.iter().map(Some).chain([None]).flat_map(|outcome| self.arrows(outcome))
     }
 
-    /// The arrows of an outcome, or of none: where each begins, how far it reaches and its shaft.
+    /// Returns the arrows of an outcome, or those that need no outcome: the start \[m\], the vector to the tip \[m\]
+    /// and the stroke of each.
     fn arrows(&self, outcome: Option<&DrawnOutcome>) -> Vec<(Vector<f64>, Vector<f64>, Stroke)> {
         let Drawing { contacts, applied, loops, .. } = self.drawing;
         let impulse = self.impulse_scale;
@@ -248,7 +252,8 @@ impl<'d> DrawnScene<'d> {
             at.zip(impulses.chain(after).chain(in_loops)).map(|(point, (reach, stroke))| (point, reach, stroke))
         });
         let effects: Vec<_> = effects.collect();
-        // It arrives where the others begin, or next to it if one of them or the ground lies along it.
+        // A velocity before ends where the other arrows begin, or next to that point if one of them or the ground lies
+        // along it.
         let before = contacts.iter().map(|contact| {
             let reach = contact.velocity_before * self.before_scale;
             let (way, across) = (reach.length(), reach.perpendicular());
@@ -266,7 +271,7 @@ impl<'d> DrawnScene<'d> {
         applied.chain(effects.iter().copied()).chain(before).collect()
     }
 
-    /// The ground, the robot's shapes, bones, joints and CoGs.
+    /// Returns the ground and the robot's shapes, bones, joints and CoGs.
     fn robot(&self, joint: Color) -> Vec<PlotShape> {
         let Drawing { bodies, ground, joints, loops, .. } = self.drawing;
         let mut shapes = Vec::new();
@@ -311,7 +316,7 @@ impl<'d> DrawnScene<'d> {
         shapes
     }
 
-    /// Contacts, and the arrows of an outcome.
+    /// Returns the contacts, and the arrows of an outcome.
     fn impact(&self, outcome: Option<(&Outcome, &DrawnOutcome)>) -> Vec<PlotShape> {
         let contacts = &self.drawing.contacts;
         let normal = |contact: &DrawnContact| {
@@ -331,7 +336,7 @@ impl<'d> DrawnScene<'d> {
         };
         let alike = |place: Vec<usize>| words::grouped(place.into_iter().map(|at| (small(at), at)));
         let mut names: Vec<_> = self.places().into_iter().flat_map(alike).collect();
-        // The long ones find room near their points first.
+        // The long names, with a velocity, are placed first, which keeps them near their points.
         names.sort_by_key(|(small, _)| small.is_none());
         let names = names.into_iter().map(name).collect();
         shapes.push(PlotShape::Names { names, below: true, color: Color::Black });
@@ -342,13 +347,13 @@ impl<'d> DrawnScene<'d> {
         shapes
     }
 
-    /// The contacts by the place where they are: left and right feet may be at one.
+    /// Groups the contacts by place: a left and a right foot may be at the same place.
     fn places(&self) -> Vec<Vec<usize>> {
         let contacts = &self.drawing.contacts;
         self.together(0..contacts.len(), |at| contacts[at].point)
     }
 
-    /// Numbers whose points are at one place.
+    /// Groups the numbers whose points are at one place.
     fn together(&self, numbers: impl Iterator<Item = usize>, at: impl Fn(usize) -> Vector<f64>) -> Vec<Vec<usize>> {
         let mut places: Vec<Vec<usize>> = Vec::new();
         for number in numbers {
@@ -360,13 +365,14 @@ impl<'d> DrawnScene<'d> {
         places
     }
 
-    /// The names of contacts in one line, as many as fit.
+    /// Returns the names of contacts in one line, as many as fit.
     fn joined(&self, contacts: &[usize]) -> String {
         let names: Vec<&str> = contacts.iter().map(|&at| &*self.drawing.contacts[at].name).collect();
         words::list(&names, (LETTERS * self.view.panel(self.drawing.outcomes.len()).size.0) as usize)
     }
 
-    /// At the tips of the arrows of contacts at one place: how many impulses coincide, or whose arrow it is.
+    /// Returns the labels at the tips of arrows of contacts at one place: the number of equal impulses, or the contacts
+    /// whose arrow it is.
     fn shared(&self, drawn: &DrawnOutcome) -> [PlotShape; 2] {
         let kinds = [(&drawn.impulse, self.impulse_scale, IMPULSE), (&drawn.velocity_after, self.after_scale, AFTER)];
         kinds.map(|(vectors, scale, stroke)| {
@@ -389,7 +395,7 @@ impl<'d> DrawnScene<'d> {
         })
     }
 
-    /// The velocity after of a contact that moves, if it is too small for an arrow.
+    /// Returns the velocity after of a contact as text if it is not zero but too small for an arrow.
     fn small(&self, outcome: &Outcome, drawn: &DrawnOutcome, contact: usize) -> Option<String> {
         let speed = drawn.velocity_after.get(contact)?.length();
         let sign = match outcome.modes.get(contact)? {
@@ -403,7 +409,7 @@ impl<'d> DrawnScene<'d> {
         is_small.then(|| format!(" {sign} {} {unit}", number(significant(speed, 3))))
     }
 
-    /// What the arrows are, with one of a round length for each kind, and what else is drawn.
+    /// Returns the legend: an arrow of a round length for each kind of arrow, and the other symbols.
     fn legend(&self) -> Vec<LegendEntry> {
         let arrows: Vec<_> = self.all_arrows().collect();
         let is_drawn = |stroke: Stroke| {
@@ -445,20 +451,20 @@ impl<'d> DrawnScene<'d> {
     }
 }
 
-/// The entries whose signs are drawn.
+/// Returns the entries whose symbols are drawn.
 fn entries_of<const N: usize>(entries: [(bool, LegendKey, &'static str); N]) -> impl Iterator<Item = LegendEntry> {
     entries.into_iter().filter(|(is_drawn, ..)| *is_drawn).map(|(_, key, name)| LegendEntry::new(name, key))
 }
 
 impl Drawing {
-    /// Mirrors it if forward is along -x.
+    /// Mirrors the drawing if forward is along -x.
     pub(in crate::draw) fn face(&mut self, forward: Forward) {
         if forward == Forward::Along {
             return;
         }
         for body in &mut self.bodies {
             Forward::vector(&mut body.origin);
-            // The frame turns the other way, and what it holds is mirrored.
+            // The frame turns the other way, and the points in it are mirrored.
             body.x_axis.z = -body.x_axis.z;
             for shape in &mut body.shapes {
                 match shape {
@@ -484,7 +490,7 @@ impl Drawing {
         self.ground.reverse();
     }
 
-    /// The signs of a robot, whose joints have this color.
+    /// Returns the entries for a robot's symbols; its joints have this color.
     fn legend(&self, joint: Color) -> impl Iterator<Item = LegendEntry> {
         let is_point = |shape: &DrawnShape| matches!(shape, DrawnShape::Disc { radius: 0.0, .. });
         let is_shaped = |body: &DrawnBody| !body.shapes.iter().all(is_point);
@@ -499,7 +505,7 @@ impl Drawing {
     }
 }
 
-/// The greatest of 1, 2, 5, 10 ... that is not greater; `None` if `most` is not positive.
+/// Returns the greatest of ..., 1, 2, 5, 10, ... that is not above `most`; `None` unless `most` is positive and finite.
 fn round(most: f64) -> Option<f64> {
     if !(most > 0.0 && most.is_finite()) {
         return None;

@@ -1,9 +1,9 @@
-//! Drawings of small robots, against what is known of them by hand.
+//! Drawings of small robots, compared with values computed by hand.
 
 use super::*;
 use crate::{Defaults, Options, Pipeline};
 
-/// A ball of 2 kg and 0.5 m, on it an arm of 1 m that ends in a point foot.
+/// A ball of 2 kg with radius 0.5 m, and on it an arm of 1 m that ends in a point foot.
 const ARM: &str = r#"<robot name="arm">
     <link name="ball">
         <inertial><mass value="2"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>

@@ -1,4 +1,4 @@
-//! One parameter: panels below each other, for each contact its velocity after and its impulse.
+//! Pictures of studies with one parameter: panels with the velocity after and the impulse of each contact.
 
 use super::{KindLook, WIDTH, angles, different, fills_along, firsts, is_seen};
 use crate::draw::plot::{
@@ -17,24 +17,25 @@ struct PlottedQuantity {
     of: fn(&Motion) -> &[[f64; 2]],
 }
 
-/// Height inside of the axes \[px\], and that of all panels below each other: with the legend they fit on a page.
+/// The height inside the axes of a panel, and of all panels of a column; with the legend they fit on a page \[px\].
 const HEIGHT: f64 = 176.0;
 const PAGE: f64 = 660.0;
-/// Of more panels than this some stand side by side, narrower as far as no text has its place between curves \[px\].
+/// The number of panels in a column, and the width of panels in one, two, and more columns \[px\]. If there are panels
+/// of angles, with texts between their curves, all panels keep the full width.
 const COLUMN: usize = 6;
 const WIDTHS: [f64; 3] = [WIDTH, 420.0, 340.0];
-/// The height of a panel with nothing but the letters of regions.
+/// The height of a panel that contains only the letters of regions \[px\].
 const STRIP: f64 = 30.0;
 
-/// A curve that grows by more than this factor in its last eighth has a pole. It is shown up to so many times its
-/// greatest value in its middle half.
+/// A curve that grows by more than `POLE` in its first or last eighth has a pole. It is shown up to `NEAR_POLE` times
+/// the greatest value in its middle half.
 const POLE: f64 = 4.0;
 const NEAR_POLE: f64 = 1.5;
 
-/// Values below this share of the same quantity of other contacts of an outcome are zero, except for rounding.
+/// Values below this share of the largest value of the same quantity among the contacts of an outcome count as zero.
 const ZERO: f64 = 1e-12;
 
-/// The picture of a survey's regions, with these courses of their outcomes.
+/// Returns the picture of a survey; `courses` are the curves of its regions.
 pub fn picture<'s>(x: PlotAxis, aspect: Aspect, survey: &'s Survey, courses: &[RegionCurves]) -> Picture {
     let look = |(region, color): (&'s Region, Color)| KindLook {
         letter: letter(region.kind),
@@ -61,7 +62,7 @@ pub fn picture<'s>(x: PlotAxis, aspect: Aspect, survey: &'s Survey, courses: &[R
     panels.iter_mut().for_each(|panel| panel.bands = bands(|kind| (String::new(), kind.color)));
     let mut explained = angles::panels(survey, courses);
     let angles = !explained.is_empty();
-    // Their regions have names of their own.
+    // Panels of angles show regions of their own, so their bands have neither letters nor colors.
     explained.iter_mut().for_each(|panel| panel.bands = bands(|_| (String::new(), Color::White)));
     let lettered = panels.len();
     panels.extend(explained);
@@ -92,13 +93,13 @@ struct Curves<'a> {
 }
 
 impl<'a> Curves<'a> {
-    /// Names of all contacts in visible regions.
+    /// Returns the names of all contacts in visible regions.
     fn contacts(&self) -> Vec<&'a str> {
         let seen = self.survey.regions.iter().filter(|region| is_seen(region, self.survey));
         different(seen.flat_map(|region| region.regime.contacts()))
     }
 
-    /// Panels of a contact, without quantities that are zero everywhere.
+    /// Returns the panels of a contact, without quantities that are zero in all visible regions. The title names these.
     fn of_contact(&self, contact: &str) -> Vec<Panel> {
         let (drawn, zero): (Vec<_>, Vec<_>) =
             self.quantities.iter().partition(|quantity| self.is_anywhere(contact, quantity, false));
@@ -114,8 +115,7 @@ impl<'a> Curves<'a> {
         panels
     }
 
-    /// Whether the quantity is not zero in some outcome of a visible region, or a `hidden` one, compared with that of all
-    /// its contacts.
+    /// Returns whether a quantity of a contact is not zero in some outcome of a visible region, or of a `hidden` one.
     fn is_anywhere(&self, contact: &str, quantity: &PlottedQuantity, hidden: bool) -> bool {
         let largest = |pairs: &[[f64; 2]]| pairs.as_flattened().iter().fold(0.0, |most: f64, own| most.max(own.abs()));
         let regions = self.survey.regions.iter().zip(self.courses);
@@ -130,7 +130,7 @@ impl<'a> Curves<'a> {
         })
     }
 
-    /// A quantity of a contact in all regions.
+    /// Returns the panel of a quantity of a contact, over all regions.
     fn panel(&self, contact: &str, quantity: &PlottedQuantity) -> Panel {
         let (mut shapes, mut ranges) = (Vec::new(), Vec::new());
         for (axis, (_, stroke)) in COMPONENTS.into_iter().enumerate() {
@@ -144,7 +144,7 @@ impl<'a> Curves<'a> {
                         Some((place.at, (quantity.of)(motion).get(index)?[axis]))
                     };
                     let points: Vec<PlotPoint> = course.places.iter().filter_map(point).collect();
-                    // No curve is visible in a region as narrow as a line.
+                    // Regions as narrow as a line do not count: their curves are not visible.
                     ranges.extend(shown(&points).filter(|_| is_seen(region, self.survey)));
                     let stroke = Stroke { dash: self.styles.dash(contacts, modes), ..stroke };
                     shapes.push(PlotShape::Line { points, stroke });
@@ -157,7 +157,8 @@ impl<'a> Curves<'a> {
     }
 }
 
-/// The range of values that a panel shows: all, except those that grow like 1 / x toward a pole at the curve's end.
+/// Returns the range of values that a panel shows: all values of the curve, except those that grow like 1 / x toward a
+/// pole at an end. `None` if there are no points.
 fn shown(points: &[PlotPoint]) -> Option<(f64, f64)> {
     let (&(from, _), &(to, _)) = (points.first()?, points.last()?);
     let largest = |least: f64, most: f64| {
@@ -165,13 +166,13 @@ fn shown(points: &[PlotPoint]) -> Option<(f64, f64)> {
         inner.fold(0.0, |largest: f64, (_, value)| largest.max(value.abs()))
     };
     let width = to - from;
-    // A polynomial of low degree does not grow so much in the last eighth.
+    // A polynomial of low degree grows by less in an eighth of the curve.
     let has_pole = largest(0.0, width) > POLE * largest(0.125 * width, 0.875 * width);
     let limit = if has_pole { NEAR_POLE * largest(0.25 * width, 0.75 * width) } else { f64::INFINITY };
     range(points.iter().map(|(_, value)| value.max(-limit).min(limit)))
 }
 
-/// The components and their lines: if both are equal, the wider one shows behind the other.
+/// The components and their strokes. The first is wider, so that it is visible behind the second if both are equal.
 const COMPONENTS: [(&str, Stroke); 2] =
     [("tangential", Stroke::solid(Color::Blue, 2.8)), ("normal", Stroke::solid(Color::Vermilion, 1.6))];
 
@@ -180,20 +181,20 @@ struct OutcomeStyles<'a>(Vec<OutcomeStyle<'a>>);
 struct OutcomeStyle<'a> {
     contacts: &'a [String],
     modes: &'a [Mode],
-    /// Its own dashes; `None` if its region identifies it.
+    /// The dashes of the outcome; `None` if its region identifies it.
     dash: Option<Dash>,
-    /// The letters and colors of the regions in which it is valid.
+    /// The letters and colors of the regions in which the outcome is valid.
     letters: Vec<String>,
     colors: Vec<Color>,
-    /// Whether another outcome is also valid somewhere.
+    /// Whether another outcome is also valid in some visible region.
     ambiguous: bool,
-    /// Whether its lines are visible anywhere.
+    /// Whether the outcome is valid in a visible region.
     seen: bool,
 }
 
 impl<'a> OutcomeStyles<'a> {
-    /// If some region is ambiguous, each visible outcome has its own dashes wherever it is valid. If there are more
-    /// outcomes than dashes, only those of ambiguous regions have them.
+    /// Assigns styles. If some visible region is ambiguous, each visible outcome has its own dashes in all regions. If
+    /// there are more visible outcomes than dashes, only those of ambiguous regions have dashes.
     fn of(survey: &'a Survey, kinds: &[KindLook]) -> Self {
         let mut styles: Vec<OutcomeStyle> = Vec::new();
         for region in &survey.regions {
@@ -229,7 +230,7 @@ impl<'a> OutcomeStyles<'a> {
         own.and_then(|style| style.dash).unwrap_or(Dash::SOLID)
     }
 
-    /// Components, angles, outcomes with the letters of their regions, and regions without outcomes.
+    /// Returns the legend: components, angles, outcomes with the letters of their regions, regions without outcomes.
     fn legend(&self, kinds: &[KindLook], angles: bool) -> Vec<LegendEntry> {
         let mut entries = Vec::new();
         if !self.0.is_empty() {

@@ -1,9 +1,9 @@
-//! beta and gamma of each contact against the parameter, and the paper's regions between them (its figure 10).
+//! Panels of the angles beta and gamma of each contact against the parameter, with the paper's regions (its figure 10).
 //!
 //! ```text
 //!                beta < 0              beta > 0 (its mirror image)
 //!     A   0       .. pi + beta     beta      .. pi          lifts off
-//!     B   pi+beta .. pi            0         .. beta        slides, whatever the friction
+//!     B   pi+beta .. pi            0         .. beta        slides, however great the friction
 //!     C   -pi     .. beta          beta - pi .. 0           stays
 //!     E   beta    .. 0             -pi       .. beta - pi   all three
 //! ```
@@ -19,12 +19,12 @@ use std::f64::consts::PI;
 const BETA: Stroke = Stroke::solid(Color::Black, 1.0);
 const GAMMA: Stroke = Stroke::solid(Color::Green, 2.4);
 
-/// Inside of the axes \[px\].
+/// Width and height inside the axes \[px\].
 const SIZE: (f64, f64) = (super::WIDTH, 220.0);
-/// Height of a label's letters \[px\].
+/// The font size of labels \[px\].
 const LETTERS: u32 = 12;
 
-/// The regions of gamma, and what happens in them.
+/// The regions of gamma, and what a contact does in each.
 const REGIONS: [(ImpulseRegion, &str); 4] = [
     (ImpulseRegion::A, "lifts off"),
     (ImpulseRegion::B, "slides"),
@@ -32,10 +32,10 @@ const REGIONS: [(ImpulseRegion, &str); 4] = [
     (ImpulseRegion::E, "all three"),
 ];
 
-/// From one sample to the next an angle turns by less than this, or it jumps.
+/// An angle that changes by more than this between two samples is discontinuous \[rad\].
 const JUMP: f64 = 0.5;
 
-/// A panel for each contact that has angles somewhere.
+/// Returns a panel for each contact of a region with angles.
 pub fn panels(survey: &Survey, courses: &[RegionCurves]) -> Vec<Panel> {
     let explained = |course: &RegionCurves| course.places.iter().any(|place| place.explanation.is_some());
     let regions = survey.regions.iter().zip(courses).filter(|(_, course)| explained(course));
@@ -49,7 +49,7 @@ pub fn legend() -> [LegendEntry; 2] {
     [("γ", GAMMA), ("0, β and β ± π", BETA)].map(|(name, stroke)| LegendEntry::new(name, LegendKey::Line(stroke)))
 }
 
-/// The angles of a contact at a place.
+/// The angles of a contact \[rad\] at a value of the parameter.
 #[derive(Debug, Clone, Copy)]
 struct Angles {
     at: f64,
@@ -57,7 +57,7 @@ struct Angles {
     gamma: f64,
 }
 
-/// Stretches of the course in which a contact has angles.
+/// Returns the runs of successive points at which a contact has angles.
 fn runs(name: &str, survey: &Survey, courses: &[RegionCurves]) -> Vec<Vec<Angles>> {
     let mut runs: Vec<Vec<Angles>> = vec![Vec::new()];
     for (region, course) in survey.regions.iter().zip(courses) {
@@ -96,7 +96,7 @@ fn panel(name: &str, runs: &[Vec<Angles>], (from, to): (f64, f64), borders: &[f6
     for (region, words) in REGIONS {
         let ends = |angles: &Angles| strip(region, angles.beta).map(|angle| pixel((angles.at, angle)));
         let strips: Vec<Vec<[Pixel; 2]>> = runs.iter().map(|run| run.iter().map(ends).collect()).collect();
-        // A place on a border is better than none.
+        // If there is no other place, the text may cover a border.
         if let Some((x, y)) = room(&strips, &all, words).or_else(|| room(&strips, &curve, words)) {
             let at = (from + (to - from) * x / SIZE.0, 2.0 * PI * y / SIZE.1 - PI);
             shapes.push(PlotShape::Text { at, text: words.into(), size: LETTERS });
@@ -107,7 +107,7 @@ fn panel(name: &str, runs: &[Vec<Angles>], (from, to): (f64, f64), borders: &[f6
     Panel { title, shapes, size: SIZE, ..Panel::new(PlotAxis::default(), y) }
 }
 
-/// The lower and the upper end of a region of gamma.
+/// Returns the lower and the upper end of a region of gamma \[rad\].
 fn strip(region: ImpulseRegion, beta: f64) -> [f64; 2] {
     use ImpulseRegion::{A, B, C, E};
     let (regions, ends) = match beta <= 0.0 {
@@ -118,7 +118,7 @@ fn strip(region: ImpulseRegion, beta: f64) -> [f64; 2] {
     [ends[at], ends[at + 1]]
 }
 
-/// gamma in pieces that neither wrap from pi to -pi nor jump.
+/// Splits the curve of gamma where it wraps from pi to -pi, and where it is discontinuous.
 fn unbroken(run: &[Angles]) -> Vec<Vec<PlotPoint>> {
     let mut pieces: Vec<Vec<PlotPoint>> = vec![Vec::new()];
     for (at, angles) in run.iter().enumerate() {
@@ -127,7 +127,7 @@ fn unbroken(run: &[Angles]) -> Vec<Vec<PlotPoint>> {
             let wraps = (last.gamma + turn - angles.gamma).abs() > PI;
             let jumps = turn.abs() > JUMP;
             if wraps && !jumps {
-                // Both ends reach the edge at one place.
+                // Both pieces end at the edge of the panel, at the same value of the parameter.
                 let edge = PI.copysign(last.gamma);
                 let at = last.at + (angles.at - last.at) * (edge - last.gamma) / turn;
                 pieces.last_mut().into_iter().for_each(|piece| piece.push((at, edge)));
@@ -141,7 +141,8 @@ fn unbroken(run: &[Angles]) -> Vec<Vec<PlotPoint>> {
     pieces
 }
 
-/// The place \[px\] with the most room for a text between the ends of `strips` and apart from the curve.
+/// Returns the place \[px\] with the most room for a text between the ends of `strips` and apart from the curve; `None`
+/// if there is no room.
 fn room(strips: &[Vec<[Pixel; 2]>], curve: &[Vec<Pixel>], text: &str) -> Option<Pixel> {
     let half = TextBox::half_of(text, LETTERS);
     let mut best: Option<(f64, Pixel)> = None;
@@ -192,7 +193,7 @@ mod tests {
             assert!((widths - 2.0 * PI).abs() < 1e-12, "{beta}");
             assert!(strips.iter().all(|[low, high]| low < high && -PI <= *low && *high <= PI), "{beta}");
         }
-        // They are mirror images: gamma against pi - gamma.
+        // The strips for beta and -beta are mirror images: gamma becomes pi - gamma.
         assert_eq!(strip(ImpulseRegion::B, -0.3), [PI - 0.3, PI]);
         assert_eq!(strip(ImpulseRegion::B, 0.3), [0.0, 0.3]);
     }

@@ -1,4 +1,4 @@
-//! Two parameters: areas of equal outcomes with their letters, and the borders between them.
+//! Pictures of studies with two parameters: areas of equal outcomes with their letters, and the borders between them.
 
 use super::fills_of_map;
 use super::place::{ENOUGH, around, clear_of, encloses, freest};
@@ -9,18 +9,18 @@ use crate::pipeline::Aspect;
 use crate::sweep::{Area, Map, letter};
 use crate::write::sweep::Happening;
 
-/// Inside of the axes \[px\].
+/// Width and height inside the axes \[px\].
 const SIZE: Pixel = (540.0, 420.0);
-/// Of letters \[px\].
+/// The font size of letters \[px\].
 const LETTERS: u32 = 15;
 const BORDER: Stroke = Stroke::solid(Color::Black, 1.0);
-/// From a letter to its small area.
+/// The line from a letter to its small area.
 const LEADER: Stroke = Stroke::solid(Color::Black, 0.7);
 /// The least distance of a letter from borders \[px\].
 const CLEAR: f64 = 1.0;
-/// How far from the frame the search for a letter's place begins at least \[px\].
+/// The least distance from the frame at which the search for a letter's place begins \[px\].
 const INWARD: f64 = 2.0;
-/// A letter of a small area stands at one of these distances \[px\], in one of so many directions.
+/// The letter of a small area is at one of these distances from it \[px\], in one of `DIRECTIONS` directions.
 const AWAY: [f64; 6] = [26.0, 38.0, 52.0, 70.0, 95.0, 130.0];
 const DIRECTIONS: usize = 24;
 
@@ -35,7 +35,7 @@ pub fn picture([x, y]: [PlotAxis; 2], question: Aspect, map: &Map) -> Picture {
         let (letter, happening) = (letter(index), happening.lines().join("\n"));
         let remark = if is_lettered(&letter) { "" } else { "\n(without room for its letter)" };
         let name = format!("{letter}: {happening}{remark}");
-        // The seam between two fills lies under the border's line.
+        // The line of the border covers the seam between two fills.
         let loops = area.loops.iter().map(points).collect();
         shapes.push(PlotShape::Area { loops, fill: Some(color), stroke: None });
         legend.push(LegendEntry::new(name, LegendKey::Fill(color)));
@@ -46,7 +46,8 @@ pub fn picture([x, y]: [PlotAxis; 2], question: Aspect, map: &Map) -> Picture {
     Picture { title: String::new(), rows: vec![vec![panel]], legend }
 }
 
-/// The letters of all areas: within each part that has room for it, or next to the largest part, with a line to it.
+/// Places the letters of all areas. A letter is in each part of its area that has room for it. If none has, the letter
+/// is next to the largest part, with a line to it; if there is no room there either, the letter is omitted.
 fn letters(x: &PlotAxis, y: &PlotAxis, map: &Map) -> Vec<PlotShape> {
     let (Some(x), Some(y)) = (x.range, y.range) else { return Vec::new() };
     let pixel = |[a, b]: [f64; 2]| (SIZE.0 * (a - x.0) / (x.1 - x.0), SIZE.1 * (b - y.0) / (y.1 - y.0));
@@ -60,7 +61,7 @@ fn letters(x: &PlotAxis, y: &PlotAxis, map: &Map) -> Vec<PlotShape> {
     let part = |at: Pixel| -> Vec<bool> { loops.iter().map(|corners| encloses(corners, at)).collect() };
     let is_in =
         |area: &Area, at: Pixel| area.loops.iter().filter(|corners| encloses(&pixels(corners), at)).count() % 2 == 1;
-    // On the frame itself no way leads inward.
+    // A search that begins on the frame itself cannot move.
     let inward = |(a, b): Pixel| (a.clamp(INWARD, SIZE.0 - INWARD), b.clamp(INWARD, SIZE.1 - INWARD));
     let text = |index: usize, middle: Pixel| TextBox { middle, half: TextBox::half_of(&letter(index), LETTERS) };
     let label =
@@ -87,7 +88,7 @@ fn letters(x: &PlotAxis, y: &PlotAxis, map: &Map) -> Vec<PlotShape> {
     }
     for (index, area) in small {
         let deepest = area.middles.iter().max_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(middle, _)| pixel(*middle));
-        // An area between the lines of the grid has no middle.
+        // An area that contains no node of the grid has no middle.
         let inner = || area.loops.iter().filter_map(|corners| inner(&pixels(corners)));
         let roomiest = || inner().max_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, at)| at);
         let Some(from) = deepest.or_else(roomiest) else { continue };
@@ -97,7 +98,7 @@ fn letters(x: &PlotAxis, y: &PlotAxis, map: &Map) -> Vec<PlotShape> {
             clear_of(text, &taken) >= CLEAR + 2.0 && texts.iter().all(|other| clear_of(other, &leader) > 0.0)
         };
         let free: Vec<TextBox> = places.map(|at| text(index, at)).filter(is_free).collect();
-        // It stands on a part that has a letter of its own, if possible on a wide one.
+        // The letter is on a part of another area that has its own letter, if possible on a wide one.
         let is_beside = |text: &&TextBox, least: f64| {
             let own = part(text.middle);
             lettered.iter().any(|(part, room)| *room >= least && *part == own)
@@ -116,7 +117,8 @@ fn letters(x: &PlotAxis, y: &PlotAxis, map: &Map) -> Vec<PlotShape> {
     shapes
 }
 
-/// A point well inside a loop, and how far from it: the middle between opposite corners; of a line a point of it.
+/// Returns a point well inside a loop, the middle of two opposite corners, after its distance from the loop \[px\]. If
+/// all these middles are outside, the point is a corner. `None` if the loop is empty.
 fn inner(corners: &[Pixel]) -> Option<(f64, Pixel)> {
     let opposite = corners.iter().zip(corners.iter().skip(corners.len() / 2));
     let middles = opposite.map(|(a, b)| (0.5 * (a.0 + b.0), 0.5 * (a.1 + b.1)));
@@ -137,7 +139,7 @@ mod tests {
     use crate::law::Mode;
     use crate::sweep::{BorderCurve, Regime, Transition};
 
-    /// Upright strips of these widths.
+    /// Returns a map of upright strips with these widths.
     fn strips(widths: &[f64]) -> Map {
         let line = |x: f64| vec![[x, 0.0], [x, 1.0]];
         let (mut areas, mut curves, mut x) = (Vec::new(), Vec::new(), 0.0);
@@ -156,7 +158,7 @@ mod tests {
         Map { areas, curves, ..Map::default() }
     }
 
-    /// The letters of strips and their leaders, in px.
+    /// Returns the letters of strips, and the lines to small areas \[px\].
     fn placed(widths: &[f64]) -> (Vec<(String, TextBox)>, Vec<Vec<Pixel>>) {
         let axis = PlotAxis { range: Some((0.0, 1.0)), ..PlotAxis::default() };
         let pixel = |(x, y): PlotPoint| (SIZE.0 * x, SIZE.1 * y);
@@ -187,14 +189,14 @@ mod tests {
 
     #[test]
     fn letters_of_thin_areas_stand_on_a_wide_one() {
-        // The first one has room for its letter alone, next to the frame.
+        // The first strip, next to the frame, has room only for its own letter.
         let (texts, leaders) = placed(&[0.05, 0.02, 0.01, 0.92]);
         let names: Vec<&str> = texts.iter().map(|(name, _)| &**name).collect();
         assert_eq!((names, leaders.len()), (vec!["A", "D", "B", "C"], 2));
         for (at, (name, text)) in texts.iter().enumerate() {
             let (from, to) = if at == 0 { (0.0, 0.05) } else { (0.08, 1.0) };
             assert!(from * SIZE.0 < text.middle.0 - text.half.0 && text.middle.0 + text.half.0 < to * SIZE.0, "{name}");
-            // A leader ends at its own letter.
+            // The line of another area does not touch this letter.
             let others = leaders.iter().enumerate().filter(|(leader, _)| leader + 2 != at);
             assert!(
                 others.map(|(_, line)| clear_of(text, std::slice::from_ref(line))).all(|room| room > 0.0),

@@ -1,9 +1,9 @@
-//! Studies as pictures.
+//! Pictures of studies.
 //!
 //! ```text
-//!     Survey --> Courses --[along]---------> velocities after and impulses of each contact, regions shaded
-//!                        --[angles, place]-> beta and gamma, and the regions between them
-//!     Map    --[map, place]----------------> areas with letters in the plane of two parameters
+//!     Survey --> RegionCurves --[along]---------> velocities after and impulses of each contact, regions shaded
+//!                             --[angles, place]-> beta and gamma, and the regions between them
+//!     Map    --[map, place]---------------------> areas with letters in the plane of two parameters
 //! ```
 
 mod place;
@@ -17,10 +17,10 @@ use crate::sweep::{Findings, Map, Regime, Region, RegionCurves, RobotStudy, Surv
 use crate::write::sweep::Happening;
 use crate::write::words::grouped;
 
-/// The width of panels along a parameter, inside of their axes \[px\].
+/// The width of panels along a parameter, inside their axes \[px\].
 const WIDTH: f64 = 540.0;
 
-/// The picture of the findings of `model`; `workers` count [`work`] pieces of work.
+/// Returns the picture of the findings of `model`. Reports [`work`] pieces of work to `workers`.
 pub fn of(model: &RobotStudy, findings: &Findings, forward: Forward, workers: Workers) -> Picture {
     let names: Vec<String> = model.study.parameters().iter().map(|known| with_greek_letters(&known.name)).collect();
     let title = format!("{} against {}{}", model.robot.name, names.join(" and "), forward.remark());
@@ -36,7 +36,7 @@ pub fn of(model: &RobotStudy, findings: &Findings, forward: Forward, workers: Wo
     Picture { title, ..picture }
 }
 
-/// The pieces of work for a picture of the findings.
+/// Returns the number of pieces of work for the picture of the findings.
 pub fn work(model: &RobotStudy, findings: &Findings) -> usize {
     match findings {
         Findings::Along(survey) => RegionCurves::work(model, survey),
@@ -51,7 +51,7 @@ fn axis(model: &RobotStudy, parameter: usize) -> PlotAxis {
     PlotAxis { range: Some((known.from, known.to)), ..PlotAxis::new(label) }
 }
 
-/// A name in which the names of Greek letters are replaced by these letters: `delta_alpha` becomes δ_α.
+/// Replaces the names of Greek letters in a name by the letters: `delta_alpha` becomes δ_α.
 fn with_greek_letters(name: &str) -> String {
     const NAMES: [&str; 24] = [
         "alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa", "lambda", "mu", "nu",
@@ -62,44 +62,44 @@ fn with_greek_letters(name: &str) -> String {
     name.split('_').map(part).collect::<Vec<_>>().join("_")
 }
 
-/// The letter and the color of a kind of region, and what happens there.
+/// The letter, the color and the outcomes of a kind of region.
 struct KindLook<'a> {
     letter: String,
     color: Color,
     happening: Happening<'a>,
 }
 
-/// Each name once, in the order of the first of each.
+/// Returns each name once, in the order of first occurrence.
 fn different<'n>(names: impl Iterator<Item = &'n String>) -> Vec<&'n str> {
     grouped(names.map(|name| (name.as_str(), ()))).into_iter().map(|(name, _)| name).collect()
 }
 
-/// Whether a region is wide enough for lines in it.
+/// Returns whether a region is at least a pixel wide in a panel of full width, so that lines in it are visible.
 fn is_seen(region: &Region, survey: &Survey) -> bool {
     let range: f64 = survey.regions.iter().map(|region| region.to - region.from).sum();
     WIDTH * (region.to - region.from) >= range
 }
 
-/// The first region of every kind along a parameter, in the order of letters.
+/// Returns the first region of every kind along a parameter, in the order of letters.
 fn firsts(survey: &Survey) -> Vec<&Region> {
     grouped(survey.regions.iter().map(|region| (region.kind, region))).into_iter().map(|(_, alike)| alike[0]).collect()
 }
 
-/// The color of every kind of region along a parameter, in the order of letters.
+/// Returns the color of every kind of region along a parameter, in the order of letters.
 pub(crate) fn fills_along(survey: &Survey) -> Vec<Color> {
     let regimes: Vec<&Regime> = firsts(survey).iter().map(|region| &*region.regime).collect();
     let borders: Vec<[usize; 2]> = survey.regions.windows(2).map(|pair| [pair[0].kind, pair[1].kind]).collect();
     colors(&regimes, &borders)
 }
 
-/// The color of every area of a map, in the order of letters.
+/// Returns the color of every area of a map, in the order of letters.
 pub(crate) fn fills_of_map(map: &Map) -> Vec<Color> {
     let regimes: Vec<&Regime> = map.areas.iter().map(|area| &*area.regime).collect();
     let borders: Vec<[usize; 2]> = map.curves.iter().map(|curve| curve.sides).collect();
     colors(&regimes, &borders)
 }
 
-/// A color for each regime; neighbors, which `borders` separate, differ in hue, and in lightness if possible.
+/// Chooses a color for each regime. Neighbors, which `borders` separate, differ in hue, and in lightness if possible.
 fn colors(regimes: &[&Regime], borders: &[[usize; 2]]) -> Vec<Color> {
     let mut tints: Vec<Option<usize>> = Vec::new();
     for (kind, regime) in regimes.iter().enumerate() {
@@ -131,7 +131,7 @@ mod tests {
     fn neighbors_differ_in_color() {
         let regime = Regime::Answered { contacts: Vec::new(), outcomes: Vec::new(), undecided: Vec::new() };
         let regimes = [&regime; 20];
-        // Each kind borders on the one before it, and on one that would have its color if colors were used in turn.
+        // Each kind borders on the one before it, and on one that is 8 before it.
         let borders: Vec<[usize; 2]> =
             (1..20).map(|kind| [kind - 1, kind]).chain((8..20).map(|k| [k, k - 8])).collect();
         let colors = colors(&regimes, &borders);

@@ -3,17 +3,17 @@
 use crate::draw::plot::{Pixel, TextBox};
 use std::f64::consts::TAU;
 
-/// Distances from a segment are measured at points this far apart \[px\].
+/// The largest distance between the points at which the distance from a segment is measured \[px\].
 const PIECE: f64 = 2.0;
 
-/// How far curves are from a text \[px\]; negative where they run into it.
+/// Returns the distance of a text from the nearest curve \[px\]; negative if a curve crosses the text.
 pub fn clear_of(text: &TextBox, curves: &[Vec<Pixel>]) -> f64 {
     let reach = libm::hypot(text.half.0, text.half.1);
     let mut least = f64::INFINITY;
     for pair in curves.iter().flat_map(|curve| curve.windows(2)) {
         let [a, b] = [pair[0], pair[1]];
         let length = libm::hypot(b.0 - a.0, b.1 - a.1);
-        // No point of the segment is nearer than its ends are, less its length.
+        // No point of the segment is nearer to the text than its first end by more than the segment's length.
         if libm::hypot(a.0 - text.middle.0, a.1 - text.middle.1) - length - reach > least {
             continue;
         }
@@ -26,7 +26,7 @@ pub fn clear_of(text: &TextBox, curves: &[Vec<Pixel>]) -> f64 {
     least
 }
 
-/// Whether a point is inside a loop.
+/// Returns whether a point is inside a loop.
 pub fn encloses(corners: &[Pixel], (x, y): Pixel) -> bool {
     let edges = corners.iter().zip(corners.iter().cycle().skip(1));
     let crosses =
@@ -34,20 +34,20 @@ pub fn encloses(corners: &[Pixel], (x, y): Pixel) -> bool {
     edges.filter(crosses).count() % 2 == 1
 }
 
-/// Points at this distance, in so many directions \[px\].
+/// Returns the points at this distance \[px\] in `directions` evenly spaced directions.
 pub fn around((x, y): Pixel, distance: f64, directions: usize) -> impl Iterator<Item = Pixel> {
     let angle = move |direction: usize| direction as f64 * TAU / directions as f64;
     (0..directions).map(angle).map(move |angle| (x + distance * libm::cos(angle), y + distance * libm::sin(angle)))
 }
 
-/// A text with so much room on all sides is well placed \[px\].
+/// A text with at least this much room on all sides is well placed \[px\].
 pub const ENOUGH: f64 = 12.0;
-/// A text is moved so often at most, by this distance at most \[px\], in one of so many directions.
+/// The largest number of moves of a text, the largest distance of a move \[px\], and the number of directions.
 const MOVES: usize = 60;
 const STEP: f64 = 4.0;
 const DIRECTIONS: usize = 8;
 
-/// The place around `start` where a text of this half size has the most room, without a curve in between.
+/// Moves a text of this half size from `start` toward more room, without crossing a curve. Returns its middle \[px\].
 pub fn freest(start: Pixel, half: Pixel, curves: &[Vec<Pixel>]) -> Pixel {
     let room = |middle: Pixel| clear_of(&TextBox { middle, half }, curves);
     let (mut middle, mut best) = (start, room(start));
