@@ -1,4 +1,4 @@
-//! `heelstrike accuracy`: error against run time, and the stiff and extreme cases.
+//! `heelstrike accuracy`: error against run time, of a state or of a suite of stiff and extreme cases.
 
 use super::diagnostic::note;
 use super::input::InputFile;
@@ -18,7 +18,7 @@ use crate::{Error, Reason, Robot};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// What the suite's cases have of their own.
+/// Options that apply only to a state: the cases of the suite have settings of their own.
 const OF_A_STATE: [&str; 6] = ["friction", "contact_tolerance", "strict_limits", "place", "resting_speed", "budget"];
 
 /// Show error against run time, for a robot's state or for a suite of stiff and extreme cases
@@ -79,7 +79,7 @@ pub(super) fn run(args: &Args) -> Completion {
     drop(clock);
     args.plot.draw(&accuracy.picture(), "no method has both a time and an error here")?;
     let written = args.output.write(&accuracy, |palette| accuracy.text(palette))?;
-    // The suite contains refused cases on purpose; a user's own state does not.
+    // Refused cases of the suite are intended; a refused state of the user is an error.
     match accuracy.studies.as_slice() {
         [CaseStudy { refused: Some(error), .. }] if args.robot.is_some() => {
             let state = args.state.as_deref().map_or_else(String::new, input::name);
@@ -133,14 +133,14 @@ fn suite(part: &str, no_proof: bool, budget: Budget) -> Result<Accuracy, Failure
     Ok(Accuracy::new(studies, compliant))
 }
 
-/// Compliant contact compared with the outcomes of a state; `None` if there is nothing to compare.
+/// Compares compliant contact with the outcomes of a state; `None` if there is nothing to compare.
 fn compliant(name: &str, robot: &Robot, state: &State, options: &Options) -> Result<Option<Compliant>, Failure> {
     let comparison = match compare(robot, state, options) {
         Err(error) if *error.reason() == Reason::BeyondBudget => {
             note("compliant contact is left out: the budget of work ended before all of its runs (`budget`)");
             None
         }
-        // The integrator gives up: the errors and times of the state are known all the same.
+        // The integrator gave up. The errors and times of the state are still valid.
         Err(error) if matches!(error.reason(), Reason::Unsupported(_)) => {
             note(&format!("compliant contact is left out: {error}"));
             None

@@ -33,7 +33,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
-/// So many rows show whether velocities fit positions.
+/// The number of rows that are checked for velocities that do not fit positions.
 const FIRST_ROWS: usize = 300;
 
 /// Find every outcome of many states: one line of JSON or row of CSV each, answered in order
@@ -114,7 +114,7 @@ pub(super) fn run(args: &Args) -> Completion {
     let feet = args.robot.feet(&robot)?;
     let name = input::name(&args.states);
     let in_input = |error: Error| error.in_file(&name);
-    // The bytes of columns with types are not read one after the other.
+    // The bytes of Parquet and Arrow files are not read in order.
     let progress = match input_format.is_text() {
         true => progress::over(&args.states, args.output.is_some()),
         false => ProgressBar::hidden(),
@@ -122,14 +122,14 @@ pub(super) fn run(args: &Args) -> Completion {
     let origin = Origin::of(args.output.as_deref(), args.resume);
     let mut states = args.open(input_format, &origin, &progress).map_err(in_input)?;
     let header = args.header(&robot, &mut states, input_format)?;
-    // An engine may have an empty part.
+    // With `--refused ok` an empty input is accepted: a workflow engine may pass an empty part.
     if args.refused == Answered::NotAll && states.is_empty().map_err(in_input)? {
         let hint = if header.is_some() { "the table has a header and no rows" } else { "the input is empty" };
         return Err(in_input(Error::new(Reason::Missing("a state".into()))).hint(hint).into());
     }
     note_all(header.as_ref().and_then(notes::missing));
     note_all(header.as_ref().and_then(|header| args.misfit(&robot, header, input_format)));
-    // Before any file is replaced: does this robot have feet to look for?
+    // This refuses a robot without feet before any file is replaced.
     let thresholds = args.recording.thresholds(&robot, &feet);
     let thresholds = thresholds.map_err(|error| error.in_file(input::name(&args.robot.robot)))?;
     let layout = Layout {
@@ -143,11 +143,11 @@ pub(super) fn run(args: &Args) -> Completion {
     let columns = (format != Form::Ndjson).then(|| Columns::new(&robot, &feet, header.as_ref(), layout));
     let size = Feet::new(&robot, &feet).size();
     let question = args.question(&robot, feet, header.as_ref(), columns.as_ref())?;
-    // Full results note it themselves.
+    // Results that are not brief contain this note themselves.
     let tolerance = question.options.contact_tolerance.filter(|_| args.detail.brief);
     let lengths = args.recording.lengths().chain([("a contact tolerance", tolerance)]);
     note_all(lengths.filter_map(|(what, length)| beyond_size(what, length?, size)));
-    // Tried before the work, which would otherwise be lost.
+    // Checked before the work, which would otherwise be lost.
     writable(args.summary.as_deref())?;
     let mut head = Vec::new();
     if let Some(columns) = columns.as_ref().filter(|_| format.is_text()) {
@@ -196,7 +196,7 @@ impl Args {
         if self.forces { Aspect::Forces } else { Aspect::Impact }
     }
 
-    /// The formats of input and output, which must have room for what is asked.
+    /// Returns the formats of input and output. Refuses options that these formats do not support.
     fn formats(&self) -> Result<[Form; 2], Failure> {
         let input = format::form((Some(&self.states), false), self.input_format, "--input-format")?;
         let output = format::form((self.output.as_deref(), true), self.output_format, "--output-format")?;
@@ -217,7 +217,8 @@ impl Args {
         Ok([input, output])
     }
 
-    /// That the velocities of a table with times do not fit its positions, as its first rows say: a file can be read twice.
+    /// Returns a note if the velocities in the first rows of a table with times do not fit the positions. The rows are
+    /// read separately, which only a regular file permits.
     fn misfit(&self, robot: &Robot, header: &Header, format: Form) -> Option<String> {
         let has_all = header.missing().is_empty() && !header.is_spatial();
         let is_stream = self.states == Path::new("-") || self.states.starts_with("/dev") || !self.states.is_file();
@@ -262,7 +263,7 @@ impl Args {
         apart([("summary", Some(summary)), ("picture", self.plot.path())], "--plot")
     }
 
-    /// What is asked of each state.
+    /// Returns the question to each state.
     fn question<'a>(
         &self,
         robot: &'a Robot,
@@ -275,7 +276,7 @@ impl Args {
             options: Options {
                 aspect: self.aspect(),
                 next: self.next.next,
-                // For the summary, if it is shown, and the picture.
+                // The summary, if it is shown, and the picture need it.
                 friction_needed: self.summary.is_some() || self.plot.path().is_some() || !is_quiet(),
                 ..pipeline_options(
                     &self.scene.contacts,
@@ -294,7 +295,7 @@ impl Args {
         })
     }
 
-    /// Opens the output for answers, which begin with `head`.
+    /// Opens the output for answers, which begin with the header `head` of a table.
     fn begin(
         &self,
         question: &Question<'_>,
@@ -304,7 +305,7 @@ impl Args {
     ) -> io::Result<BatchOutput> {
         let asked = self.asked(question, format);
         match self.output.as_deref().filter(|path| self.resume && *path != Path::new("-")) {
-            // Summaries and pictures are of all states.
+            // Summaries and pictures need the answers to all states.
             Some(path) => BatchOutput::resume(path, head, self.summary.is_some() || question.keyframes, origin, asked),
             None => {
                 let continued = input.is_text() && format.is_text();
@@ -313,9 +314,9 @@ impl Args {
         }
     }
 
-    /// What the answers depend on, apart from the input.
+    /// Returns a digest of everything that the answers depend on, except the input.
     fn asked(&self, question: &Question<'_>, format: Form) -> Asked {
-        // The address of a budget's clock differs in each run; the summary is none of the answers.
+        // The address of a budget's clock differs in each run. Needed friction is only for summary and picture.
         let options = Options { budget: None, friction_needed: false, ..question.options.clone() };
         let Question { robot, defaults, detail, header, .. } = question;
         Asked::new(
@@ -324,7 +325,7 @@ impl Args {
         )
     }
 
-    /// Answers all states but the first `answered`.
+    /// Answers all states except the first `answered`.
     fn answer(
         &self,
         question: &Question<'_>,
@@ -352,7 +353,7 @@ impl Args {
                         let mut batch = Batch::new(question);
                         move |part| batch.part(&part)
                     };
-                    // They are long.
+                    // Parts are long, so few are read ahead.
                     batch::run(move || parts.part(), threads, 2, answerer, sink)
                 }
             };
@@ -368,7 +369,7 @@ impl Args {
         batch::run(batch::recorded(samples, &pauses), threads, AHEAD, answerer, sink)
     }
 
-    /// Notes what all answers have in common, and writes the summary.
+    /// Writes notes about all answers, and the summary.
     fn report(
         &self,
         question: &Question<'_>,
@@ -405,14 +406,14 @@ impl Args {
         NewFile::write(path, &line)
     }
 
-    /// The columns of a table, if the input is one.
+    /// Returns the columns of the input if it is a table.
     fn header(&self, robot: &Robot, states: &mut States, format: Form) -> Result<Option<Header>, Failure> {
         let in_order = self.recording.is_in_order();
         let header = states.header(robot, self.recording.rates(), &self.foreign, in_order);
         let header = header.map_err(|RefusedRecord { error, excerpt }| {
             Failure::Refused(error.in_file(input::name(&self.states)), excerpt)
         })?;
-        // A table without any line has no states, like lines of JSON.
+        // Only for JSON: an input in a table format without a header has no states at all.
         if header.is_none() && format == Form::Ndjson && (in_order || !self.foreign.is_empty()) {
             let what = if in_order { "touchdowns and velocities over time need" } else { "--foreign needs" };
             let error = Error::new(Reason::Inconsistent(format!("{what} a table")));

@@ -1,4 +1,4 @@
-//! Errors and notes on standard error, colored on a terminal, with hints in terms of the command line.
+//! Errors and notes on standard error, colored on a terminal. Hints name the options of the command line.
 
 use crate::Error;
 use crate::error::excerpt::Excerpt;
@@ -7,17 +7,17 @@ use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet, normali
 use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// The library's settings, as its hints name them; each has an option of its name, and `feet` has `--contact`.
+/// The settings that hints of the library name. Each has an option of the same name, except `feet`: `--contact`.
 const SETTINGS: &str = "base plane all hold axis_tolerance feet contact_tolerance package_path place strict_limits \
     resting_speed friction velocity drop ground_height foreign touchdowns at touching input_format format budget \
     budget_total brief simulated";
 
-/// The text with settings such as `base: floating` in backticks written as options: --base floating.
+/// Replaces settings in backticks, such as `base: floating`, by options: --base floating.
 pub(super) fn with_flags(text: &str) -> String {
     let pieces: Vec<&str> = text.split('`').collect();
     let mut out = String::new();
     for (at, piece) in pieces.iter().enumerate() {
-        // Every second piece stands between two backticks, except a last one that nothing closes.
+        // Every second piece is between two backticks, except a last one without a closing backtick.
         let quoted = at % 2 == 1 && at + 1 < pieces.len();
         let (name, value) = piece.split_once(": ").unwrap_or((piece, ""));
         let flag = || format!("--{}", if name == "feet" { "contact".into() } else { name.replace('_', "-") });
@@ -39,7 +39,7 @@ pub(super) fn report(error: &Error) {
     }
 }
 
-/// Writes the reason, the line in which the place is marked, and the remedy; without a line this is [`report`].
+/// Writes the reason, the line with a mark at the place, and the remedy. Without an excerpt, this is [`report`].
 pub(super) fn report_with(error: &Error, excerpt: Option<&Excerpt>) {
     let (Some(Location { line, .. }), Some(excerpt)) = (error.location(), excerpt) else {
         return report(error);
@@ -51,7 +51,7 @@ pub(super) fn report_with(error: &Error, excerpt: Option<&Excerpt>) {
     let snippet = Snippet::source(&excerpt.text).line_start(line).annotation(mark);
     let title = |text: String| Level::ERROR.primary_title(text);
     let mut groups = vec![if excerpt.starts_later {
-        // The renderer would count the columns from the cut.
+        // The renderer would count columns from the start of the excerpt, so the title names the place instead.
         title(error.to_string()).element(snippet)
     } else {
         let file = error.file().map(normalize_untrusted_str);
@@ -72,7 +72,7 @@ pub(super) fn is_quiet() -> bool {
     QUIET.load(Ordering::Relaxed)
 }
 
-/// Writes `note: ` and the text, unless only errors are wanted.
+/// Writes `note: ` and the text, unless `--quiet` is given.
 pub(super) fn note(text: &str) {
     if is_quiet() {
         return;

@@ -1,4 +1,4 @@
-//! Formats of states and of their answers.
+//! Formats of states and answers.
 
 use super::Failure;
 use super::output::check_ending;
@@ -8,12 +8,13 @@ use crate::{Error, Reason};
 use clap::ValueEnum;
 use std::path::Path;
 
-/// How the records of a file are written, by its ending; endings are the names of formats.
+/// Returns the format of a file by its ending, which is the name of the format; `None` for other endings.
 pub fn records(path: &Path) -> Option<Form> {
     Form::from_str(path.extension()?.to_str()?, true).ok()
 }
 
-/// What is `chosen` by the option of this name, or by the ending of a file, which may be written; else lines of JSON.
+/// Returns the `chosen` format, or else that of the ending of `file`, or else lines of JSON; refuses other endings and
+/// formats that this build does not have. The flag in `file` is true for an output; `option` chooses a format.
 pub(super) fn form(file: (Option<&Path>, bool), chosen: Option<Form>, option: &str) -> Result<Form, Failure> {
     let (path, _) = file;
     let form = chosen.or_else(|| path.and_then(records)).unwrap_or(Form::Ndjson);
@@ -28,7 +29,7 @@ pub(super) fn form(file: (Option<&Path>, bool), chosen: Option<Form>, option: &s
     Ok(form)
 }
 
-/// The refusal of a format that this build does not have.
+/// Returns the error for a format that this build does not have.
 #[cfg(not(feature = "columnar"))]
 pub(super) fn absent() -> Error {
     let reason = Reason::Unsupported("this build has no Parquet and no Arrow".into());

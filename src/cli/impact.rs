@@ -1,4 +1,4 @@
-//! `heelstrike impact` and `forces`: every outcome of one state, or of a few.
+//! `heelstrike impact` and `heelstrike forces`: every outcome of one state, or of a few.
 
 use super::diagnostic::{note, note_all};
 use super::options::{BudgetOptions, DetailOptions, NextOption, SceneOptions, pipeline_options};
@@ -56,7 +56,7 @@ pub(super) fn run(args: &Args) -> Completion {
 }
 
 impl StateArgs {
-    /// Answers every state, also with what happens `next`.
+    /// Answers every state; with `next`, also with the forces just after each outcome.
     pub fn run(&self, aspect: Aspect, next: bool) -> Completion {
         self.output.check_ending()?;
         let inputs = [Some(&self.robot.robot), Some(&self.state), self.scene.loops.as_ref()];
@@ -68,7 +68,7 @@ impl StateArgs {
         let (detail, contacts, budget) = (self.detail.detail(), &self.scene.contacts, self.budget.budget());
         let mut options = pipeline_options(contacts, feet.clone(), self.detail, &self.robot.reductions, budget);
         if format == Format::Text && !detail.brief {
-            // The text sums up why the other combinations fail even if it does not list them.
+            // The text sums up why the other combinations are rejected, even if it does not list them.
             options.explain_up_to = options.explain_up_to.max(SUMMED_UP);
         }
         (options.aspect, options.next) = (aspect, next);

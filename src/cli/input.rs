@@ -1,4 +1,4 @@
-//! Files and standard input.
+//! Reading of files and standard input.
 
 use super::Failure;
 use crate::error::excerpt::Excerpt;
@@ -8,26 +8,26 @@ use std::fs::File;
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
-/// The most files of a folder that are compared with a name that is not there.
+/// The largest number of files of a folder that are compared with the name of a missing file.
 const MOST_NEIGHBORS: usize = 1000;
 
-/// A file or standard input that was read whole.
+/// The contents of a file or of standard input.
 pub(super) struct InputFile {
-    /// Its name in messages.
+    /// The name of the file in messages.
     pub name: String,
-    /// Its contents.
+    /// The contents of the file.
     pub bytes: Vec<u8>,
 }
 
 impl InputFile {
-    /// The most bytes of a list of loops or a manifest.
+    /// The size limit of a list of loops or a manifest, in bytes.
     pub const SMALL: u64 = 1 << 20;
-    /// Of a robot, a mesh, a study or a single state.
+    /// The size limit of a robot, a mesh, a study or a single state, in bytes.
     pub const LARGE: u64 = 64 << 20;
-    /// Of states or problems after each other; `batch` reads line by line.
+    /// The size limit of a sequence of states or problems, in bytes. `batch` reads line by line, without this limit.
     pub const MANY: u64 = 1 << 30;
 
-    /// Reads `path`, of at most `limit` bytes: an endless file is refused.
+    /// Reads `path`, or standard input for `-`. Refuses more than `limit` bytes, which an endless file would have.
     pub fn read(path: &Path, limit: u64) -> Result<Self> {
         let name = name(path);
         let mut bytes = Vec::new();
@@ -39,19 +39,19 @@ impl InputFile {
         Ok(Self { name, bytes })
     }
 
-    /// The contents as text; an error does not name the file yet.
+    /// Returns the contents as text. An error does not yet name the file.
     pub fn text(&self) -> Result<&str> {
         utf8(&self.bytes)
     }
 
-    /// `error` in this file, with the line in question.
+    /// Returns the failure for an `error` in this file, with an excerpt of the line in question.
     pub fn refuse(&self, error: Error) -> Failure {
         let excerpt = error.location().and_then(|place| Excerpt::around(&self.bytes, 1, place));
         Failure::Refused(error.in_file(&self.name), excerpt)
     }
 }
 
-/// The name of a file in messages.
+/// Returns the name of a file in messages.
 pub(super) fn name(path: &Path) -> String {
     if path == Path::new("-") { "<stdin>".to_owned() } else { path.display().to_string() }
 }
@@ -83,17 +83,17 @@ fn cannot_read(path: &Path, error: &io::Error) -> Error {
     }
 }
 
-/// The names of the files next to `path`.
+/// Returns the names of the files next to `path`.
 fn neighbors(path: &Path) -> Vec<String> {
     let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
     let listed = std::fs::read_dir(folder);
     let entries = listed.into_iter().flatten().flatten().take(MOST_NEIGHBORS);
-    // The file itself may be a link that leads nowhere.
+    // The file itself may be a broken link.
     let others = entries.filter(|entry| Some(&*entry.file_name()) != path.file_name());
     others.map(|entry| entry.file_name().display().to_string()).collect()
 }
 
-/// Whether the file's name says that it holds one JSON object per line.
+/// Returns whether the ending of a file means one JSON object per line.
 pub(super) fn is_ndjson(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ["ndjson", "jsonl"].iter().any(|own| ending.eq_ignore_ascii_case(own)))
 }

@@ -41,7 +41,7 @@ pub struct Args {
 pub(super) fn run(args: &Args) -> Completion {
     args.output.check_ending()?;
     args.plot.claim(&[Some(&args.robot.robot), args.state.as_ref()], args.output.path())?;
-    // Its cautions are part of the output.
+    // The cautions of the robot are part of the output, so they are not noted.
     let (_, _, mut robot) = args.robot.described()?;
     robot.reading.cautions.iter_mut().for_each(|caution| *caution = with_flags(caution));
     let feet = args.robot.feet(&robot)?;
@@ -56,11 +56,11 @@ pub(super) fn run(args: &Args) -> Completion {
     args.output.write(&inspection, |palette| with_flags(&inspection.text(palette, args.all)))
 }
 
-/// Where the bodies are in the state of this file.
+/// Returns the places of the bodies in the state in this file.
 fn pose(path: &Path, robot: &Robot, feet: &[NamedContact]) -> Result<Placement, Failure> {
     let input = InputFile::read(path, InputFile::LARGE)?;
     let document = only_document(&input)?;
-    // A pose has no friction.
+    // A pose does not depend on friction, which the state may omit.
     let defaults = Defaults { friction: Some(Friction::from(0.0)), ..Defaults::default() };
     let posed = State::from_json(document.text, robot, &defaults).and_then(|state| {
         if state.scene.stance.is_none() && !state.scene.place_lowest {

@@ -1,35 +1,35 @@
-//! Names of mesh files in a URDF -> files.
+//! The files that mesh names in a URDF refer to.
 //!
 //! ```text
-//!     package:///path        from the folder of the URDF file, or from a --package-path DIR or the folders after it
-//!     package://NAME/rest    rest in the folder of package NAME, which is the first that is there of
+//!     package:///path        path in the first of the folders DIR, PREFIX/share ... below that contains this file
+//!     package://NAME/rest    rest in a folder of package NAME, the first of these that contains this file:
 //!                              DIR/NAME, or DIR itself if it is the package    for each --package-path DIR,
-//!                              the same for each folder of ROS_PACKAGE_PATH,
+//!                              the same                                        for each folder of ROS_PACKAGE_PATH,
 //!                              PREFIX/share/NAME                               for each of AMENT_PREFIX_PATH,
 //!                              the same as for DIR                             for each folder above the URDF file
 //!     file:///path, /path    that path
 //!     path                   from the folder of the URDF file
 //! ```
 //!
-//! A folder is a package if its own name or its package.xml says so. `model://` (Gazebo) means the same as
-//! `package://`, backslashes the same as slashes, and `%20` a space unless a file has the percent sign in its name.
-//! Only regular files are opened, and none outside its package.
+//! A folder is a package if its own name or the name in its package.xml is that of the package. `model://` (Gazebo)
+//! means the same as `package://`, and a backslash the same as a slash. `%20` means a space unless a file has the
+//! percent sign in its name. Only regular files are opened, and only names that do not leave their package.
 
 use super::input::InputFile;
 use crate::description::Fetched;
 use percent_encoding::percent_decode_str;
 use std::path::{Component, Path, PathBuf};
 
-/// Where meshes are looked for.
+/// The folders in which meshes are searched.
 pub struct Meshes {
-    /// The URDF file's folder.
+    /// The folder of the URDF file.
     folder: PathBuf,
-    /// Folders that are packages or hold them, in the order of the search.
+    /// Folders that are packages or contain packages, in the order of the search.
     roots: Vec<PathBuf>,
 }
 
 impl Meshes {
-    /// Those of the URDF file `robot`; packages are first looked for in `package_path`.
+    /// Creates the search for the URDF file `robot`. Packages are first searched in `package_path`.
     pub fn of(robot: &Path, package_path: &[PathBuf]) -> Self {
         let folder = robot.parent().unwrap_or(Path::new("")).to_owned();
         let mut roots = package_path.to_vec();
@@ -40,7 +40,10 @@ impl Meshes {
         Self { folder, roots }
     }
 
-    /// The file that a URDF calls `name`.
+    /// Reads the file that the URDF calls `name`.
+    ///
+    /// # Errors
+    /// Returns the reason if the file is not found, cannot be read, or its name leaves its package.
     pub fn fetch(&self, name: &str) -> Fetched {
         let as_written = name.replace('\\', "/");
         let decoded = percent_decode_str(&as_written).decode_utf8_lossy().into_owned();
@@ -59,9 +62,9 @@ impl Meshes {
         self.packages(package).map(|folder| folder.join(path)).find(|path| path.is_file())
     }
 
-    /// The folders of a package.
+    /// Returns the folders of a package; for an empty name, all roots.
     fn packages<'a>(&'a self, name: &'a str) -> impl Iterator<Item = PathBuf> + 'a {
-        // The folder of the file is a root, too.
+        // The folder of the URDF file is one of the roots.
         let inside = move |root: &PathBuf| {
             if name.is_empty() {
                 return Some(root.clone());
@@ -85,20 +88,20 @@ impl Meshes {
     }
 }
 
-/// The folders that an environment variable lists.
+/// Returns the folders that an environment variable lists.
 fn listed(variable: &str) -> Vec<PathBuf> {
     let all = std::env::var_os(variable).unwrap_or_default();
     std::env::split_paths(&all).filter(|folder| !folder.as_os_str().is_empty()).collect()
 }
 
-/// Package and path of a name like `package://NAME/path`.
+/// Splits a name like `package://NAME/path` into package and path; `None` for other names.
 fn package_and_path(name: &str) -> Option<(&str, &str)> {
     let rest = name.strip_prefix("package://").or_else(|| name.strip_prefix("model://"))?;
     let (package, path) = rest.split_once('/').unwrap_or((rest, ""));
     Some((package, path.trim_start_matches('/')))
 }
 
-/// Whether a name leads out of its package on the way.
+/// Returns whether the path of a name leaves its package, even if it comes back.
 fn leaves(name: &str) -> bool {
     let Some((package, path)) = package_and_path(name) else { return false };
     let depth = Path::new(path).components().try_fold(0_usize, |depth, component| match component {
@@ -110,7 +113,7 @@ fn leaves(name: &str) -> bool {
     depth.is_none() || matches!(package, "." | "..")
 }
 
-/// Whether `folder` is the package of that name.
+/// Returns whether `folder` is the package `name`, by its own name or by the name in its package.xml.
 fn is_package(folder: &Path, name: &str) -> bool {
     if folder.file_name().is_some_and(|own| own == name) {
         return true;

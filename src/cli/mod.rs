@@ -1,7 +1,7 @@
-//! The commands of the tool, one file each; the only user of clap.
+//! The commands of the tool, one file each. This is the only user of clap.
 //!
-//! Standard output carries results alone; standard error carries errors with hints, and notes. Exit status: 0 all
-//! inputs were answered, 1 some input was refused, 2 wrong usage.
+//! Standard output carries only results; standard error carries errors with hints, and notes. Exit status: 0 if all
+//! inputs were answered, 1 if an input was refused or the output could not be written, 2 for wrong usage.
 
 mod diagnostic;
 mod clock;
@@ -46,7 +46,7 @@ use std::borrow::Cow;
 use std::ffi::OsString;
 use std::io::{self, Write};
 
-/// The crate's version, and the commit if it is known.
+/// The version of the crate, and the commit if it is known.
 const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), env!("HEELSTRIKE_COMMIT"));
 
 /// Every rigid frictional impact outcome of a planar legged robot: which contact sticks, slides or lifts off, and
@@ -92,11 +92,11 @@ Examples:
     Man(reference::ManArgs),
 }
 
-/// Why a command ended early.
+/// The reason why a command ended early.
 enum Failure {
-    /// An input that the command cannot do without was refused, such as the robot's file; with the line in question.
+    /// An input that the command needs was refused, such as the robot's file; with an excerpt of the line in question.
     Refused(crate::Error, Option<Excerpt>),
-    /// An option's value is wrong or does not fit the robot.
+    /// The value of an option is wrong or does not fit the robot.
     Usage(crate::Error),
     /// The output could not be written.
     Output(io::Error),
@@ -117,15 +117,15 @@ impl From<io::Error> for Failure {
 /// Whether every input was answered, or why the command ended early.
 type Completion = Result<Answered, Failure>;
 
-/// Whether a command that read all of its input answered all of it.
+/// Whether a command that read all of its inputs answered all of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Answered {
     All,
     NotAll,
 }
 
-/// Runs the tool with these arguments, of which the first is its name, and returns the exit status. What it wrote has
-/// left its buffers.
+/// Runs the tool with these arguments, the first of which is its name, and returns the exit status. The buffer of
+/// standard output is flushed.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let exit = match Cli::try_parse_from(arguments) {
         Ok(cli) => run(cli),
@@ -160,7 +160,7 @@ fn run(cli: Cli) -> u8 {
     }
 }
 
-/// clap's message with what was probably meant, where the files show it.
+/// Adds a tip to clap's message if the names of files show what was probably meant.
 fn with_tip(mut message: clap::Error) -> clap::Error {
     let given = |kind| if let Some(ContextValue::String(given)) = message.get(kind) { given } else { "" };
     let (command, argument) = (given(ContextKind::InvalidSubcommand), given(ContextKind::InvalidArg));
@@ -181,7 +181,7 @@ fn with_tip(mut message: clap::Error) -> clap::Error {
 fn usage(message: &clap::Error) -> u8 {
     let styled = message.render();
     if !message.use_stderr() {
-        // Not by clap: std takes writing to a descriptor that is not open for writing as done.
+        // Not by clap: std ignores the error of writing to a descriptor that is not open for writing.
         let plain = AutoStream::choice(&io::stdout()) == ColorChoice::Never;
         let text = if plain { styled.to_string() } else { styled.ansi().to_string() };
         let written = Output::open(None).map_err(Failure::Output).and_then(|output| output.finish(text.as_bytes()));
@@ -191,7 +191,7 @@ fn usage(message: &clap::Error) -> u8 {
     let shown: Vec<_> = text.split('\n').map(visible).collect();
     // A failure to write to standard error cannot be reported anywhere.
     let _ = match shown.iter().any(|line| matches!(line, Cow::Owned(_))) {
-        // What was given holds what a terminal obeys.
+        // The arguments contain characters that would control the terminal.
         true => write!(anstream::stderr(), "{}", shown.join("\n")),
         false => message.print(),
     };
@@ -201,7 +201,7 @@ fn usage(message: &clap::Error) -> u8 {
 /// Reports why a command ended early, and returns the exit status.
 fn status(failure: Failure) -> u8 {
     match failure {
-        // The reader has seen enough, as with `| head`.
+        // The reader closed the pipe, as `| head` does.
         Failure::Output(error) if error.kind() == io::ErrorKind::BrokenPipe => return 0,
         Failure::Output(error) => {
             report(&crate::Reason::Io(format!("the output cannot be written: {error}")).into());

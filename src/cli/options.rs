@@ -45,7 +45,7 @@ pub(super) struct SceneOptions {
 }
 
 impl SceneOptions {
-    /// What states of `robot` take that do not say it.
+    /// Returns the defaults for states of `robot`.
     pub fn defaults(&self, robot: &Robot) -> Result<Defaults, Failure> {
         let (loops, place_lowest) = (self.read_loops(robot)?, self.contacts.place_lowest(robot)?);
         Ok(Defaults { loops, place_lowest, ..self.friction.defaults() })
@@ -86,7 +86,10 @@ const PLACES: Choices<PlaceLowest> = &[
 ];
 
 impl ContactOptions {
-    /// Whether the lowest foot of `robot` is put on the ground.
+    /// Returns whether the lowest foot of `robot` is put on the ground.
+    ///
+    /// # Errors
+    /// Returns an error if it is, but the base is fixed.
     pub fn place_lowest(&self, robot: &Robot) -> Result<bool, Failure> {
         if self.place && robot.base == Base::Fixed {
             let bolted = Reason::Inconsistent("the robot is bolted to the world, it cannot be placed".into());
@@ -110,7 +113,7 @@ pub(super) struct CsvOptions {
 }
 
 impl CsvOptions {
-    /// Refuses the option where `is_csv` says that no table is written.
+    /// Refuses the option if the output is not CSV.
     pub fn check(self, is_csv: bool) -> Result<(), Failure> {
         if !self.csv_safe || is_csv {
             return Ok(());
@@ -145,7 +148,7 @@ impl DetailOptions {
         Detail { explain: self.explain, matrices: self.matrices, brief: self.brief }
     }
 
-    /// Refuses what a table has no room for; `option` chooses another format.
+    /// Refuses details that a table cannot contain. `option` is the option that chooses another format.
     pub fn check_table(self, option: &str) -> Result<(), Failure> {
         if !(self.explain || self.matrices) {
             return Ok(());
@@ -155,7 +158,7 @@ impl DetailOptions {
         Err(Failure::Usage(Error::new(Reason::Inconsistent(reason.into())).hint(hint)))
     }
 
-    /// Refuses what a text of regions does not show; a picture that is `plotted` explains.
+    /// Refuses details that a text of regions does not show. `explain` is allowed if a picture is `plotted`.
     pub fn check_regions(self, plotted: bool) -> Result<(), Failure> {
         if !(self.brief || self.matrices || self.explain && !plotted) {
             return Ok(());
@@ -205,10 +208,10 @@ impl ReductionOptions {
     }
 }
 
-/// The values that an option may have: name, help and meaning of each; behind a name and `|` another one for it.
+/// The possible values of an option: name, help and meaning of each. Aliases follow the name after `|`.
 pub type Choices<T> = &'static [(&'static str, &'static str, T)];
 
-/// Reads one of these names.
+/// Returns a parser for the names of `choices`.
 pub(super) fn choice<T: Copy + Send + Sync + 'static>(choices: Choices<T>) -> impl TypedValueParser<Value = T> {
     let values = choices.iter().map(|(names, help, _)| {
         let mut names = names.split('|');
@@ -217,10 +220,10 @@ pub(super) fn choice<T: Copy + Send + Sync + 'static>(choices: Choices<T>) -> im
     PossibleValuesParser::new(values).try_map(move |given| named(choices, &given))
 }
 
-/// The value of this name.
+/// Returns the value with this name.
 ///
 /// # Errors
-/// The names that there are.
+/// Returns a text with all names if there is no such name.
 pub fn named<T: Copy>(choices: Choices<T>, name: &str) -> Result<T, String> {
     let found = choices.iter().find(|(names, ..)| names.split('|').any(|known| known == name));
     found.map(|(.., value)| *value).ok_or_else(|| {
@@ -245,7 +248,7 @@ impl ThreadOptions {
 
 const MOST_THREADS: i64 = 1024;
 
-/// So many threads, but at most 1,024; one per core for 0.
+/// Returns the number of threads: `count`, but at most 1,024, or one per core for 0.
 pub fn threads(count: usize) -> usize {
     match count {
         0 => available_parallelism().map_or(1, usize::from),
@@ -266,13 +269,13 @@ pub(super) struct BudgetOptions<const STUDY: bool> {
     budget: Seconds,
 }
 
-/// A duration; `None` without an end.
+/// A duration; `None` if it is infinite.
 pub type Seconds = Option<Duration>;
 
-/// A number of seconds from 0 on, or "infinite".
+/// Parses a number of seconds that is not negative, or "infinite".
 ///
 /// # Errors
-/// What was expected, in words.
+/// Returns a text about the expected values if `text` is none of them.
 pub fn seconds(text: &str) -> Result<Seconds, String> {
     if text == "infinite" {
         return Ok(None);
@@ -282,14 +285,14 @@ pub fn seconds(text: &str) -> Result<Seconds, String> {
 }
 
 impl<const STUDY: bool> BudgetOptions<STUDY> {
-    /// The budget, by processor time.
+    /// Returns the budget in processor time; `None` if it is infinite.
     pub fn budget(self) -> Option<Budget> {
         self.budget.map(|time| Budget { time, clock: work_time })
     }
 }
 
 impl BudgetOptions<false> {
-    /// The budget of many states, which may take the `total` together beyond their own; `None` without an end.
+    /// Returns the budget of many states. Beyond their own budgets they may take `total` together. `None` if infinite.
     pub fn of_many(self, total: Option<Seconds>) -> Option<TotalBudget> {
         let budget = self.budget().or_else(|| total.flatten().map(|time| Budget { time, clock: work_time }))?;
         match total {
@@ -300,14 +303,14 @@ impl BudgetOptions<false> {
 }
 
 impl BudgetOptions<true> {
-    /// The budget that all threads of a study spend together.
+    /// Returns the budget that all threads of a study share.
     pub fn shared(self) -> SharedBudget {
         let endless = Budget { time: Duration::MAX, clock: work_time };
         SharedBudget::new(self.budget().unwrap_or(endless))
     }
 }
 
-/// The pipeline's options.
+/// Combines options of the command line into options of the pipeline.
 pub(super) fn pipeline_options(
     contacts: &ContactOptions,
     feet: Vec<NamedContact>,
@@ -329,10 +332,10 @@ pub(super) fn pipeline_options(
     }
 }
 
-/// A finite number from 0 on.
+/// Parses a finite number that is not negative.
 ///
 /// # Errors
-/// What was expected, in words.
+/// Returns a text about the expected values if `text` is none of them.
 pub fn from_zero(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(number) if f64::is_finite(number) && number >= 0.0 => Ok(number),

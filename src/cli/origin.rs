@@ -1,11 +1,11 @@
-//! What the answers in an unfinished output depend on, kept next to it as `FILE.run` until it is whole.
+//! The record of what the answers in an unfinished output depend on. It is `FILE.run` until the output is whole.
 //!
 //! ```text
 //!     version, robot, options     compared before a run is continued
-//!     input: bytes, digest        compared once as much of the input is read again
+//!     input: bytes, digest        compared once this number of bytes of the input is read again
 //! ```
 //!
-//! The record of the input is renewed whenever more of it was read, before anything of that is answered.
+//! The record is rewritten whenever more of the input was read, before any of that is answered.
 
 use super::VERSION;
 use super::output::{RUN, beside, named};
@@ -17,14 +17,14 @@ use std::io::{self, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// The CRC-32 of all that a value holds; numbers enter with every digit.
+/// Returns the CRC-32 of a value's debug output, which contains numbers with all digits.
 fn digest(value: &impl Debug) -> u32 {
     let mut hasher = Hasher::new();
     hasher.update(format!("{value:?}").as_bytes());
     hasher.finalize()
 }
 
-/// The robot and the options of a run, as far as answers depend on them.
+/// Digests of the robot and the options of a run, as far as answers depend on them.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Asked {
     version: String,
@@ -37,7 +37,7 @@ impl Asked {
         Self { version: VERSION.to_owned(), robot: digest(robot), options: digest(options) }
     }
 
-    /// What an earlier run had otherwise.
+    /// Returns what was different in an earlier run; `None` if nothing was.
     fn unlike(&self, earlier: &Self) -> Option<&'static str> {
         let differences = [
             (self.version == earlier.version, "by another version of this tool"),
@@ -48,7 +48,7 @@ impl Asked {
     }
 }
 
-/// The beginning of an input: how many bytes, and their CRC-32.
+/// The number of bytes at the beginning of an input, and their CRC-32.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 struct Beginning {
     bytes: u64,
@@ -59,7 +59,7 @@ struct Beginning {
 struct Record {
     #[serde(flatten)]
     asked: Asked,
-    /// Whether the answers are in `FILE.part`, and not in the file itself.
+    /// Whether the answers are in `FILE.part` rather than in the file itself.
     part: bool,
     input: Beginning,
 }
@@ -67,9 +67,9 @@ struct Record {
 struct Reading {
     bytes: u64,
     hasher: Hasher,
-    /// What an earlier run had read, until as much is read again.
+    /// The part of the input that an earlier run had read; `None` once as many bytes are read again.
     earlier: Option<Beginning>,
-    /// Whether that was the same, once it is known.
+    /// Whether these bytes were the same; valid once `earlier` is `None`.
     is_same: bool,
     kept: Option<(File, Record)>,
 }
@@ -97,16 +97,16 @@ impl Reading {
         self.hasher.update(bytes);
     }
 
-    /// What was read so far.
+    /// Returns the size and digest of the input so far.
     fn beginning(&self) -> Beginning {
         Beginning { bytes: self.bytes, digest: self.hasher.clone().finalize() }
     }
 
-    /// Writes the record; a file that it does not fit into is left as one without a record.
+    /// Writes the record. If that fails, as on a full disk, the file is left empty, without a record.
     fn keep(&mut self) {
         let Some((file, record)) = &mut self.kept else { return };
         let bytes = serde_json::to_vec(record).unwrap_or_default();
-        // In one piece, over what was there: a shorter one ends before the rest of that.
+        // One write over the old record. A rest of a longer old record may follow; `Origin::of` ignores it.
         let written = file.rewind().and_then(|()| file.write_all(&bytes));
         if written.is_err() {
             let _ = file.set_len(0);
@@ -122,7 +122,7 @@ pub(super) struct Origin {
 }
 
 impl Origin {
-    /// For the output at `path`; with `resume`, what an earlier run left.
+    /// Creates the record for the output at `path`; with `resume`, reads the record that an earlier run left.
     pub fn of(path: Option<&Path>, resume: bool) -> Self {
         let path = path.filter(|path| *path != Path::new("-")).map(|path| beside(path, RUN));
         let bytes = path.as_ref().filter(|_| resume).and_then(|path| std::fs::read(path).ok()).unwrap_or_default();
@@ -136,16 +136,16 @@ impl Origin {
         self.reading.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The input, whose bytes are recorded as they are read, if the output has a record.
+    /// Returns the input as a reader that records its bytes if the output has a record.
     pub fn watch<R: Read>(&self, input: R) -> Watched<R> {
         Watched { input, reading: self.path.is_some().then(|| Arc::clone(&self.reading)) }
     }
 
-    /// Whether the answers, which are in a `part` or not, are known to be to what is `asked` now; without a record that
-    /// is not known.
+    /// Returns whether the present answers, in the `part` file or not, are known to belong to what is `asked` now;
+    /// without a record, it is not known.
     ///
     /// # Errors
-    /// They are not: what an earlier run had otherwise.
+    /// Returns what was different in the earlier run if they do not belong to it.
     pub fn answers(&self, asked: &Asked, part: bool) -> Result<bool, &'static str> {
         let Some(earlier) = self.earlier.as_ref().filter(|record| record.part == part) else {
             let mut reading = self.reading();
@@ -155,13 +155,13 @@ impl Origin {
         asked.unlike(&earlier.asked).map_or(Ok(true), Err)
     }
 
-    /// Whether the input is the one that an earlier run read; `None` if not as much was read yet.
+    /// Returns whether the input begins like that of the earlier run; `None` until as many bytes are read.
     pub fn is_same_input(&self) -> Option<bool> {
         let reading = self.reading();
         reading.earlier.is_none().then_some(reading.is_same)
     }
 
-    /// Keeps the record from here on, for answers in a `part` or not.
+    /// Keeps the record from now on, for answers in the `part` file or not.
     pub fn begin(&mut self, asked: Asked, part: bool) -> io::Result<()> {
         let Some(path) = &self.path else { return Ok(()) };
         let file = File::create(path).map_err(|error| named(path, error))?;
@@ -172,10 +172,10 @@ impl Origin {
         Ok(())
     }
 
-    /// Removes the record of an output that is whole.
+    /// Removes the record, because the output is whole.
     pub fn end(self) {
         if let (Some(path), true) = (&self.path, self.reading().kept.take().is_some() || self.earlier.is_some()) {
-            // There is no one to tell that a useless file stays.
+            // If this fails, a useless file stays; that is not worth an error.
             let _ = std::fs::remove_file(path);
         }
     }

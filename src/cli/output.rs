@@ -1,4 +1,4 @@
-//! Standard output or a file, as text or JSON.
+//! Output of results, as text or JSON, to standard output or a file.
 
 use super::diagnostic::note;
 use super::{Answered, Completion, Failure};
@@ -32,7 +32,7 @@ pub(super) enum Format {
 }
 
 impl OutputOptions {
-    /// The form chosen by option or by the output's ending; `None` if neither says.
+    /// Returns the format chosen by the option or by the output's ending; `None` if neither chooses one.
     pub fn chosen(&self) -> Option<Format> {
         let by_ending = |path: &PathBuf| match &*path.extension()?.to_str()?.to_ascii_lowercase() {
             "json" | "ndjson" | "jsonl" => Some(Format::Json),
@@ -42,18 +42,18 @@ impl OutputOptions {
         self.format.or_else(|| self.output.as_ref().and_then(by_ending))
     }
 
-    /// Refuses an output whose ending means a format that is not written here, unless the form is said.
+    /// Refuses an output whose ending means a format that is not written here, unless the option chooses a format.
     pub fn check_ending(&self) -> Result<(), Failure> {
         let written = "a result is written as .json, .ndjson or .txt, and tables by `batch`";
         if self.format.is_some() { Ok(()) } else { check_ending((self.path(), true), written, "--format") }
     }
 
-    /// The file; `None` for standard output.
+    /// Returns the output file; `None` for standard output.
     pub fn path(&self) -> Option<&Path> {
         self.output.as_deref()
     }
 
-    /// Writes the one result of a command, as text unless JSON is chosen.
+    /// Writes the only result of a command, as text unless JSON is chosen.
     pub fn write(&self, result: &impl Serialize, text: impl FnOnce(&Palette) -> String) -> Completion {
         let output = Output::open(self.path())?;
         let mut bytes = Vec::new();
@@ -65,16 +65,16 @@ impl OutputOptions {
     }
 }
 
-/// Endings of formats, of which a command may read or write a few.
+/// Endings with a known meaning. A command reads or writes only some of these formats.
 const FORMATS: [&str; 22] = [
     "arrow", "arrows", "csv", "feather", "h5", "hdf5", "html", "ipc", "mat", "npy", "npz", "parquet", "pdf", "pickle",
     "png", "svg", "toml", "tsv", "xlsx", "xml", "yaml", "yml",
 ];
-/// Those of inputs whose first bytes show what they are, with a better remedy.
+/// Endings that are refused only for outputs: the first bytes of such an input lead to an error with a better remedy.
 const PACKED: [&str; 8] = ["bz2", "gz", "ods", "pq", "xls", "xz", "zip", "zst"];
 
-/// Refuses a file, and whether it is written, whose ending means a format, for the `reason`: the command has another one
-/// for it; `option` overrules the ending.
+/// Refuses a file whose ending means another format than the command's; `is_written` tells an output from an input.
+/// `reason` names the formats of the command, and `option` is the option that overrides the ending.
 pub(super) fn check_ending(
     (path, is_written): (Option<&Path>, bool),
     reason: &'static str,
@@ -90,8 +90,8 @@ pub(super) fn check_ending(
     Err(Failure::Usage(error.hint(format!("name a file with one of these endings, or say {option}"))))
 }
 
-/// Refuses an `output` that is one of the `inputs`, even under another name, or next to which one is named like what is
-/// written there meanwhile; `-` and `None` are standard input and output.
+/// Refuses an `output` that is one of the `inputs`, even under another name, and one whose temporary files next to it
+/// ([`PART`], [`RUN`]) would replace an input. `-` is standard input or output, and so is `None` for the output.
 pub(super) fn spare(output: Option<&Path>, inputs: &[Option<&PathBuf>]) -> crate::Result<()> {
     let output = output.unwrap_or(Path::new("-"));
     let places = match output == Path::new("-") {
@@ -110,7 +110,7 @@ pub(super) fn spare(output: Option<&Path>, inputs: &[Option<&PathBuf>]) -> crate
     Err(Error::new(reason).in_file(name).hint("write to another file"))
 }
 
-/// Refuses two outputs that are one file, even under different names; `option` names the second, which may be absent.
+/// Refuses two outputs that are the same file, even under different names. The second may be absent; `option` names it.
 pub(super) fn apart(
     [(what, one), (other_what, other)]: [(&str, Option<&Path>); 2],
     option: &'static str,
@@ -129,11 +129,11 @@ pub(super) fn apart(
     Err(Failure::Usage(Error::new(reason).at(option).hint("name two files")))
 }
 
-/// Checks before the work that a file can be written, and leaves it unchanged; pipes and devices are not tried.
+/// Checks that a file can be written, and leaves it unchanged. Pipes and devices are not checked.
 pub(super) fn writable(path: Option<&Path>) -> io::Result<()> {
     let Some(path) = path.filter(|path| *path != Path::new("-")) else { return Ok(()) };
     let known = std::fs::metadata(path).ok();
-    // A pipe's reader would take a trial for the end.
+    // The reader of a pipe would take the end of the trial for the end of the output.
     if known.as_ref().is_some_and(|known| !known.is_file() && !known.is_dir()) {
         return Ok(());
     }
@@ -141,11 +141,12 @@ pub(super) fn writable(path: Option<&Path>) -> io::Result<()> {
     known.map_or_else(|| std::fs::remove_file(beside(path, "")).map_err(|error| named(path, error)), |_| Ok(()))
 }
 
-/// What is added to the name of an output that is not whole yet, and to that of its record.
+/// The endings that are added to the name of an unfinished output, and to the name of its record ([`super::origin`]).
 const PART: &str = ".part";
 pub(super) const RUN: &str = ".run";
 
-/// Device and inode of the file, of `standard` for `-`; `None` for devices and pipes, which are never replaced.
+/// Returns device and inode of the file, or those of `standard` for `-`; `None` for devices and pipes, which are never
+/// replaced.
 #[cfg(unix)]
 fn file_of(path: &Path, standard: impl std::os::fd::AsFd) -> Option<(u64, u64)> {
     use std::os::unix::fs::MetadataExt;
@@ -156,27 +157,27 @@ fn file_of(path: &Path, standard: impl std::os::fd::AsFd) -> Option<(u64, u64)> 
     file.is_file().then(|| (file.dev(), file.ino()))
 }
 
-/// The file of that name.
+/// Returns the absolute path of the file; `None` if it is not a regular file.
 #[cfg(not(unix))]
 fn file_of<S>(path: &Path, _standard: S) -> Option<PathBuf> {
     path.canonicalize().ok().filter(|path| path.is_file())
 }
 
-/// A file that takes its name once it is whole: until then it is written next to its place, with the ending `.part`.
+/// A file that gets its name when it is finished. Until then it is written next to its place, with the ending `.part`.
 /// Devices and pipes are written in place.
 #[derive(Debug)]
 pub(super) struct NewFile {
     pub file: File,
-    /// The name that was given.
+    /// The path as the user gave it.
     pub path: PathBuf,
-    /// The names while it is written and at last; `None` if they are one, or it has taken its name.
+    /// The temporary and the final path; `None` if the file is written in place or is finished.
     places: Option<[PathBuf; 2]>,
-    /// Whether it stays if it is not finished.
+    /// Whether an unfinished file is kept.
     pub keep: bool,
 }
 
 impl NewFile {
-    /// Creates the file; one of the same name stays until [`Self::finish`].
+    /// Creates the file. An existing file of the same name stays until [`Self::finish`].
     pub fn create(path: &Path) -> io::Result<Self> {
         Self::open(path).map_err(|error| named(path, error))
     }
@@ -188,7 +189,7 @@ impl NewFile {
             return Ok(new(File::create(path)?, None));
         }
         if known.is_some() {
-            // Refuses a file that may not be written.
+            // Fails if the existing file may not be written.
             OpenOptions::new().append(true).open(path)?;
         }
         let [part, last] = Self::places(path);
@@ -205,7 +206,8 @@ impl NewFile {
         new.finish()
     }
 
-    /// Opens what an earlier run left of the file: its part, or else the file itself, which is then continued in place.
+    /// Opens the file of an earlier run: the unfinished file, or else the file itself, which is then continued in
+    /// place. Returns `None` if there is neither.
     pub fn reopen(path: &Path) -> io::Result<Option<Self>> {
         let [part, last] = Self::places(path);
         let places = part.is_file().then(|| [part, last.clone()]);
@@ -218,30 +220,30 @@ impl NewFile {
         Ok(Some(Self { file, path: path.to_owned(), places, keep: true }))
     }
 
-    /// The names while the file is written and at last.
+    /// Returns the temporary and the final path of a file.
     fn places(path: &Path) -> [PathBuf; 2] {
         [beside(path, PART), beside(path, "")]
     }
 
-    /// The name of what is written so far, if the file has not taken its own yet.
+    /// Returns the temporary path; `None` if the file is written in place or is finished.
     pub fn part(&self) -> Option<&Path> {
         self.places.as_ref().map(|[part, _]| part.as_path())
     }
 
-    /// Whether a file of that name is there already.
+    /// Returns whether finishing will replace an existing file.
     pub fn replaces(&self) -> bool {
         self.places.as_ref().is_some_and(|[_, last]| last.is_file())
     }
 
-    /// Removes a file that has not its own name yet and is not kept.
+    /// Removes an unfinished file that is not kept.
     pub fn discard(&self) {
         if let (Some([part, _]), false) = (&self.places, self.keep) {
-            // There is no one to tell that a useless file stays.
+            // If this fails, a useless file stays; that is not worth an error.
             let _ = std::fs::remove_file(part);
         }
     }
 
-    /// Gives the file its name.
+    /// Gives the file its final name, with the permissions of the file that it replaces.
     pub fn finish(mut self) -> io::Result<()> {
         let Some([part, last]) = self.places.take() else { return Ok(()) };
         let renamed = || {
@@ -261,16 +263,16 @@ impl Drop for NewFile {
     }
 }
 
-/// The file at `path`, with this added to its name.
+/// Returns the path of the file at `path`, with links followed and `ending` added to its name.
 pub(super) fn beside(path: &Path, ending: &str) -> PathBuf {
-    // The file that a link names is replaced, not the link, also if it is not there yet.
+    // The target of a link is replaced, not the link; this includes a target that does not exist yet.
     let linked = || Some(path.parent()?.join(path.read_link().ok()?));
     let mut name = path.canonicalize().ok().or_else(linked).unwrap_or_else(|| path.to_owned()).into_os_string();
     name.push(ending);
     name.into()
 }
 
-/// Refuses a file that another run is writing; not all file systems know.
+/// Locks a file, and refuses one that another run is writing. File systems without locks accept every file.
 fn lock(file: &File) -> io::Result<()> {
     match file.try_lock() {
         Err(TryLockError::WouldBlock) => Err(io::Error::other("another run is writing it")),
@@ -278,7 +280,7 @@ fn lock(file: &File) -> io::Result<()> {
     }
 }
 
-/// Where results go.
+/// The destination of results.
 pub(super) enum Target {
     Standard(Box<dyn Write + Send>),
     File(NewFile),
@@ -327,8 +329,8 @@ impl Write for Target {
     }
 }
 
-/// Standard output without a buffer: results come in large blocks, std's line buffer would hide how much reached a full
-/// disk, and std takes writing to a descriptor that is not open for writing as done.
+/// Opens standard output without a buffer. Results come in large blocks, and std's line buffer would hide how much
+/// reached a full disk. Also, std ignores the error of writing to a descriptor that is not open for writing.
 fn standard_output() -> io::Result<Box<dyn Write + Send>> {
     #[cfg(unix)]
     {
@@ -339,10 +341,10 @@ fn standard_output() -> io::Result<Box<dyn Write + Send>> {
     Ok(Box::new(io::stdout()))
 }
 
-/// A buffered output; standard output is colored if it is a terminal that wants colors.
+/// A buffered output. Text on standard output is colored if colors are on.
 pub(super) struct Output {
     pub writer: BufWriter<Target>,
-    /// How text is marked here.
+    /// The codes that emphasize text on this output.
     pub palette: Palette,
 }
 
@@ -364,16 +366,16 @@ impl Output {
         Ok(Answered::All)
     }
 
-    /// Closes the output; a file that is there already is replaced only if something was `answered`.
+    /// Closes the output. An existing file is replaced only if something was `answered`.
     pub fn close(self, answered: bool) -> io::Result<()> {
         self.writer.into_inner().map_err(|error| error.into_error())?.finish(answered)
     }
 }
 
-/// Bold and faint.
+/// Terminal codes for bold, faint and plain text.
 const COLORS: Palette = Palette { strong: "\x1b[1m", faint: "\x1b[2m", plain: "\x1b[0m" };
 
-/// The error, with the file's name.
+/// Adds the file's name to an error.
 pub(super) fn named(path: &Path, error: io::Error) -> io::Error {
     let path = path.display();
     let reason = match error.kind() {

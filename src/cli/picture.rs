@@ -37,8 +37,8 @@ impl MirrorOptions {
 }
 
 impl<const PAGES: bool> PlotOptions<PAGES> {
-    /// Refuses, before any work is done, to write the `results` or the picture over a file that is read, the picture to
-    /// a file of an unknown ending, to that of the results, or to one that cannot be written.
+    /// Checks the outputs before any work is done. Refuses `results` or a picture that would replace an input, and a
+    /// picture whose file has an unknown ending, is that of the results, or cannot be written.
     pub fn claim(&self, inputs: &[Option<&PathBuf>], results: Option<&Path>) -> Result<(), Failure> {
         spare(results, inputs)?;
         let picture = "a picture is written as .svg or .png";
@@ -64,7 +64,7 @@ impl<const PAGES: bool> PlotOptions<PAGES> {
         Ok(writable(self.path())?)
     }
 
-    /// The file.
+    /// Returns the file of the picture or page, if one is requested.
     pub fn path(&self) -> Option<&Path> {
         self.plot.as_deref()
     }
@@ -73,13 +73,13 @@ impl<const PAGES: bool> PlotOptions<PAGES> {
         Some(self.path()?.extension()?.to_str()?.to_ascii_lowercase())
     }
 
-    /// Whether a page is asked for.
+    /// Returns whether a page is requested.
     pub fn is_page(&self) -> bool {
         self.ending().as_deref() == Some("html")
     }
 
-    /// Draws the picture, if one is asked for; one without anything to draw, or without a scale, is refused, for the
-    /// reason `why_empty`.
+    /// Writes the picture if one is requested. Refuses a picture without anything to draw, or without a finite scale;
+    /// `why_empty` explains it.
     pub fn draw(&self, picture: &Picture, why_empty: &'static str) -> Result<(), Failure> {
         let bytes = match self.ending().as_deref() {
             None => return Ok(()),
@@ -89,7 +89,7 @@ impl<const PAGES: bool> PlotOptions<PAGES> {
         self.write(bytes, why_empty)
     }
 
-    /// Draws the picture, or writes the page that `page` makes around it, if one of both is asked for.
+    /// Writes the picture, or the page that `page` creates with it, if either is requested.
     pub fn draw_or_page(
         &self,
         picture: &Picture,

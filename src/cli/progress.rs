@@ -1,4 +1,4 @@
-//! Progress of what takes long, shown on a terminal: bars for long inputs and sweeps, else how long it already takes.
+//! Progress of long work on a terminal: bars for long inputs and sweeps, else the elapsed time.
 
 use super::diagnostic::is_quiet;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressStyle};
@@ -8,23 +8,23 @@ use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread::{Builder, JoinHandle};
 use std::time::Duration;
 
-/// A bar for the bytes of `input`, if it is a file, standard error is a terminal, and the results go elsewhere: to
-/// standard output unless `to_a_file`; else one that is hidden.
+/// Returns a bar for the bytes of `input`. It is hidden unless `input` is a file, standard error is a terminal, and the
+/// results go elsewhere: `to_a_file`, or to a standard output that is not a terminal.
 pub(super) fn over(input: &Path, to_a_file: bool) -> ProgressBar {
     let watched = to_a_file || !io::stdout().is_terminal();
     let file = if watched { std::fs::metadata(input).ok().filter(std::fs::Metadata::is_file) } else { None };
     bar(file.map(|file| file.len()), "{wide_bar} {percent}% of {total_bytes}, {eta} left")
 }
 
-/// A bar for so many pieces of work, if standard error is a terminal.
+/// Returns a bar for a number of pieces of work. It is hidden unless standard error is a terminal.
 pub(super) fn of(pieces: usize) -> ProgressBar {
     bar(Some(pieces as u64), "{wide_bar} {percent}%, {eta} left")
 }
 
-/// How long work may take before a terminal shows that it goes on.
+/// The time after which a terminal shows that work is going on.
 const QUIET_WORK: Duration = Duration::from_secs(2);
 
-/// Shows the time that work takes, from two seconds on, until it is dropped.
+/// Shows the elapsed time, from two seconds on, until it is dropped.
 #[must_use]
 pub(super) struct Stopwatch(Option<(Sender<()>, JoinHandle<()>)>);
 
@@ -59,7 +59,7 @@ fn style(parts: &str) -> ProgressStyle {
     ProgressStyle::with_template(parts).unwrap_or_else(|_| ProgressStyle::default_bar())
 }
 
-/// It is removed when the last handle to it is dropped.
+/// Returns a bar that is removed when its last handle is dropped; hidden without a `length` or a terminal.
 fn bar(length: Option<u64>, parts: &str) -> ProgressBar {
     let Some(length) = length.filter(|_| io::stderr().is_terminal() && !is_quiet()) else {
         return ProgressBar::hidden();

@@ -1,4 +1,4 @@
-//! Options for rows that follow each other in time.
+//! Options for rows that are successive samples in time.
 
 use super::options::{Choices, choice, from_zero};
 use crate::batch::RowOrigin;
@@ -8,8 +8,8 @@ use crate::state::NamedContact;
 use crate::{Result, Robot};
 use std::sync::Mutex;
 
-/// What no touchdowns can be asked with. Each of their options has this list: one that `requires` what is in conflict with
-/// another is not missed.
+/// Options that conflict with `--touchdowns`. All options that require it have this list, too: clap does not demand a
+/// required option that is in conflict with a given one.
 const OTHERS: &[&str] = &["place", "forces", "contact_tolerance"];
 
 /// Options for rows that follow each other in time.
@@ -53,13 +53,13 @@ pub struct RecordingOptions {
     pub velocity: Option<Difference>,
 }
 
-/// Which state of a touchdown is analyzed.
+/// The values of `--at`: which state of a touchdown is analyzed.
 pub const ROWS: Choices<At> = &[
     ("crossing", "The state at the moment of contact, extrapolated from the rows before the impact", At::Crossing),
     ("row", "The last row before that moment, shifted in z", At::Row),
 ];
 
-/// How velocities are computed.
+/// The values of `--velocity`: how velocities are computed.
 pub const DIFFERENCES: Choices<Difference> = &[
     ("central", "From the rows before and after", Difference::Central),
     ("backward", "From the row before", Difference::Backward),
@@ -69,12 +69,12 @@ pub const DIFFERENCES: Choices<Difference> = &[
 pub type Samples<'a> = Box<dyn Iterator<Item = Sampled<RowOrigin>> + Send + 'a>;
 
 impl RecordingOptions {
-    /// Whether rows depend on each other.
+    /// Returns whether the answer to a row depends on other rows.
     pub fn is_in_order(&self) -> bool {
         self.touchdowns || self.velocity.is_some()
     }
 
-    /// The lengths that touchdowns are found by \[m\], as far as they are given.
+    /// Returns the names and values of the lengths that define touchdowns \[m\]; `None` for a length that is not given.
     pub fn lengths(&self) -> impl Iterator<Item = (&'static str, Option<f64>)> {
         let height = match self.touching {
             Touching::Slow { height, .. } | Touching::Near { height } => Some(height),
@@ -83,15 +83,15 @@ impl RecordingOptions {
         [("`drop`", self.drop), ("`ground_height`", self.ground_height), ("`touching`", height)].into_iter()
     }
 
-    /// Where velocities come from.
+    /// Returns where velocities come from: the columns, or the positions over time.
     pub fn rates(&self) -> Rates {
         if self.velocity.is_some() { Rates::Time } else { Rates::Columns }
     }
 
-    /// When a foot touches down.
+    /// Returns the thresholds that define a touchdown.
     ///
     /// # Errors
-    /// Touchdowns of a robot that has no feet to look for.
+    /// Returns an error if touchdowns are requested and the robot has no feet.
     pub fn thresholds(&self, robot: &Robot, feet: &[NamedContact]) -> Result<Thresholds> {
         if self.touchdowns {
             gait::find(std::iter::empty::<Sampled<()>>(), robot, feet, self.at, self.touching)?;
@@ -101,11 +101,11 @@ impl RecordingOptions {
         Ok(Thresholds { drop, ground, ..usual })
     }
 
-    /// The samples to be answered; what a projection of the base leaves out is added to `dropped`, and what is seen of a
-    /// recording in search of touchdowns to `seen`.
+    /// Returns the samples to be answered. The parts of motion that a projection of the base omits are added to
+    /// `dropped`, and observations from the search for touchdowns to `seen`.
     ///
     /// # Errors
-    /// As above.
+    /// Returns an error if touchdowns are requested and the robot has no feet.
     pub fn chosen<'a>(
         &self,
         mut samples: Samples<'a>,
@@ -130,7 +130,7 @@ impl RecordingOptions {
         Ok(samples)
     }
 
-    /// What to say if there are no touchdowns.
+    /// Returns the message for a recording without touchdowns.
     pub fn nothing_found(&self, thresholds: Thresholds, seen: &Seen) -> String {
         seen.nothing_found(thresholds, self.heights())
     }

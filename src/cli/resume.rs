@@ -1,13 +1,13 @@
-//! The output of a batch, which may continue what an interrupted run has written.
+//! The output of a batch, which can continue the output of an interrupted run.
 //!
 //! ```text
-//!     answers to states   1 ... n-101 | n-100 ... n-1 | n, whole or cut off
+//!     answers to states   1 ... n-101 | n-100 ... n-1 | n, complete or cut off
 //!                         kept        | compared      | written again
 //! ```
 //!
-//! Robot, options and input are those of the interrupted run, as its record says ([`Origin`]); without one, all that is
-//! there is compared. The last state is answered again, because its rows or its input may have been cut off. Those
-//! before it are answered again and compared, byte by byte: answers beyond their budget differ each time.
+//! Robot, options and input must be those of the interrupted run, as its record shows ([`Origin`]); without a record,
+//! all answers are compared. The last state is answered again, because its rows or its input may have been cut off. The
+//! 100 states before it are answered again and compared byte by byte. Answers beyond their budget differ each time.
 
 use super::origin::{Asked, Origin};
 use super::output::{NewFile, Target, named};
@@ -18,10 +18,10 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
-/// How many answers are compared.
+/// The number of answers that are compared.
 const COMPARED: usize = 100;
 
-/// Where the answers of a batch go.
+/// The destination of the answers of a batch.
 pub(super) struct BatchOutput {
     written: Written,
     origin: Origin,
@@ -33,7 +33,7 @@ enum Written {
 }
 
 impl BatchOutput {
-    /// A new output at `path`, or on standard output, for answers to what is `asked`; `None` if no run can continue it.
+    /// Creates an output at `path`, or on standard output, for answers to `asked`; with `None`, no run can continue it.
     pub fn create(path: Option<&Path>, mut origin: Origin, asked: Option<Asked>) -> io::Result<Self> {
         let target = Target::open(path, asked.is_some())?;
         if let (Target::File(file), Some(asked)) = (&target, asked)
@@ -44,8 +44,8 @@ impl BatchOutput {
         Ok(Self { written: Written::New(target), origin })
     }
 
-    /// Continues what there is of the output at `path`, or begins it. A table begins with `header`. With `all`, every
-    /// state is answered again and compared.
+    /// Continues the output at `path`, or begins it if it does not exist. A table begins with `header`. With `all`,
+    /// every state is answered again and compared.
     pub fn resume(path: &Path, header: &[u8], all: bool, origin: Origin, asked: Asked) -> io::Result<Self> {
         let Some(file) = NewFile::reopen(path)? else { return Self::create(Some(path), origin, Some(asked)) };
         let known = origin.answers(&asked, file.part().is_some()).map_err(|what| unlike(&file, what))?;
@@ -53,7 +53,7 @@ impl BatchOutput {
         Ok(Self { written: Written::Continued(continued), origin })
     }
 
-    /// How many states are not answered again, and how many of them were refused.
+    /// Returns the number of states that are not answered again, and how many of them were refused.
     pub fn kept(&self) -> (usize, u64) {
         match &self.written {
             Written::New(_) => (0, 0),
@@ -61,7 +61,7 @@ impl BatchOutput {
         }
     }
 
-    /// How many lines are there before the next answer; without any, a header is missing, too.
+    /// Returns the number of lines before the next answer. If it is 0, the header of a table is missing, too.
     pub fn lines(&mut self) -> io::Result<usize> {
         let Written::Continued(Continued { file: NewFile { file, .. }, .. }) = &mut self.written else { return Ok(0) };
         let end = file.stream_position()?;
@@ -69,7 +69,7 @@ impl BatchOutput {
         Ok(BufReader::new(file.take(end)).split(b'\n').count())
     }
 
-    /// What holds the answers so far, if another run can continue it.
+    /// Returns the file with the answers so far if another run can continue it.
     pub fn part(&self) -> Option<&Path> {
         match &self.written {
             Written::New(Target::File(file)) | Written::Continued(Continued { file, .. }) => {
@@ -79,14 +79,14 @@ impl BatchOutput {
         }
     }
 
-    /// Removes what was written if no other run can continue it.
+    /// Removes the written answers if no other run can continue them.
     pub fn discard(&self) {
         if let Written::New(Target::File(file)) = &self.written {
             file.discard();
         }
     }
 
-    /// Ends the output; a file that is there already is replaced only if something was `answered`.
+    /// Finishes the output. An existing file is replaced only if something was `answered`.
     pub fn finish(mut self, answered: bool) -> io::Result<()> {
         match self.written {
             Written::New(target) => target.finish(answered)?,
@@ -123,17 +123,17 @@ impl Write for BatchOutput {
     }
 }
 
-/// An output that an earlier run began.
+/// An output that an earlier run began and this run continues.
 struct Continued {
     file: NewFile,
-    /// How many bytes are still to be compared.
+    /// The number of bytes that are still to be compared.
     known: u64,
-    /// How many states are not answered again, and how many of them were refused.
+    /// The number of states that are not answered again, and how many of them were refused.
     answered: usize,
     refused: u64,
-    /// What is asked, until the first answer is written.
+    /// The robot and options of this run, until the first answer is written.
     asked: Option<Asked>,
-    /// Answers that wait until the input is known to be the same.
+    /// Answers that are held back until the input is known to be the same.
     waiting: Vec<u8>,
 }
 
@@ -141,7 +141,7 @@ const OTHER_INPUT: &str = "over another input";
 const OTHER_ANSWERS: &str = "with other answers";
 
 impl Continued {
-    /// Of a table that begins with `header`. With `all`, every state is answered again and compared.
+    /// Opens an output; a table begins with `header`. With `all`, every state is answered again and compared.
     fn open(file: NewFile, header: &[u8], all: bool, asked: Asked) -> io::Result<Self> {
         let Answers { before, refused, last } = match header.get("id".len()) {
             None => lines(&file.file),
@@ -160,7 +160,7 @@ impl Continued {
         Ok(continued)
     }
 
-    /// Compares the beginning of `bytes` with what is there; returns how many bytes were compared.
+    /// Compares the beginning of `bytes` with the file, and returns how many bytes were compared.
     fn compare(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let count = usize::try_from(self.known).unwrap_or(usize::MAX).min(bytes.len());
         let mut there = vec![0; count];
@@ -172,7 +172,7 @@ impl Continued {
         Ok(count)
     }
 
-    /// Writes behind what was compared, once the input is known to be the same.
+    /// Writes after the compared answers, once the input is known to be the same.
     fn write(&mut self, bytes: &[u8], origin: &mut Origin) -> io::Result<usize> {
         match origin.is_same_input() {
             Some(true) => {}
@@ -192,7 +192,7 @@ impl Continued {
     }
 }
 
-/// The refusal of an output that was begun otherwise.
+/// Returns the error for an output that was begun differently.
 fn unlike(file: &NewFile, what: &str) -> io::Error {
     let reason = format!("it was begun {what}: give what it was begun with, or remove it");
     named(file.part().unwrap_or(&file.path), io::Error::new(ErrorKind::InvalidData, reason))
@@ -201,10 +201,10 @@ fn unlike(file: &NewFile, what: &str) -> io::Error {
 /// The places of answers in a file.
 #[derive(Default)]
 struct Answers {
-    /// How many states are answered before the last ones, and how many of them are refused.
+    /// The number of states before those in `last`, and how many of them are refused.
     before: usize,
     refused: u64,
-    /// Where the answers to the last ones begin, those to be compared and one more, and whether they are refusals.
+    /// The last states, those to be compared and one more: where their answers begin, and whether they are refused.
     last: VecDeque<(u64, bool)>,
 }
 
@@ -221,7 +221,7 @@ impl Answers {
     }
 }
 
-/// The answers in lines of JSON.
+/// Finds the answers in lines of JSON.
 fn lines(file: &File) -> io::Result<Answers> {
     #[derive(Deserialize)]
     struct Line {
@@ -238,7 +238,7 @@ fn lines(file: &File) -> io::Result<Answers> {
     Ok(answers)
 }
 
-/// The answers in a table, whose states have a row for each outcome.
+/// Finds the answers in a table, in which each outcome of a state has a row.
 fn rows(file: &File, delimiter: u8) -> io::Result<Answers> {
     let mut reader = csv::ReaderBuilder::new().flexible(true).delimiter(delimiter).from_reader(file);
     let header = reader.byte_headers()?.clone();

@@ -1,4 +1,4 @@
-//! The robot and the options that shape it.
+//! The robot's file and the options that change the robot.
 
 use super::Failure;
 use super::diagnostic::{note, note_all};
@@ -40,10 +40,10 @@ pub(super) struct RobotOptions {
     pub reductions: ReductionOptions,
 }
 
-/// `None` is for the robot to decide.
+/// A plane, or `None` to choose it by the robot.
 type ChosenPlane = Option<Plane>;
 
-/// The planes that a robot may move in.
+/// The values of `--plane`: the planes in which a robot may move.
 pub const PLANES: Choices<ChosenPlane> = &[
     ("auto", "The one in which all revolute joints turn, else the one in which most of the legs turn", None),
     ("xz", "x forward, z up", Some(Plane::XZ)),
@@ -54,18 +54,18 @@ pub const PLANES: Choices<ChosenPlane> = &[
     ("yx", "y forward, x up", Some(Plane::YX)),
 ];
 
-/// What a robot's root link may be.
+/// The values of `--base`: whether the root link is fixed.
 pub const BASES: Choices<Base> =
     &[("fixed", "It is fixed to the world", Base::Fixed), ("floating", "It moves freely", Base::Floating)];
 
-/// A joint that is fixed at a value.
+/// A joint that is frozen at a value \[rad or m\].
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Hold {
     joint: String,
     value: f64,
 }
 
-/// Reads an angle that is small against a right one.
+/// Parses an angle from 0 to [`Reduction::WIDEST_TOLERANCE`] \[rad\].
 fn tolerance(text: &str) -> Result<f64, String> {
     match from_zero(text)? {
         angle if angle <= Reduction::WIDEST_TOLERANCE => Ok(angle),
@@ -73,14 +73,14 @@ fn tolerance(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Reads JOINT=VALUE.
+/// Parses JOINT=VALUE.
 fn hold(text: &str) -> Result<Hold, String> {
-    // From the right, because a joint's name may hold equals signs.
+    // From the right, because a joint's name may contain equals signs.
     let (joint, value) = text.rsplit_once('=').ok_or("expected JOINT=VALUE, as in left_hip_roll=0.1")?;
     Ok(Hold { joint: joint.to_owned(), value: finite(value)? })
 }
 
-/// A foot given by `--contact`; its height decides whether it touches, as for a shape of the file.
+/// A foot given by `--contact`. Like a shape of the URDF, it is a contact only if it is close enough to the ground.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct AddedFoot {
     link: String,
@@ -88,10 +88,10 @@ pub(super) struct AddedFoot {
     radius: f64,
 }
 
-/// Reads LINK:X,Y,Z or LINK:X,Y,Z:RADIUS.
+/// Parses LINK:X,Y,Z or LINK:X,Y,Z:RADIUS.
 fn added_foot(text: &str) -> Result<AddedFoot, String> {
     let shape = "expected LINK:X,Y,Z or LINK:X,Y,Z:RADIUS, as in left_foot:0,0,-0.5:0.03";
-    // From the right, because a link's name may hold colons.
+    // From the right, because a link's name may contain colons.
     let (mut link, mut offset) = text.rsplit_once(':').ok_or(shape)?;
     let mut radius = 0.0;
     if !offset.contains(',') {
@@ -118,7 +118,7 @@ impl RobotOptions {
         Ok(robot)
     }
 
-    /// Reads the robot, with the description that it was reduced from.
+    /// Reads the robot, and returns it with the description and the reduction that it comes from.
     pub fn described(&self) -> Result<(Description, Reduction, Robot), Failure> {
         let input = InputFile::read(&self.robot, InputFile::LARGE)?;
         let text = input.text().map_err(|error| error.in_file(&input.name))?;
@@ -141,7 +141,7 @@ impl RobotOptions {
         Ok((description, reduction, robot))
     }
 
-    /// The joints given by `--hold`.
+    /// Returns the joints given by `--hold`, as indices into the description, with their values.
     fn held(&self, description: &Description) -> Result<Vec<(usize, f64)>, Failure> {
         let refuse = |reason| Error::new(reason).at("--hold");
         let held = |(at, Hold { joint, value }): (usize, &Hold)| {
@@ -158,7 +158,7 @@ impl RobotOptions {
         self.hold.iter().enumerate().map(held).collect()
     }
 
-    /// The feet given by `--contact`.
+    /// Returns the feet given by `--contact`.
     pub fn feet(&self, robot: &Robot) -> Result<Vec<NamedContact>, Failure> {
         let foot = |&AddedFoot { ref link, offset, radius }: &AddedFoot| {
             let found = robot.link(link).ok_or_else(|| {
@@ -178,7 +178,7 @@ impl RobotOptions {
     }
 }
 
-/// Notes what a user must know before trusting the model.
+/// Writes the cautions about the model as notes.
 pub(super) fn caution(robot: &Robot) {
     robot.reading.cautions.iter().for_each(|caution| note(caution));
 }

@@ -1,4 +1,4 @@
-//! The sink of a batch: results go to the output, refusals to standard error, counts to the summary.
+//! The sink of a batch. It writes results to the output and refusals to standard error, and adds counts to the summary.
 
 use super::diagnostic::{note, report_with};
 use super::resume::BatchOutput;
@@ -12,12 +12,12 @@ use memchr::memchr_iter;
 use std::collections::HashMap;
 use std::io::{self, ErrorKind, Write};
 
-/// How many refusals are reported on standard error; the output has all of them.
+/// The number of refusals that are reported on standard error; the output contains all of them.
 const REPORTED: u64 = 20;
-/// How many are reported of one reason, but for its numbers, at one place.
+/// The number of reported refusals with the same place and the same reason, apart from its digits.
 const ALIKE: u64 = 3;
 
-/// Writes the answers in their order.
+/// Writes the answers in order.
 pub(super) struct OutputSink<'a> {
     pub output: BatchOutput,
     /// The name of the input in messages.
@@ -27,19 +27,19 @@ pub(super) struct OutputSink<'a> {
     pub summary: Summary,
     /// The states for a page, if one is requested.
     pub gait: Gait,
-    /// How many refusals were reported, and how many there were of each place and reason without its numbers.
+    /// The number of reported refusals, and the number of all refusals for each place and reason without digits.
     reported: u64,
     alike: HashMap<(Option<String>, String), u64>,
-    /// Lines of the output so far, of one that has lines.
+    /// The number of lines in the output so far; `None` for Parquet and Arrow.
     lines: Option<usize>,
-    /// For columns with types.
+    /// The writer of Parquet or Arrow.
     #[cfg(feature = "columnar")]
     pub columns: Option<ColumnWriter>,
 }
 
 impl<'a> OutputSink<'a> {
-    /// Answers to `input` go to `output`, behind so many `lines` of text, or as no text. It must not buffer, so that the
-    /// number of written lines is known.
+    /// Creates a sink for the answers to `input`. `output` contains `lines` lines already; `None` if it is not text. It
+    /// must not buffer, so that the number of written lines is known.
     pub fn new(output: BatchOutput, lines: Option<usize>, input: &'a str, progress: &'a ProgressBar) -> Self {
         Self {
             output,
@@ -55,7 +55,7 @@ impl<'a> OutputSink<'a> {
         }
     }
 
-    /// Writes all bytes; an error says how many lines were written.
+    /// Writes all bytes. An error states how many lines were written.
     pub fn write(&mut self, mut bytes: &[u8]) -> io::Result<()> {
         while !bytes.is_empty() {
             match self.output.write(bytes) {
@@ -98,10 +98,10 @@ impl<'a> OutputSink<'a> {
         }
     }
 
-    /// Takes the next answers.
+    /// Writes the next answers. Ends the process if the output cannot be written.
     ///
     /// # Errors
-    /// Columns that their format has no room for.
+    /// Returns an error if the format cannot represent the columns.
     pub fn block(&mut self, block: Block) -> crate::Result<()> {
         #[cfg(feature = "columnar")]
         if let (Some(writer), Some(columns)) = (&mut self.columns, block.columns) {
@@ -116,7 +116,7 @@ impl<'a> OutputSink<'a> {
         Ok(())
     }
 
-    /// Ends the process: the input may stay silent for ever, and waiting for more of it is of no use.
+    /// Ends the process instead of waiting for more input, which may never come.
     fn end(&self, error: io::Error) -> ! {
         self.progress.finish_and_clear();
         let status = status(Failure::Output(error));
@@ -126,7 +126,7 @@ impl<'a> OutputSink<'a> {
     }
 }
 
-/// Notes where answers are that did not reach the output.
+/// Writes a note with the place of the answers so far if another run can continue them.
 pub(super) fn note_part(output: &BatchOutput) {
     if let Some(part) = output.part() {
         note(&format!("{} holds the answers so far; --resume continues them", part.display()));

@@ -1,4 +1,4 @@
-//! `heelstrike solve`: every outcome of a contact problem that is given as matrices.
+//! `heelstrike solve`: every outcome of a contact problem given as matrices.
 
 use super::diagnostic::note_all;
 use super::options::{BudgetOptions, DetailOptions, FrictionOption, ReductionOptions};

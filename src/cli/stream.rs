@@ -1,4 +1,4 @@
-//! One object after the other: answered or refused, as text or JSON, in order.
+//! Answers to a sequence of objects, as text or JSON, in order.
 
 use super::diagnostic::{note, report, report_with, with_flags};
 use super::input::InputFile;
@@ -13,12 +13,13 @@ use crate::{Error, Reason};
 use std::io::Write;
 use std::path::Path;
 
-/// Up to so many contacts the text sums up the rejected combinations even without `--explain`: 4^6 take no time.
+/// The largest number of contacts for which text sums up the rejected combinations without `--explain`: 4^6 take no
+/// noticeable time.
 pub(super) const SUMMED_UP: usize = 6;
 
-/// So many refusals are shown with their line.
+/// The number of refusals that are shown with an excerpt of their line.
 const SHOWN: usize = 10;
-/// Of more refusals than this the rest is counted at the end.
+/// The number of refusals that are reported; the others are only counted.
 const REPORTED: usize = 100;
 
 /// Appends a report: as text if there is a palette, else as a line of JSON.
@@ -29,7 +30,7 @@ pub(super) fn append(report: &Report, subject: &Subject, detail: Detail, palette
     }
 }
 
-/// The one object of a file.
+/// Returns the only object of a file.
 pub(super) fn only_document(input: &InputFile) -> crate::Result<Document<'_>> {
     let name = &input.name;
     let text = input.text().map_err(|error| error.in_file(name))?;
@@ -44,16 +45,17 @@ pub(super) fn only_document(input: &InputFile) -> crate::Result<Document<'_>> {
     }
 }
 
-/// The refusal of a text that holds no `what`: it is empty, or an empty list.
+/// Returns the error for a text without a `what`: it is empty, or an empty list.
 fn nothing(what: &str, text: &str) -> Error {
     let hint = if text.trim().is_empty() { "the input is empty" } else { "the list is empty" };
     Error::new(Reason::Missing(format!("a {what}"))).hint(hint)
 }
 
-/// Answers every object of the file at `path`, each of them a `what`; `several` is the answer to more than one.
+/// Answers every object of the file at `path`; each object is a `what`. If there is more than one, `several` says
+/// whether that is allowed.
 ///
 /// `answer` appends the answer to an object, as text if there is a palette, else as a line of JSON, and returns the
-/// error that it contains, if any.
+/// error that the answer contains, if any.
 pub(super) fn answer_all(
     what: &str,
     path: &Path,
@@ -88,7 +90,7 @@ pub(super) fn answer_all(
         }
         output.writer.write_all(&out)?;
         if let Err(error) | Ok(Some(error)) = answer {
-            // On a terminal the answers so far come before the error.
+            // On a terminal, the answers so far must come before the error.
             output.writer.flush()?;
             let error = document.locate(error).in_file(name);
             if refused < SHOWN {

@@ -62,7 +62,7 @@ pub struct Args {
     threads: ThreadOptions,
 }
 
-/// The form of what is written: a format of batches, or `None` for text.
+/// The format of the output: a format of batches, or `None` for text.
 type SweepFormat = Option<Form>;
 
 const FORMATS: Choices<SweepFormat> = &[
@@ -75,7 +75,7 @@ const FORMATS: Choices<SweepFormat> = &[
     ("arrows", "The same as an Arrow IPC stream", Some(Form::Arrows)),
 ];
 
-/// The form chosen by option or by the output's ending; refuses an ending that means something else.
+/// Returns the format chosen by the option or by the output's ending. Refuses an ending with another meaning.
 fn format(args: &Args) -> Result<SweepFormat, Failure> {
     let ending = args.output.as_deref().and_then(Path::extension).and_then(|ending| ending.to_str());
     let by_ending = match ending.map(str::to_ascii_lowercase).as_deref() {
@@ -91,7 +91,7 @@ fn format(args: &Args) -> Result<SweepFormat, Failure> {
     Ok(format)
 }
 
-/// How many samples are answered before they are written.
+/// The number of samples that are answered before they are written.
 const TOGETHER: usize = 4096;
 
 pub(super) fn run(args: &Args) -> Completion {
@@ -201,7 +201,7 @@ pub(super) fn run(args: &Args) -> Completion {
     let refusals: Vec<&Error> = regimes.iter().filter_map(|(_, _, refused)| *refused).collect();
     refusals.iter().for_each(|&error| report(&error.clone().in_file(&input.name)));
     if refused > 0 && refusals.is_empty() {
-        // Of a line or a point of the parameters, which is no region.
+        // The refused samples are on a line or at a point of the parameters, which is not a region.
         let reason = Reason::Inconsistent(format!("{refused} of {} samples are refused", SampleRecord::count(&model)));
         let hint = match format {
             None => "`format: json` lists the samples with the error of each",
@@ -212,7 +212,7 @@ pub(super) fn run(args: &Args) -> Completion {
     Ok(if refused == 0 && refusals.is_empty() { Answered::All } else { Answered::NotAll })
 }
 
-/// What all work on a study may take.
+/// The budget for all work on a study.
 struct StudyBudget<'a> {
     shared: SharedBudget,
     study: &'a Study<'a>,
@@ -220,13 +220,13 @@ struct StudyBudget<'a> {
 }
 
 impl StudyBudget<'_> {
-    /// What the work makes; the study is refused if the budget ends before.
+    /// Returns the result of `work`; refuses the study if the budget ends first.
     fn within<R>(&self, work: impl FnOnce() -> R) -> Result<R, Failure> {
         self.shared.within(work).map_err(|spent| self.input.refuse(self.study.beyond(spent)))
     }
 }
 
-/// Writes all samples in order, each appended to what `new` makes; returns how many were refused.
+/// Writes all samples in order and returns the number of refused ones. Each sample is appended to a value of `new`.
 fn samples<T: Send>(
     model: &RobotStudy,
     (workers, budget): (Workers, &StudyBudget),
