@@ -287,7 +287,7 @@ pub(super) enum Target {
 }
 
 impl Target {
-    /// The file at `path`, or standard output; with `keep`, a file that is not finished stays.
+    /// Opens the file at `path`, or standard output. With `keep`, an unfinished file is kept.
     pub fn open(path: Option<&Path>, keep: bool) -> io::Result<Self> {
         match path.filter(|path| *path != Path::new("-")) {
             Some(path) => {
@@ -299,7 +299,7 @@ impl Target {
         }
     }
 
-    /// Ends the output; a file that is there already is replaced only if something was `answered`.
+    /// Finishes the output. An existing file is replaced only if something was `answered`.
     pub fn finish(self, answered: bool) -> io::Result<()> {
         match self {
             Self::Standard(mut output) => output.flush(),

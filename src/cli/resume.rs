@@ -198,7 +198,7 @@ fn unlike(file: &NewFile, what: &str) -> io::Error {
     named(file.part().unwrap_or(&file.path), io::Error::new(ErrorKind::InvalidData, reason))
 }
 
-/// The places of answers in a file.
+/// The answers found in a file.
 #[derive(Default)]
 struct Answers {
     /// The number of states before those in `last`, and how many of them are refused.

@@ -43,7 +43,7 @@ pub struct KeyframeAnswer {
     pub aspect: Aspect,
     /// The verdict.
     pub verdict: Verdict,
-    /// Whether the list of outcomes is proven to be complete and right.
+    /// Whether the list of outcomes is proven to be complete and correct.
     pub proven: bool,
     /// The outcomes.
     pub outcomes: Vec<Outcome>,

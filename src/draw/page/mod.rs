@@ -38,7 +38,8 @@ const PROGRAM: [&str; 5] = [
     include_str!("page.js"),
 ];
 
-/// The largest number of states on a page. Of a longer list, a part at even intervals is shown.
+/// The largest number of states on a page; longer lists are thinned at even intervals. The sides and middles of the
+/// regions of a study are not counted.
 pub const MOST: usize = 5000;
 
 /// An interactive page in one file.

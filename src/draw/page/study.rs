@@ -45,7 +45,7 @@ impl Stops {
             values = samples(&every);
         }
         if let (Findings::Along(survey), [parameter], [values]) = (findings, parameters, &mut values[..]) {
-            // Both sides and the middle of every region.
+            // Add both sides and the middle of every region.
             let away = AWAY * parameter.range();
             values.extend(survey.regions.iter().flat_map(|&Region { from, to, .. }| {
                 let sides = [from + away, 0.5 * (from + to), to - away];

@@ -33,7 +33,7 @@ fn bodies_are_where_the_state_places_them() {
     let center = Vector::new(3.0, 0.5);
     assert_eq!((ball.origin, ball.com.map(|com| ball.world(com)), ball.is_last), (center, Some(center), false));
     assert!(ball.bones.is_empty(), "the joint is at its center");
-    // A positive angle tips up toward forward.
+    // A positive angle turns the arm from up to forward.
     let near = |a: Vector, b: [f64; 2]| (a - b.into()).length() < 1e-12;
     assert!(near(arm.bones[0], [4.0, 0.5]) && near(arm.world(arm.com.unwrap()), [3.5, 0.5]) && arm.is_last);
     assert_eq!(drawing.joints, [center]);
