@@ -81,7 +81,7 @@ fn what_leaves_the_range_of_f64_has_a_remedy() {
     let found = try_forces(&rod(1.0, 1.0), &heavy).expect("within the range");
     assert_eq!(outcomes(&found)[0].velocity().collect::<Vec<_>>(), [0.0, -1e308, 0.0]);
     let error =
-        try_forces(&massless, &json!({"torque": {"hinge": 1e30}, "contacts": []})).expect_err("beyond the range");
+        try_forces(&massless, json!({"torque": {"hinge": 1e30}, "contacts": []})).expect_err("beyond the range");
     assert_eq!(error.to_string(), "an acceleration must be a finite number, not inf");
     assert!(error.remedy().is_some_and(|remedy| remedy.contains("too large for the masses")), "{error}");
 }
