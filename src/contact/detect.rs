@@ -1,4 +1,4 @@
-//! Feet against the ground: which points touch, and where the base must be for a foot to stand.
+//! Feet against the ground: finds the points that touch, and where the base must be for a foot to stand.
 
 use super::Contact;
 use super::feet::Feet;
@@ -14,15 +14,16 @@ use crate::planar::Vector;
 use crate::robot::Robot;
 use crate::state::{NamedContact, Scene};
 
-/// A foot that stands, and where.
+/// The foot of a stance and its placement.
 pub(crate) struct Stance {
     /// The standing point, with the root at zero.
     pub foot: Contact,
-    /// The root's origin that puts it at x = 0, and the lowest point of its link on the ground \[m\].
+    /// The position of the root's origin \[m\] that puts the standing point at x = 0 and the lowest point of its link
+    /// on the ground.
     pub base: Vector<f64>,
 }
 
-/// The feet of a robot where they are, and the ground.
+/// A placed robot with its feet, and the ground.
 pub(crate) struct Footing<'a> {
     pub robot: &'a Robot,
     pub feet: &'a Feet,
@@ -36,7 +37,7 @@ impl Footing<'_> {
         &self.robot.links[link].name
     }
 
-    /// The contact that a link makes, under the link's name.
+    /// Returns the contact that a link makes, with the link's name.
     pub(super) fn contact(&self, link: usize, Touch { circle, ground, gap }: Touch) -> Contact {
         let mut contact = Contact {
             link,
@@ -53,17 +54,18 @@ impl Footing<'_> {
         contact
     }
 
-    /// The points that may touch in place of the feet.
+    /// Returns the contacts that the scene names, which replace those of the feet; `None` if it names none.
     pub(super) fn named(&self) -> Option<&[NamedContact]> {
         self.scene.contacts.as_deref()
     }
 
-    /// The point of the link that stands, with the root at zero: of those that touch with this `tolerance` \[m\] once
-    /// the lowest is on the ground, the lowest, and of several within `flat` \[m\] the one with the smallest t; of the
-    /// named contacts, if there are any.
+    /// Returns the standing point of a link and the base that puts it on the ground. Requires a placement with the root
+    /// at zero. Candidates are the named contacts of the link, if there are any; else the points that touch with this
+    /// `tolerance` \[m\] once the lowest is on the ground. The lowest one stands; of several within `flat` \[m\], the
+    /// rearmost.
     ///
     /// # Errors
-    /// [`Reason::Missing`] where the link has no foot, [`Reason::Inconsistent`] where there is no ground at x = 0.
+    /// [`Reason::Missing`] if the link has no foot, [`Reason::Inconsistent`] if there is no ground at x = 0.
     pub fn stance(&self, link: usize, tolerance: f64, flat: f64) -> Result<Stance> {
         let Self { placement, surface, .. } = self;
         let (plane, place) = surface.stance()?;
@@ -93,13 +95,14 @@ impl Footing<'_> {
         Ok(Stance { base: place - foot.point + lift, foot })
     }
 
-    /// All closed contacts: the named ones whatever their height, else the outer two of every foot within `tolerance`
-    /// \[m\] of the ground, in the order of the links and within a link along t of a plane, along x of a profile. A
-    /// contact is named after its link, and numbered where the link has several. With `merges`, those between the outer
-    /// two of a body are left out, but not the `standing` one. `contacts` is memory.
+    /// Returns all closed contacts, and those that were merged. Named contacts count at any height. Without them, these
+    /// are the outer two of every foot within `tolerance` \[m\] of the ground, sorted by link and then along the
+    /// tangent of a plane or x of a profile. A contact has the name of its link, and a number if the link has several
+    /// contacts. With `merges`, contacts between the outer two of a body are left out, except the `standing` one. The
+    /// memory of `contacts` is reused.
     ///
     /// # Errors
-    /// [`Reason::Penetration`] for the deepest of the feet that are deeper than the tolerance.
+    /// [`Reason::Penetration`] for the deepest foot, if one is deeper than the tolerance.
     pub fn contacts(
         &self,
         tolerance: f64,
@@ -137,7 +140,8 @@ impl Footing<'_> {
         Ok((contacts, merged))
     }
 
-    /// Whether two contacts are of one rigid body, on one line of ground up to `rounding` \[m\], under one law.
+    /// Returns whether two contacts are on one rigid body, at one line of ground up to `rounding` \[m\], and have the
+    /// same friction and restitution.
     fn acts_as(&self, a: &Contact, b: &Contact, rounding: f64) -> bool {
         let Scene { friction, restitution, .. } = self.scene;
         let body = |contact: &Contact| self.robot.rigid_body(contact.body);
@@ -149,8 +153,8 @@ impl Footing<'_> {
             && bounce(a) == bounce(b)
     }
 
-    /// How far the edges of a contact's friction cone are inclined; `None` where it bounces against friction, so that it
-    /// also depends on its height.
+    /// Returns the slope of the edges of a contact's friction cone against the normal. `None` if the contact has both
+    /// friction and restitution, because its height then matters, or if its friction is unknown.
     fn lean(&self, contact: &Contact) -> Option<f64> {
         let Scene { friction, restitution, .. } = self.scene;
         let lean = match friction.of(contact.link)? {
@@ -174,7 +178,7 @@ impl Footing<'_> {
         for foot in feet.iter() {
             let found = |touch| {
                 let contact = self.contact(foot.link, touch);
-                // Shapes of a link may share a corner; it is one point all the same.
+                // Shapes of a link may share a corner, which is one contact.
                 if !contacts.iter().any(|other| surface.is_same(other, &contact, rounding)) {
                     contacts.push(contact);
                 }
@@ -194,13 +198,14 @@ impl Footing<'_> {
         Ok(())
     }
 
-    /// How many feet are too far from the ground to be looked at with this `tolerance` \[m\].
+    /// Returns the number of feet that are too far from the ground to touch with this `tolerance` \[m\].
     pub fn out_of_reach(&self, tolerance: f64) -> usize {
         let tolerance = tolerance + self.surface.rounding(self.placement, self.feet.size());
         self.feet.iter().filter(|foot| self.surface.is_out_of_reach(foot, self.placement, tolerance)).count()
     }
 
-    /// The links of feet that reach beyond an end of the ground, at most `tolerance` above it, and the end's x \[m\].
+    /// Returns the links of feet that reach beyond an end of the profile, at most `tolerance` \[m\] above it, and x of
+    /// that end \[m\].
     pub fn left_behind(&self, tolerance: f64) -> Vec<(&str, f64)> {
         let Surface::Profile(terrain) = self.surface else { return Vec::new() };
         let mut found: Vec<(usize, f64)> = Vec::new();

@@ -3,7 +3,7 @@
 //! ```text
 //!              normal, away from the solid
 //!                 ^
-//!     from -------+-------> to          height, before, beyond: where a point is, from the line, from `from`, from `to`
+//!     from -------+-------> to          of a point: height above the line, past_begin from `from`, past_end from `to`
 //!     ///// solid /////
 //! ```
 
@@ -12,7 +12,8 @@ use crate::planar::{Rotation, Vector};
 /// Greatest sine of the angle at which two boundaries that meet still count as lying flat on each other.
 const FLAT: f64 = 0.1;
 
-/// Normals whose angle has a smaller sine are the same: they come from sums of positions, and a foot's turn.
+/// Greatest sine of the angle between normals that count as the same. Normals are computed from sums of positions and
+/// from the rotation of a foot, so they are rounded.
 pub(super) const PARALLEL: f64 = 1e-9;
 
 #[derive(Debug, Clone, Copy)]
@@ -26,47 +27,47 @@ pub(super) struct Face {
 }
 
 impl Face {
-    /// The side between two different points, its solid to the right of the way from one to the other, seen with
-    /// forward to the right and up upward.
+    /// Creates the face between two different points. Its solid is to the right of the direction from `from` to `to`,
+    /// where forward points right and up points up.
     pub fn of_ground(from: Vector<f64>, to: Vector<f64>) -> Self {
         let Vector { x, z } = unit(to - from);
         Self { from, to, tangent: Vector::new(x, z), normal: Vector::new(-z, x) }
     }
 
-    /// The same with its solid to the left.
+    /// Does the same as [`Face::of_ground`] with the solid to the left.
     pub fn of_foot(from: Vector<f64>, to: Vector<f64>) -> Self {
         let Self { tangent: Vector { x, z }, .. } = Self::of_ground(from, to);
         Self { from, to, tangent: Vector::new(x, z), normal: Vector::new(z, -x) }
     }
 
-    /// Turn from the world's axes to (tangent, normal) of a contact with this normal.
+    /// Returns the rotation from the world's axes to (tangent, normal) of a contact with this normal.
     pub fn axes(&self) -> Rotation<f64> {
         upright(self.normal)
     }
 
-    /// Height of a point above the line \[m\].
+    /// Returns the height of a point above the line \[m\].
     pub fn height(&self, point: Vector<f64>) -> f64 {
         self.normal.dot(point - self.from)
     }
 
-    /// How far a point is past the beginning, along the tangent \[m\].
+    /// Returns how far a point is past `from` along the tangent \[m\].
     pub fn past_begin(&self, point: Vector<f64>) -> f64 {
         self.tangent.dot(point - self.from)
     }
 
-    /// How far a point is past the end \[m\].
+    /// Returns how far a point is past `to` along the tangent \[m\].
     pub fn past_end(&self, point: Vector<f64>) -> f64 {
         self.tangent.dot(point - self.to)
     }
 
-    /// Whether a point is above the side or below it, and past none of its ends.
+    /// Returns whether a point lies between the ends of the face along the tangent, at any height.
     pub fn faces(&self, point: Vector<f64>) -> bool {
         self.past_begin(point) >= 0.0 && self.past_end(point) <= 0.0
     }
 
-    /// Whether a boundary that goes on straight from `point`, which is at this side, to `neighbor` stays in front of
-    /// the side: it may go behind it by `slack` \[m\] where both lie flat on each other, as a `sole` that ends above
-    /// the side does up to 45 degrees.
+    /// Returns whether the other boundary's straight piece from `point`, which is at this face, to `neighbor` stays in
+    /// front of the face. It may go behind the face by `slack` \[m\] if both lie nearly flat on each other; a `sole`
+    /// counts as flat at up to 45 degrees if `neighbor` lies between the face's ends.
     pub fn clears(&self, point: Vector<f64>, neighbor: Vector<f64>, slack: f64, sole: bool) -> bool {
         let way = unit(neighbor - point);
         let [along, descent] = [self.tangent.dot(way), -self.normal.dot(way)];
@@ -79,12 +80,12 @@ impl Face {
     }
 }
 
-/// The turn from the world's axes to those whose second one is this unit vector.
+/// Returns the rotation from the world's axes to axes of which this unit vector is the second.
 pub(super) fn upright(Vector { x, z }: Vector<f64>) -> Rotation<f64> {
     Rotation { cos: z, sin: x }
 }
 
-/// The vector of length one in this direction; it may be as short as it likes, but not zero.
+/// Returns the unit vector in this direction. The vector may be arbitrarily short, but not zero.
 pub(super) fn unit(vector: Vector<f64>) -> Vector<f64> {
     let size = vector.x.abs().max(vector.z.abs());
     let scaled = vector.map(|entry| entry / size);

@@ -1,4 +1,4 @@
-//! The robot's shapes that may touch, compiled once.
+//! The robot's shapes that may touch the ground, prepared once.
 
 use crate::planar::Vector;
 use crate::robot::{FootShape, Robot};
@@ -9,36 +9,37 @@ use std::sync::Arc;
 /// One shape that may touch the ground.
 #[derive(Debug, Clone)]
 pub struct Foot {
-    /// The link that carries it (an index into [`Robot::links`]).
+    /// Index into [`Robot::links`] of the link that carries the shape.
     pub link: usize,
-    /// The body that it is rigid on.
+    /// Index of the body to which the shape is fixed.
     pub body: usize,
-    /// Its outline in the body's frame.
+    /// The outline in the body's frame.
     pub outline: FootShape,
-    /// The center of a foot that was named, in the link's own 3-D frame \[m\].
+    /// The center in the link's own 3-D frame \[m\], if the foot was named there; `None` for a shape of the robot.
     pub offset: Option<[f64; 3]>,
-    /// Center and radius of a circle about its outline, in the body's frame \[m\].
+    /// Center and radius of a circle about the outline, in the body's frame \[m\].
     pub bounding_circle: (Vector<f64>, f64),
-    /// How far above its lowest corner the rest of an almost level sole may be \[m\]; 0 for an outline that is exact.
+    /// Largest height above the lowest corner for the rest of an almost level sole \[m\]; 0 for an exact outline.
     pub bumps: f64,
 }
 
-/// [`Foot::bumps`] of a mesh, as part of the robot's size.
+/// [`Foot::bumps`] of a mesh, as a fraction of the robot's size.
 const BUMPS: f64 = 1e-4;
 
 /// All shapes that may touch, in the order of the robot's links, and the robot's size.
 #[derive(Debug, Clone)]
 pub struct Feet {
     feet: Vec<Foot>,
-    /// Of the robot's links.
+    /// Names of the robot's links.
     names: Vec<Arc<str>>,
-    /// What stands between the name of a link and the number of one of its contacts.
+    /// Separator between the name of a link and the number of one of its contacts: one slash, or more if other links
+    /// have names that end like this.
     slashes: String,
     size: f64,
 }
 
 impl Feet {
-    /// The feet of a robot: its collision shapes, and `named` ones that are detected like them.
+    /// Creates the feet of a robot from its collision shapes and from `named` points, which are detected like shapes.
     pub fn new(robot: &Robot, named: &[NamedContact]) -> Self {
         let mut feet = Vec::new();
         for (index, link) in robot.links.iter().enumerate() {
@@ -66,24 +67,25 @@ impl Feet {
         Self { feet, names, slashes, size }
     }
 
-    /// The name of contact `at` of a link that has several: `link/0`, or `link//0` if other links are called so.
+    /// Returns the name of contact `at` of a link with several contacts: `link/0`, or `link//0` if another link is
+    /// called `link/0`.
     pub fn numbered(&self, link: &str, at: usize) -> String {
         format!("{link}{}{at}", self.slashes)
     }
 
-    /// The name of a link.
+    /// Returns the name of a link.
     pub(super) fn name(&self, link: usize) -> Arc<str> {
         Arc::clone(&self.names[link])
     }
 
-    /// The same feet with soles of meshes that may be a little uneven, because their vertices are rounded.
+    /// Returns the same feet, except that soles of meshes may be a little uneven, because vertices are rounded.
     pub fn uneven(mut self) -> Self {
         let bumps = BUMPS * self.size;
         self.feet.iter_mut().filter(|foot| foot.outline.mesh.is_some()).for_each(|foot| foot.bumps = bumps);
         self
     }
 
-    /// The same feet, each of which reaches everywhere: none is passed over for its height.
+    /// Returns the same feet with infinite bounding circles, so that none is skipped for its height.
     pub fn reaching_everywhere(mut self) -> Self {
         for foot in &mut self.feet {
             foot.bounding_circle.1 = f64::INFINITY;
@@ -91,13 +93,13 @@ impl Feet {
         self
     }
 
-    /// The feet, link by link.
+    /// Returns the feet, link by link.
     pub fn iter(&self) -> impl Iterator<Item = &Foot> {
         self.feet.iter()
     }
 
-    /// The greatest distance from the root's origin to a foot or CoG with all joints at zero \[m\]; of a
-    /// robot that is one point 1 m.
+    /// Returns the greatest distance from the root's origin to a foot or center of gravity with all joints at zero
+    /// \[m\]; 1 m if the robot is a single point.
     pub fn size(&self) -> f64 {
         self.size
     }

@@ -4,49 +4,52 @@
 //!     p_b = p_a + tangent (tangent . (p_b - p_a))      if normal . (p_b - p_a) is within rounding
 //! ```
 //!
-//! The angles of a pose are rounded, so a flat sole is tilted by some 1e-16 rad, and so is the line between two feet
+//! The angles of a pose are rounded, so a flat sole is tilted by about 1e-16 rad, and so is the line between two feet
 //! whose joints are braked. Contacts that bounce, or whose friction is infinite, may then balance on that tilt with
-//! impulses of 1e16 N s. What only digits below those of the pose say is not read from it: all numbers beyond f64 take
-//! such contacts as exactly level. Points that are given by name are meant where they are; of these only those of one
-//! body count that are level in all digits.
+//! impulses of 1e16 N s. The pose does not have the digits that decide this tilt, so all number types beyond f64 take
+//! these contacts as exactly level. Named points are taken exactly where they are: they count as level only if they are
+//! on one body and level in all digits.
 
 use super::Contact;
 use crate::dynamics::Workspace;
 use crate::dynamics::plan::{JointMotion, Plan};
 use crate::planar::Vector;
 
-/// How far one point may be above another, as part of what their places in the body were added up from: the bounds of
-/// f64, [`RoundingBounds`](crate::dynamics::RoundingBounds), count 48 units and more of it for each point.
+/// Largest height between level points, as a fraction of the lengths from which their positions are computed. The f64
+/// bounds, [`RoundingBounds`](crate::dynamics::RoundingBounds), allow at least 48 epsilons for each point.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// So many bodies at most are taken for one: of longer ways the bounds count too few roundings.
+/// Largest number of bodies in a row that are taken for one: on longer paths the bounds count too few roundings.
 const MOST_BODIES: usize = 8;
 
-/// Where a contact is on the line of another of its rigid part.
+/// The position of a contact that is level with another contact of its rigid part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Level {
-    /// The other one, which is level with none.
+    /// Index of the other contact, which is not itself level with a third one.
     pub with: usize,
-    /// How far along the tangent it is taken to be from there \[m\]; `None` if its place is exactly level by itself.
+    /// Distance from the other contact along the tangent, which replaces the position \[m\]; `None` if the position is
+    /// exactly level as it is.
     pub along: Option<f64>,
-    /// What the arms between both bodies were added up from \[m\].
+    /// Sum of the lengths from which the arms between both bodies are computed \[m\]; 0 on one body.
     pub way: f64,
 }
 
-/// A robot in a pose, whose bodies move as one between joints that keep a rate of zero: each such part is rigid.
+/// The rigid parts of a robot in a pose: bodies that move as one, because the joints between them are fixed or keep a
+/// rate of zero.
 #[derive(Clone, Copy)]
 pub struct RigidParts<'a> {
     pub plan: &'a Plan,
-    /// After `kinematics`.
+    /// Holds the results of `kinematics`.
     pub workspace: &'a Workspace,
-    /// Coordinates that keep their rates although they have columns.
+    /// Coordinates of joints that keep their rates although they have columns.
     pub kept: &'a [usize],
     /// dq/dt.
     pub velocity: &'a [f64],
 }
 
-/// Which contacts are level with which, up to rounding; none of those behind the last entry. The foot of a `stance`
-/// keeps its place, and contacts that are `named` are level with those of their own body alone.
+/// Returns for each contact with which other contact it is level, up to rounding; contacts beyond the last entry are
+/// level with none. The contact of a `stance` keeps its position. Contacts that are `named` are compared only within
+/// their body.
 pub fn level(contacts: &[Contact], parts: RigidParts<'_>, stance: Option<usize>, named: bool) -> Vec<Option<Level>> {
     let mut levels: Vec<Option<Level>> = Vec::new();
     for (index, contact) in contacts.iter().enumerate() {
@@ -64,17 +67,17 @@ pub fn level(contacts: &[Contact], parts: RigidParts<'_>, stance: Option<usize>,
 }
 
 impl RigidParts<'_> {
-    /// The first of the bodies that move as one with this one.
+    /// Returns the body nearest to the root among those that move as one with `body`.
     pub fn first(self, body: usize) -> usize {
         self.bodies(body).last().unwrap_or(body)
     }
 
-    /// Whether two bodies move as one.
+    /// Returns whether two bodies move as one.
     pub fn are_one(self, a: usize, b: usize) -> bool {
         a == b || self.first(a) == self.first(b)
     }
 
-    /// How a contact is level `with` another, if it is.
+    /// Returns how a contact is level with the contact `with`; `None` if it is not.
     fn level(self, contact: &Contact, contacts: &[Contact], with: usize) -> Option<Level> {
         let other = &contacts[with];
         if contact.ground != other.ground || !self.are_one(contact.body, other.body) {
@@ -92,7 +95,7 @@ impl RigidParts<'_> {
         is_level.then(|| Level { with, along: Some(contact.tangent().dot(arm)), way })
     }
 
-    /// A body and those below it in its rigid part.
+    /// Returns a body and its ancestors in its rigid part, at most [`MOST_BODIES`].
     fn bodies(&self, body: usize) -> impl Iterator<Item = usize> {
         let parts = std::iter::successors(Some(body), |&body| {
             let own = &self.plan.bodies[body];
@@ -109,14 +112,14 @@ impl RigidParts<'_> {
         parts.take(MOST_BODIES)
     }
 
-    /// Where a contact's center is from the origin of its rigid part \[m\], and what the arms to its body were added up
-    /// from \[m\].
+    /// Returns a contact's center relative to the origin of its rigid part, and the sum of the lengths from which the
+    /// arms to its body are computed; both in \[m\].
     fn place(&self, contact: &Contact) -> (Vector<f64>, f64) {
         let center = self.workspace.rotation[contact.body].apply(contact.center);
         let joints = self.bodies(contact.body).zip(self.bodies(contact.body).skip(1)).map(|(body, _)| body);
         joints.fold((center, 0.0), |(place, length), body| {
             let (arm, own) = (self.workspace.arm[body], &self.plan.bodies[body]);
-            // A displacement is no longer than the arm and the origin together.
+            // The arm of a prismatic joint is its origin plus its displacement, which is no longer than both together.
             let slid = if let JointMotion::Prismatic { .. } = own.motion { 2.0 * size(own.origin) } else { 0.0 };
             (place + arm, length + size(arm) + slid)
         })

@@ -1,34 +1,35 @@
-//! Points of one rigid body on one straight line of ground act through the outer two of them.
+//! Contacts of one rigid body on a straight line of ground act through the outermost two of them.
 //!
 //! ```text
-//!     p = (1 - s) a + s b:    a force at p = (1 - s) of it at a + s of it at b,     c_n(p) = (1 - s) c_n(a) + s c_n(b)
+//!     p = (1 - s) a + s b:    f at p = (1 - s) f at a + s f at b (forces),    c_n(p) = (1 - s) c_n(a) + s c_n(b)
 //! ```
 //!
-//! With the same friction the parts at a and b stay in their cones. c_t is the same all along a level line, and Newton's
-//! bounce e min(c_n, 0) is concave, so that p is closed only where a and b are. Along a line that the contact tolerance
-//! lets be tilted this needs e = 0, so that the body does not turn where p pushes, or no friction, so that c_t says
-//! nothing. Then points off the line act through a and b, too, if both edges of p's friction cone meet the line between
-//! them. Others stay.
+//! If the friction is the same, the forces at a and b stay in their friction cones. On a level line c_t is the same at
+//! all points, and Newton's restitution e min(c_n, 0) is concave in c_n, so p is closed only if a and b are. The
+//! contact tolerance also admits tilted lines. These need e = 0, so that the body does not turn while p pushes, or no
+//! friction, so that c_t has no effect. Then points off the line also act through a and b, if both edges of their
+//! friction cone meet the line between a and b. All other points stay.
 
 use super::Contact;
 use crate::planar::Vector;
 
-/// Contacts of one body and those that act for them.
+/// Contacts of one body that were left out, and the contacts that act for them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Merged {
-    /// How many are left out.
+    /// Number of contacts that are left out.
     pub inner: usize,
-    /// Those that act for them, among the contacts that remain: the rearmost and the foremost, or one if all coincide.
+    /// Indices after merging of the contacts that act for them: the rearmost and the foremost, or one if all coincide.
     pub outer: Vec<usize>,
-    /// How far the inner ones are off the straight line between the outer ones, at most \[m\]; 0 if by rounding alone.
+    /// Largest distance, along the normal, of the inner contacts from the line between the outer ones \[m\]; 0 if it is
+    /// only rounding.
     pub off: f64,
-    /// Whether circles of other radii were left out at the same place, which roll otherwise.
+    /// Whether circles of other radii, which roll differently, were left out at the same place.
     pub is_uneven: bool,
 }
 
-/// Leaves out of all contacts that are `together` those between the outer two, but none that `stays`; places are the
-/// same up to `rounding` \[m\]. Points off a level line act through the outer two only with a `lean`, how far the edges of
-/// their friction cones are inclined.
+/// Among contacts that are `together`, leaves out those between the outermost two, except those for which `stays` is
+/// true. Positions are equal up to `rounding` \[m\]. Points off a level line are left out only if `lean` returns the
+/// slope of the edges of their friction cone.
 pub(super) fn merge(
     contacts: &mut Vec<Contact>,
     together: impl Fn(&Contact, &Contact) -> bool,
@@ -46,7 +47,7 @@ pub(super) fn merge(
         let members = || (first..contacts.len()).filter(is_together);
         // [tangential, normal]
         let place = |at: usize| Vector::axes().map(|axis| contacts[first].ground.apply(axis).dot(contacts[at].point));
-        // Of several at one end the lowest.
+        // If several contacts are at one end, the lowest counts.
         let end = |way: f64| {
             let most = members().map(|at| way * place(at)[0]).fold(f64::NEG_INFINITY, f64::max);
             let last = members().filter(|&at| way * place(at)[0] >= most - rounding);
@@ -62,7 +63,7 @@ pub(super) fn merge(
             height - low - slope * (along - from)
         };
         let acts_through_outer = |at: usize| {
-            // Where an edge of its friction cone meets the line; one along the ground never does.
+            // Whether an edge of the friction cone meets the line between the outer two; never if it is along the ground.
             let meets = |lean: f64| {
                 let steeper = 1.0 - slope * lean;
                 let along = place(at)[0] - off(at) * lean / steeper;

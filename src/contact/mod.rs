@@ -34,22 +34,22 @@ use std::sync::Arc;
 /// A closed contact of one state; [`Pipeline`](crate::Pipeline) has an example.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contact {
-    /// The URDF link that carries the shape, merged or not (an index into [`Robot::links`](crate::Robot)).
+    /// Index into [`Robot::links`](crate::Robot) of the URDF link that carries the shape; the link may be merged into
+    /// the body of another.
     pub link: usize,
-    /// The link's name, or link/0, link/1 ... where a link has several contacts; link//0 where others are called so.
+    /// The link's name; link/0, link/1 ... if it has several contacts, or link//0 if other links are called link/0.
     pub name: Arc<str>,
-    /// The body that it is rigid on.
+    /// Index of the body to which the contact is fixed.
     pub body: usize,
     /// The point, or the center of the circle, in the body's frame \[m\].
     pub center: Vector<f64>,
-    /// Where the center was named in the link's own 3-D frame \[m\]; `None` for a shape of the robot, whose center is
-    /// `center`.
+    /// The center in the link's own 3-D frame \[m\], as it was named; `None` for a shape of the robot.
     pub offset: Option<[f64; 3]>,
-    /// Radius of the circle against the ground's normal \[m\]; 0 for a point.
+    /// Radius of the circle \[m\]: the contact point lies at this distance against the normal; 0 for a point.
     pub radius: f64,
     /// The contact point in the world \[m\].
     pub point: Vector<f64>,
-    /// Turn from the world's axes to the ground's (tangent, normal) at the contact.
+    /// Rotation from the world's axes to the ground's (tangent, normal) at the contact.
     pub ground: Rotation<f64>,
     /// Height above the ground along the normal \[m\], negative below it.
     pub gap: f64,

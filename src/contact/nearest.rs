@@ -1,4 +1,4 @@
-//! The open foot that is nearest to the ground, and how far a robot must rise to put its lowest foot on it.
+//! Finds the open foot nearest to the ground, and the rise along z that puts a robot's lowest foot on the ground.
 
 use super::Contact;
 use super::detect::Footing;
@@ -13,12 +13,12 @@ use super::terrain::Terrain;
 use crate::error::{Error, Reason, Result};
 use crate::planar::Vector;
 
-/// A sole whose other end is lower than this part of the way to it is meant to be flat on the ground.
+/// A sole that touches at one end counts as nearly flat if its other end is lower than this fraction of its length.
 const FLAT: f64 = 0.1;
 
 impl Footing<'_> {
-    /// The lowest foot that does not touch, as the contact that it would make; `None` if every foot touches. A body
-    /// that makes one of the `contacts` alone also has an open foot if its sole is nearly flat on the ground.
+    /// Returns the lowest foot that does not touch, as the contact that it would make; `None` if every foot touches. On
+    /// a body that makes only one of the `contacts`, the raised end of a nearly flat sole counts as a foot, too.
     pub fn nearest(&self, contacts: &[Contact]) -> Option<Contact> {
         let Self { placement, surface, .. } = self;
         let mut nearest: Option<Contact> = None;
@@ -41,8 +41,8 @@ impl Footing<'_> {
         nearest
     }
 
-    /// The feet of bodies that make none of the `contacts` and are no more than so high above the ground, each as the
-    /// contact that it would make.
+    /// Returns, for each body that makes none of the `contacts`, its lowest foot as the contact that it would make, if
+    /// that foot is at most `height` \[m\] above the ground.
     pub fn near(&self, contacts: &[Contact], height: f64) -> Vec<Contact> {
         let Self { placement, surface, .. } = self;
         let body = |body: usize| self.robot.rigid_body(body);
@@ -64,7 +64,8 @@ impl Footing<'_> {
         near
     }
 
-    /// The link of the shape that reaches farthest below all of the `contacts` of its body, and how far \[m\].
+    /// Returns the link of the shape that reaches farthest below all `contacts` of its body, and how far \[m\]; `None`
+    /// if no shape does.
     pub fn below_contacts(&self, contacts: &[Contact]) -> Option<(usize, f64)> {
         let Self { placement, surface, .. } = self;
         let mut farthest: Option<(usize, f64)> = None;
@@ -83,8 +84,8 @@ impl Footing<'_> {
         farthest
     }
 
-    /// Rises at which a corner of the profile is inside of a foot: one that reaches beyond both ends of the profile has no
-    /// corner above it, and from below does not seem to be in it.
+    /// Returns rises along z \[m\] at which a corner of the profile is inside of a foot. They reveal feet that reach
+    /// beyond both ends of the profile, which have no corner in the ground, however low they are.
     fn around(&self, terrain: &Terrain) -> impl Iterator<Item = f64> {
         let corners = move || (0..=terrain.segments().len()).map(|corner| terrain.at_corner(corner)[0].to);
         self.feet.iter().flat_map(move |foot| {
@@ -99,15 +100,14 @@ impl Footing<'_> {
                     of_sides.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), z| (least.min(z), most.max(z)));
                 let near =
                     |a: &&Vector<f64>, b: &&Vector<f64>| (a.x - corner.x).abs().total_cmp(&(b.x - corner.x).abs());
-                // Beside all sides it may still be within a corner's rim.
+                // A ground corner beside all sides may still be within the rim of a foot's corner.
                 let beside = || outline.corners.iter().min_by(near).map_or(0.0, |nearest| nearest.z);
                 corner.z - if least <= most { 0.5 * (least + most) } else { beside() }
             })
         })
     }
 
-    /// How far the robot must rise along z so that the lowest of its feet, or of the named contacts, is on the ground
-    /// \[m\].
+    /// Returns the rise along z \[m\] that puts the lowest foot or named contact of the robot on the ground.
     ///
     /// # Errors
     /// [`Reason::Inconsistent`] if no foot is above the ground.
@@ -144,8 +144,9 @@ impl Footing<'_> {
     }
 }
 
-/// The least rise from which on all `is_above`; the search begins with steps of `size` \[m\] or, if it is below there and
-/// higher, at the highest of some `others`.
+/// Returns, by bisection, the rise \[m\] from which on `is_above` holds; `None` if it holds always or never. The lower
+/// end of the search is the highest rise that is not above the ground: of the `others`, and of steps down that begin
+/// with `size` \[m\] and double. Steps of the same lengths lead to the upper end.
 fn first_above(is_above: impl Fn(f64) -> bool, size: f64, others: impl Iterator<Item = f64>) -> Option<f64> {
     let steps = || std::iter::successors(Some(size), |step| Some(2.0 * step)).take_while(|step| step.is_finite());
     let is_below = |rise: &f64| !is_above(*rise);
@@ -166,7 +167,7 @@ fn first_above(is_above: impl Fn(f64) -> bool, size: f64, others: impl Iterator<
 }
 
 impl Surface {
-    /// A height \[m\] that no point of a foot is below; it costs less than the foot's points.
+    /// Returns a lower bound on the height of all points of a foot \[m\]. It costs less than the points themselves.
     fn least_gap(&self, foot: &Foot, placement: &Placement) -> f64 {
         match self {
             Self::HalfPlane(plane) => plane.least_gap(foot, placement),
@@ -174,7 +175,7 @@ impl Surface {
         }
     }
 
-    /// Where a foot that does not touch is nearest to the ground.
+    /// Returns where a foot that does not touch is nearest to the ground.
     fn first_touch(&self, foot: &Foot, placement: &Placement) -> Option<Touch> {
         match self {
             Self::HalfPlane(plane) => points(foot).map(|point| plane.touch(placement, point)).min_by(Touch::by_gap),
@@ -182,12 +183,13 @@ impl Surface {
         }
     }
 
-    /// The lowest open point of a foot whose link makes this one contact, if its sole is nearly flat on a plane.
+    /// Returns the lowest open point of a foot whose body makes only this contact, if its sole is nearly flat on a
+    /// plane; `None` on a profile.
     fn raised_end(&self, foot: &Foot, placement: &Placement, contact: &Contact) -> Option<Touch> {
         let Self::HalfPlane(plane) = self else { return None };
         let flat = |touch: &Touch| {
             let way = plane.along(placement.world(touch.circle.body, touch.circle.center) - contact.point);
-            // The way to the contact's own circle is rounding.
+            // The contact's own circle is only rounding away from it.
             let is_own = (touch.circle.body, touch.circle.center) == (contact.body, contact.center);
             !is_own && touch.gap > 0.0 && touch.gap < FLAT * way.abs()
         };

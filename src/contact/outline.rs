@@ -1,8 +1,8 @@
 //! A foot's outline in the world: a convex polygon of corners, each with a rim about it.
 //!
 //! ```text
-//!     outside of the polygon     a point above a side, moved out by the rim's reach         the side's
-//!                                any other                                                  the corner's whose rim is nearest
+//!     nearest part of the outline to a point outside of the polygon:
+//!         a side, moved out by the rim's reach, if the point is above it     else the corner with the nearest rim
 //! ```
 
 use super::face::{Face, unit, upright};
@@ -17,11 +17,11 @@ pub(super) struct Outline<'p> {
     placement: &'p Placement,
     body: usize,
     rim: Rim,
-    /// The corners with their rims, in their body's frame.
+    /// The corners with their rims, in the body's frame.
     points: Vec<Point>,
-    /// The same corners in the world, counter-clockwise seen with forward to the right and up upward \[m\].
+    /// The same corners in the world \[m\], counter-clockwise where forward points right and up points up.
     pub corners: Vec<Vector<f64>>,
-    /// The polygon's side from each corner to the next; none of a single corner, two of a line.
+    /// The polygon's side from each corner to the next; none for a single corner, two for a line.
     pub bones: Vec<Face>,
     /// The same sides, moved out by the rim.
     pub sides: Vec<Face>,
@@ -45,7 +45,7 @@ impl<'p> Outline<'p> {
         outline
     }
 
-    /// The rim's point that is farthest along a unit vector of the world, seen from the corner \[m\].
+    /// Returns the rim's point that is farthest along a unit vector of the world, relative to the corner \[m\].
     pub fn support(&self, direction: Vector<f64>) -> Vector<f64> {
         match self.rim {
             Rim::Circle { radius } => direction * radius,
@@ -56,27 +56,27 @@ impl<'p> Outline<'p> {
         }
     }
 
-    /// How far the rim reaches along a unit vector of the world \[m\].
+    /// Returns how far the rim extends from the corner along a unit vector of the world \[m\].
     pub fn reach(&self, direction: Vector<f64>) -> f64 {
         self.rim.reach(self.placement.turned_back(self.body, direction))
     }
 
-    /// Whether the corners have no rim.
+    /// Returns whether the corners have no rim.
     pub fn is_sharp(&self) -> bool {
         self.rim == Rim::Circle { radius: 0.0 }
     }
 
-    /// The lowest point of a corner's rim, seen along a unit normal of the ground \[m\].
+    /// Returns the lowest point of a corner's rim along a unit normal of the ground, in the world \[m\].
     pub fn lowest(&self, corner: usize, normal: Vector<f64>) -> Vector<f64> {
         self.corners[corner] + self.support(-normal)
     }
 
-    /// A corner's contact with ground of this normal.
+    /// Returns a corner's contact with ground of this normal.
     pub fn touch(&self, corner: usize, normal: Vector<f64>, gap: f64) -> Touch {
         Touch { circle: self.placement.circle(self.points[corner], normal), ground: upright(normal), gap }
     }
 
-    /// The sides that end and begin at a corner; none of a single corner.
+    /// Returns the sides that end and begin at a corner; `None` for a single corner.
     pub fn at_corner(&self, corner: usize) -> Option<[&Face; 2]> {
         let count = self.sides.len();
         (count > 0).then(|| [&self.sides[(corner + count - 1) % count], &self.sides[corner]])
@@ -92,7 +92,7 @@ impl<'p> Outline<'p> {
         [&self.sides[(side + count - 1) % count], &self.sides[(side + 1) % count]]
     }
 
-    /// A side's contact with a corner of the ground that is `at` it.
+    /// Returns a side's contact with a corner of the ground at the point `at`.
     pub fn on_side(&self, side: usize, at: Vector<f64>) -> Touch {
         let face = &self.sides[side];
         let (from, to) = (self.points[side], self.points[(side + 1) % self.points.len()]);
@@ -103,7 +103,7 @@ impl<'p> Outline<'p> {
         Touch { circle: self.placement.circle(point, normal), ground: upright(normal), gap: face.height(at) }
     }
 
-    /// The box about the outline, grown by `margin` \[m\]: its low and its high end.
+    /// Returns the low and the high end of the box about the outline, grown by `margin` \[m\].
     pub fn region(&self, margin: f64) -> [Vector<f64>; 2] {
         let (margin, far) = (self.rim.bound() + margin, Vector::new(f64::INFINITY, f64::INFINITY));
         let corners = || self.corners.iter().copied();
@@ -111,10 +111,11 @@ impl<'p> Outline<'p> {
         [low.map(|entry| entry - margin), high.map(|entry| entry + margin)]
     }
 
-    /// The direction out of a corner's rim toward a point, and how far it lies beyond \[m\]; `None` from the center.
+    /// Returns the outward normal of a corner's rim toward a point, and the point's distance beyond the rim \[m\],
+    /// negative inside; `None` if the point is the corner itself or the distance is not finite.
     ///
-    /// Of an ellipse `cos(s) a + sin(s) b` the direction is that at the point of the rim on the way from the center,
-    /// which is the nearest one where the distance is nothing; and the distance that to the tangent there.
+    /// For an ellipse `cos(s) a + sin(s) b` the normal is that where the line from the corner to the point crosses the
+    /// rim, and the distance is that from the tangent there. At distance zero this is the nearest point of the rim.
     pub fn beyond_rim(&self, corner: usize, point: Vector<f64>) -> Option<(Vector<f64>, f64)> {
         let way = point - self.corners[corner];
         let far = way.length();
@@ -125,7 +126,7 @@ impl<'p> Outline<'p> {
             Rim::Circle { radius } => Some((unit(way), far - radius)),
             Rim::Ellipse { half_diameters: [a, b] } => {
                 let Vector { x, z } = self.placement.turned_back(self.body, way);
-                // (cos s, sin s) solves cos(s) a + sin(s) b = way / k; the gradient of k is the normal.
+                // way = k (cos(s) a + sin(s) b), where k is `size`. The gradient of k has the direction of the normal.
                 let area = a.x * b.z - a.z * b.x;
                 let [along_a, along_b] = [(x * b.z - z * b.x) / area, (a.x * z - a.z * x) / area];
                 let gradient = Vector::new(along_a * b.z - along_b * a.z, along_b * a.x - along_a * b.x);
@@ -137,7 +138,8 @@ impl<'p> Outline<'p> {
         }
     }
 
-    /// The contact of a corner of the ground where it is deepest in the foot or, outside, nearest to it.
+    /// Returns the contact of a ground corner with the outline: with the side that is nearest if the corner is inside
+    /// of the polygon, else with the nearest side or rim.
     pub fn touch_of(&self, corner: Vector<f64>) -> Option<Touch> {
         let on = |side: usize| self.on_side(side, corner);
         if self.bones.len() > 2 && self.bones.iter().all(|bone| bone.height(corner) < 0.0) {

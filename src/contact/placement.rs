@@ -6,22 +6,22 @@ use crate::dynamics::{Workspace, kinematics};
 use crate::planar::{Rotation, Vector};
 use crate::robot::{Base, Rim, Robot};
 
-/// Where each body of a robot is.
+/// The pose of each body of a robot.
 #[derive(Debug, Clone, Default)]
 pub struct Placement {
     /// Origin of each body in the world \[m\].
     origins: Vec<Vector<f64>>,
-    /// Pitch of each body as a turn.
+    /// Pitch of each body as a rotation.
     turns: Vec<Rotation<f64>>,
 }
 
 impl Placement {
-    /// The bodies after `kinematics`, with the root's origin at `base` \[m\].
+    /// Creates the placement with the root's origin at `base` \[m\]. Requires the results of [`kinematics`].
     pub fn new(plan: &Plan<f64>, workspace: &Workspace<f64>, base: Vector<f64>) -> Self {
         Self::default().moved(plan, workspace, base)
     }
 
-    /// As [`Placement::new`], in the memory of another one.
+    /// Does the same as [`Placement::new`] in the memory of `self`.
     pub fn moved(mut self, plan: &Plan<f64>, workspace: &Workspace<f64>, base: Vector<f64>) -> Self {
         self.origins.clear();
         for (body, &arm) in plan.bodies.iter().zip(&workspace.arm) {
@@ -31,7 +31,7 @@ impl Placement {
         self
     }
 
-    /// The bodies of `robot` at `position` (q).
+    /// Creates the placement of `robot` at `position` (q).
     pub fn of_robot(robot: &Robot, position: &[f64]) -> Self {
         let plan = Plan::new(robot, &[], &[]);
         let (mut configuration, mut workspace) = (Configuration::default(), Workspace::default());
@@ -44,34 +44,34 @@ impl Placement {
         Self::new(&plan, &workspace, base)
     }
 
-    /// All bodies, higher by `rise` along z \[m\].
+    /// Returns the placement moved up by `rise` along z \[m\].
     pub(super) fn raised(&self, rise: f64) -> Self {
         let raised = |&Vector { x, z }: &Vector<f64>| Vector::new(x, z + rise);
         Self { origins: self.origins.iter().map(raised).collect(), turns: self.turns.clone() }
     }
 
-    /// The root's origin in the world \[m\].
+    /// Returns the root's origin in the world \[m\].
     pub(crate) fn base(&self) -> Vector<f64> {
         self.origins.first().copied().unwrap_or_default()
     }
 
-    /// The world's point that is `local` in the frame of `body` \[m\].
+    /// Returns the world coordinates of the point `local` in the frame of `body`; both in \[m\].
     pub fn world(&self, body: usize, local: Vector<f64>) -> Vector<f64> {
         self.origins[body] + self.turned(body, local)
     }
 
-    /// A vector of a body's frame in the world's axes.
+    /// Returns a vector of a body's frame in the world's axes.
     pub fn turned(&self, body: usize, vector: Vector<f64>) -> Vector<f64> {
         self.turns[body].apply(vector)
     }
 
-    /// A vector of the world in a body's axes.
+    /// Returns a vector of the world in a body's axes.
     pub(super) fn turned_back(&self, body: usize, vector: Vector<f64>) -> Vector<f64> {
         self.turns[body].back().apply(vector)
     }
 
-    /// The circle that touches ground with this normal where `point` does: of an ellipse, with radius 0, the material
-    /// point that is lowest along the normal now.
+    /// Returns the circle with which `point` touches ground of this normal. For an ellipse it has the radius 0 and the
+    /// material point that is lowest along the normal in this placement.
     pub(super) fn circle(&self, point: Point, normal: Vector<f64>) -> Circle {
         let Point { body, center, offset, rim } = point;
         match rim {

@@ -1,10 +1,10 @@
 //! Feet against a line through the world's origin, level or sloped.
 //!
 //! ```text
-//!     bounding circle --reaches the ground?--> corners with their rims --sole--> the outer two
+//!     foot whose bounding circle reaches the ground --> corners with their rims --sole--> rearmost and foremost
 //! ```
 //!
-//! The point that touches, its gap and its velocity are those of the exact material point.
+//! The contact point, its gap and its velocity are those of a material point, without approximation.
 
 use super::feet::Foot;
 use super::placement::Placement;
@@ -15,7 +15,7 @@ use crate::planar::{Rotation, Vector};
 /// Solid ground below a line through the world's origin.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct HalfPlane {
-    /// Turn from the world's axes to the ground's (tangent, normal), and these.
+    /// Rotation from the world's axes to the ground's (tangent, normal).
     ground: Rotation<f64>,
     tangent: Vector<f64>,
     pub(super) normal: Vector<f64>,
@@ -28,7 +28,7 @@ impl HalfPlane {
         normal: Vector { x: 0.0, z: 1.0 },
     };
 
-    /// The ground of this slope \[rad\], uphill toward +x, which is a turn against the pitch.
+    /// Creates ground of this slope \[rad\]. A positive slope rises toward +x, and is a negative pitch.
     pub fn sloped(slope: f64) -> Self {
         Self::turned(Rotation::by(-slope))
     }
@@ -42,7 +42,7 @@ impl HalfPlane {
         placement.circle(point, self.normal)
     }
 
-    /// The world's point of a rim about a corner that is lowest along the normal.
+    /// Returns the lowest point of a corner's rim along the normal, in the world \[m\].
     pub fn lowest(&self, placement: &Placement, point: Point) -> Vector<f64> {
         let Circle { body, center, radius, .. } = self.circle(placement, point);
         placement.world(body, center) - self.normal * radius
@@ -52,13 +52,13 @@ impl HalfPlane {
         self.normal.dot(self.lowest(placement, point))
     }
 
-    /// How far a world's point lies along the tangent \[m\].
+    /// Returns the coordinate along the tangent of a point in the world \[m\].
     pub(super) fn along(&self, point: Vector<f64>) -> f64 {
         self.tangent.dot(point)
     }
 
-    /// How far heights are off by rounding alone: they are sums of a few terms of this size. On level ground it does
-    /// not matter how far away the base is.
+    /// Bounds the rounding of heights \[m\], which are sums of a few terms of this size. On level ground the base's x
+    /// does not count.
     pub(super) fn rounding(&self, placement: &Placement, size: f64) -> f64 {
         let Vector { x, z } = placement.base();
         let Vector { x: along, z: up } = self.normal;
@@ -69,14 +69,14 @@ impl HalfPlane {
         Touch { circle: self.circle(placement, point), ground: self.ground, gap: self.height(placement, point) }
     }
 
-    /// A height \[m\] that no point of a foot is below.
+    /// Returns a lower bound on the height of all points of a foot \[m\].
     pub(super) fn least_gap(&self, foot: &Foot, placement: &Placement) -> f64 {
         let (center, radius) = foot.bounding_circle;
         self.normal.dot(placement.world(foot.body, center)) - radius
     }
 
-    /// The rearmost and the foremost corner on which a foot stands, if what is at most `highest` \[m\] above the plane
-    /// is on it.
+    /// Returns the rearmost and the foremost corner on which a foot stands, or one if they are the same. Corners at
+    /// most `highest` \[m\] above the plane are on it.
     pub(super) fn sole(&self, foot: &Foot, placement: &Placement, highest: f64) -> impl Iterator<Item = Point> {
         let place = |at: usize| {
             let lowest = self.lowest(placement, point(foot, at));
@@ -87,8 +87,8 @@ impl HalfPlane {
         both.into_iter().flatten().flatten().map(|at| point(foot, at))
     }
 
-    /// Finds the contacts of a foot within `tolerance` \[m\] of the ground, at most two, or the depth of a foot that is
-    /// deeper.
+    /// Passes to `found` the contacts of a foot within `tolerance` \[m\] of the ground, at most two. Returns the depth
+    /// \[m\] of a foot that is deeper as an error.
     pub(super) fn touching(
         &self,
         foot: &Foot,
@@ -96,7 +96,7 @@ impl HalfPlane {
         tolerance: f64,
         mut found: impl FnMut(Touch),
     ) -> Result<(), f64> {
-        // A round foot is its own sole, and most robots have such.
+        // Fast path for a single corner, because most robots have round feet.
         if foot.outline.corners().len() == 1 {
             let touch = self.touch(placement, point(foot, 0));
             if touch.gap < -tolerance {
@@ -118,7 +118,7 @@ impl HalfPlane {
         Ok(())
     }
 
-    /// How far a foot is above the ground \[m\].
+    /// Returns the height of a foot's lowest point above the ground \[m\].
     pub(super) fn clearance(&self, foot: &Foot, placement: &Placement) -> f64 {
         points(foot).map(|point| self.height(placement, point)).fold(f64::INFINITY, f64::min)
     }

@@ -10,22 +10,22 @@ use crate::scalar::Real;
 use crate::state::NamedContact;
 use std::cmp::Ordering;
 
-/// A corner and the rim about it, rigid on a body.
+/// A corner of a foot, or a named contact point, with the rim about it. It is fixed to a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Point {
     pub body: usize,
     pub center: Vector<f64>,
-    /// In the link's own frame, where it was named so.
+    /// The center in the link's own 3-D frame \[m\], if it was named there.
     pub offset: Option<[f64; 3]>,
     pub rim: Rim,
 }
 
-/// A circle, or with radius 0 a point, rigid on a body, that touches.
+/// A circle that touches the ground, or a point if the radius is 0. It is fixed to a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Circle {
     pub body: usize,
     pub center: Vector<f64>,
-    /// In the link's own frame, where it was named so.
+    /// The center in the link's own 3-D frame \[m\], if it was named there.
     pub offset: Option<[f64; 3]>,
     pub radius: f64,
 }
@@ -34,7 +34,7 @@ pub(crate) struct Circle {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Touch {
     pub circle: Circle,
-    /// Turn from the world's axes to the ground's (tangent, normal) there.
+    /// Rotation from the world's axes to the ground's (tangent, normal) there.
     pub ground: Rotation<f64>,
     /// Height of the material point, center - radius * normal, above the ground \[m\].
     pub gap: f64,
@@ -58,41 +58,41 @@ pub(crate) fn points(foot: &Foot) -> impl Iterator<Item = Point> {
     (0..foot.outline.corners().len()).map(|at| point(foot, at))
 }
 
-/// A corner of a foot with its rim.
+/// Returns a corner of a foot with its rim.
 pub(super) fn point(foot: &Foot, corner: usize) -> Point {
     let center = foot.outline.corners()[corner];
     Point { body: foot.body, center, offset: foot.offset, rim: foot.outline.rim }
 }
 
 impl Contact {
-    /// Unit normal of the ground in the world, toward the robot.
+    /// Returns the unit normal of the ground in the world, toward the robot.
     pub fn normal(&self) -> Vector<f64> {
         self.ground.apply(Vector::new(0.0, 1.0))
     }
 
-    /// Unit tangent of the ground in the world: the normal turned clockwise.
+    /// Returns the unit tangent of the ground in the world: the normal rotated clockwise.
     pub fn tangent(&self) -> Vector<f64> {
         self.ground.apply(Vector::new(1.0, 0.0))
     }
 
-    /// The material point in touch, as the dynamics take it.
+    /// Returns the material contact point in the form that the dynamics take.
     pub fn point_of(&self) -> ContactPoint {
         ContactPoint { body: self.body, center: self.center, radius: self.radius, ground: self.ground }
     }
 
-    /// Whether it is the same circle of the same body as another, whatever the normals.
+    /// Returns whether both contacts have the same circle of the same link and body, with any normals.
     pub fn has_circle_of(&self, other: &Self) -> bool {
         (self.link, self.body, self.center, self.radius) == (other.link, other.body, other.center, other.radius)
     }
 
-    /// Whether it is the same circle with the same normal as another; at an edge that is the way from its corner to the
-    /// circle's center, to rounding.
+    /// Returns whether both contacts have the same circle and the same normal. At a ground edge the normal is computed
+    /// from positions, so it is compared up to rounding.
     pub fn is_the_same_as(&self, other: &Self) -> bool {
         let is_parallel = || (self.normal() - other.normal()).length() <= PARALLEL;
         self.has_circle_of(other) && (self.ground == other.ground || is_parallel())
     }
 
-    /// The same in numbers of any kind, a named point from the digits that it was named with.
+    /// Returns the material contact point in any number type. A named point is computed from the digits as given.
     pub fn exact_point<T: Real>(&self, robot: &Robot, ground: Rotation<T>) -> ContactPoint<T> {
         let center = match self.offset {
             Some(offset) => robot.links[self.link].point(offset),
@@ -101,12 +101,12 @@ impl Contact {
         ContactPoint { body: self.body, center, radius: T::from_f64(self.radius), ground }
     }
 
-    /// Its arm for bounds of rounding.
+    /// Returns the arm of the contact for bounds of rounding.
     pub fn arm(&self, robot: &Robot) -> Arm {
         Arm { body: self.body, length: self.stretch(robot) + self.radius }
     }
 
-    /// What the center's coordinates were added up from, by magnitude \[m\].
+    /// Returns the sum of the magnitudes of all terms in the center's coordinates \[m\].
     fn stretch(&self, robot: &Robot) -> f64 {
         match self.offset {
             Some(offset) => robot.links[self.link].stretch(offset),

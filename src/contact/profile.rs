@@ -1,16 +1,18 @@
-//! Feet against a profile: where a foot touches, with which normal, and how deep it is.
+//! Feet against a profile: where a foot touches, the normal there, and how deep the foot is in the ground.
 //!
 //! ```text
-//!     a corner's rim at a segment              the segment's normal; in a notch two contacts, one for each segment
-//!     a circle at a convex corner              from the ground's corner to the circle's center
-//!     a foot's side across a convex corner     the side's own normal, turned round: the edge of a stair under a sole
+//!     what touches                             normal
+//!     a corner's rim at a segment              the segment's; in a notch two contacts, one for each segment
+//!     a circle at a convex ground corner       from the ground corner to the circle's center
+//!     a foot's side across a convex corner     the side's, reversed, as for the edge of a stair under a sole
 //!     a foot's corner on a convex corner       the middle of the normals that both allow
 //! ```
 //!
-//! Each corner of one boundary belongs to the side of the other that it is above, or to the corner whose sides it is
-//! past, so that a spot touches once. What is within the tolerance touches; so a sole that lies flat on a tread touches
-//! with its corner and at the edge that it overhangs. At a small angle a side may go behind another by twice it, and at
-//! up to 45 degrees, as on a plane, if it ends above it.
+//! A foot that lies flat on a segment has that segment's normal also at a ground corner. Each corner of one boundary
+//! belongs to the side of the other boundary that it is above, or to the corner whose two sides it is past. So each
+//! place touches once. Everything within the tolerance touches, so a sole that lies flat on a tread touches with its
+//! corner and at the edge that it overhangs. A side at a small angle to a segment may go behind it by twice the
+//! tolerance; so may a side at up to 45 degrees that ends above the segment, as on a plane.
 
 use super::face::{Face, PARALLEL, unit};
 use super::feet::Foot;
@@ -21,16 +23,17 @@ use super::sole::sole;
 use super::terrain::Terrain;
 use crate::planar::Vector;
 
-/// What is touching, and how exactly that is known.
+/// The lengths that decide whether a foot touches.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Closeness {
-    /// What counts as touching \[m\].
+    /// Largest gap, and largest depth, of a contact \[m\].
     pub tolerance: f64,
-    /// What counts as the same place \[m\]: the rounding of positions.
+    /// Largest distance between points that count as the same place \[m\]: the rounding of positions.
     pub rounding: f64,
 }
 
-/// The contacts of a foot that is `close` to the ground, ascending in x, or the depth of a foot that is deeper.
+/// Returns the contacts of a foot that is `close` to the ground, ascending in x. Returns the depth \[m\] of a foot that
+/// is deeper than the tolerance as an error.
 pub(super) fn touching(
     terrain: &Terrain,
     foot: &Foot,
@@ -65,7 +68,7 @@ pub(super) fn touching(
     }
     let on_segments = touches.len();
     for corner in corners_of(&near).filter(|&corner| terrain.is_convex(corner)) {
-        // A foot's corner that is at the end of a segment, to rounding, touches there already.
+        // A contact at this end of an adjacent segment, up to rounding, already stands for the ground corner.
         let known = |touch: &Touch| {
             let [before, after] = terrain.at_corner(corner);
             let place = place(placement, touch);
@@ -83,8 +86,8 @@ pub(super) fn touching(
     Ok(touches)
 }
 
-/// The rearmost and the foremost of a foot's contacts on one segment; of several at one end, or no farther than `bumps`
-/// \[m\] apart, the lowest.
+/// Returns the rearmost and the foremost of a foot's contacts on one segment, or only the lowest contact if they are at
+/// most `bumps` \[m\] apart. Of several contacts at one end, the lowest counts.
 fn outer(touches: Vec<Touch>, along: impl Fn(&Touch) -> f64, bumps: f64) -> Vec<Touch> {
     let lower = |a: &&Touch, b: &&Touch| a.by_gap(b);
     let end = |way: f64| touches.iter().min_by(|a, b| (way * along(a)).total_cmp(&(way * along(b))).then(lower(a, b)));
@@ -97,7 +100,7 @@ fn outer(touches: Vec<Touch>, along: impl Fn(&Touch) -> f64, bumps: f64) -> Vec<
     }
 }
 
-/// The segments that a foot may touch, ascending; all of them for a foot that reaches everywhere.
+/// Returns the indices of the segments that a foot may touch, ascending; all of them for an infinite bounding circle.
 pub(super) fn within_reach(terrain: &Terrain, foot: &Foot, outline: &Outline, tolerance: f64) -> Vec<usize> {
     if foot.bounding_circle.1.is_infinite() {
         return all(terrain);
@@ -110,26 +113,26 @@ fn all(terrain: &Terrain) -> Vec<usize> {
     (1..=terrain.segments().len()).collect()
 }
 
-/// The material point of a contact in the world \[m\].
+/// Returns the material point of a contact in the world \[m\].
 fn place(placement: &Placement, touch: &Touch) -> Vector<f64> {
     let normal = touch.ground.apply(Vector::new(0.0, 1.0));
     placement.world(touch.circle.body, touch.circle.center) - normal * touch.circle.radius
 }
 
-/// How far heights are off by rounding alone \[m\]: they are sums of a few terms of this size.
+/// Bounds the rounding of heights \[m\], which are sums of a few terms of this size.
 pub(super) fn rounding(placement: &Placement, size: f64) -> f64 {
     let Vector { x, z } = placement.base();
     16.0 * f64::EPSILON * (size + x.abs() + z.abs())
 }
 
-/// The corners of these segments, ascending.
+/// Returns the indices of the corners of these segments, ascending.
 fn corners_of(segments: &[usize]) -> impl Iterator<Item = usize> + '_ {
     let new = |at: usize| at == 0 || segments[at - 1] + 1 != segments[at];
     (0..segments.len()).flat_map(move |at| new(at).then(|| segments[at] - 1).into_iter().chain([segments[at]]))
 }
 
-/// Where a foot may be deepest in the ground or, above it, nearest to it: at its corners' rims, the ground's corners, and
-/// sides that cross.
+/// Returns the places where a foot may be deepest in the ground or, above it, nearest to it: the rims of its corners,
+/// the ground's corners, and crossings of its sides with segments.
 fn places<'a>(terrain: &'a Terrain, outline: &'a Outline, near: &'a [usize]) -> impl Iterator<Item = Touch> + 'a {
     let corners = (0..outline.corners.len()).filter_map(|corner| place_of_rim(terrain, outline, corner, near));
     let ground = corners_of(near).filter_map(|corner| outline.touch_of(terrain.at_corner(corner)[0].to));
@@ -139,12 +142,13 @@ fn places<'a>(terrain: &'a Terrain, outline: &'a Outline, near: &'a [usize]) -> 
     corners.chain(ground).chain(across)
 }
 
-/// How deep a foot is in the ground \[m\], negative above it.
+/// Returns how deep a foot is in the ground \[m\], negative above it; negative infinity if no place is near.
 fn depth(terrain: &Terrain, outline: &Outline, near: &[usize]) -> f64 {
     places(terrain, outline, near).map(|touch| -touch.gap).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// Where a corner's rim is deepest behind the segments that it is above, or as a whole below the profile.
+/// Returns where a corner's rim is deepest in, or nearest to, the segments that the corner is above; `None` if it is
+/// above none. If the corner itself is in the ground, the depth is its own plus the reach of the rim.
 fn place_of_rim(terrain: &Terrain, outline: &Outline, corner: usize, near: &[usize]) -> Option<Touch> {
     let center = outline.corners[corner];
     if let Some((depth, normal)) = terrain.depth_of(center) {
@@ -159,7 +163,8 @@ fn place_of_rim(terrain: &Terrain, outline: &Outline, corner: usize, near: &[usi
     above.min_by(Touch::by_gap)
 }
 
-/// Where a foot is nearest to the ground, or deepest in it; `None` of one that is below an end beside it.
+/// Returns where a foot is nearest to the ground, or deepest in it; `None` if the foot is beyond an end of the profile
+/// and below that end.
 pub(super) fn nearest(terrain: &Terrain, outline: &Outline) -> Option<Touch> {
     places(terrain, outline, &all(terrain)).min_by(Touch::by_gap).filter(|touch| touch.ground.cos > -PARALLEL)
 }
@@ -168,14 +173,15 @@ pub(super) fn clearance(terrain: &Terrain, outline: &Outline) -> f64 {
     -depth(terrain, outline, &all(terrain))
 }
 
-/// Whether no point of a foot is on the ground or in it.
+/// Returns whether no point of a foot is on the ground or in it.
 pub(super) fn is_clear(terrain: &Terrain, foot: &Foot, placement: &Placement, rounding: f64) -> bool {
     let outline = Outline::new(foot, placement);
     let near = within_reach(terrain, foot, &outline, rounding);
     depth(terrain, &outline, &near) < 0.0
 }
 
-/// The x of the end that a foot reaches beyond, not higher than `tolerance` above it.
+/// Returns x of an end of the profile \[m\] if a foot reaches beyond it by more than `tolerance` \[m\], at a height of
+/// at most `tolerance` above it.
 pub(super) fn left_behind(terrain: &Terrain, outline: &Outline, tolerance: f64) -> Option<f64> {
     let [rear, front] = terrain.ends();
     let hangs = |Vector { x, z }: Vector<f64>, way: f64| {
@@ -188,8 +194,8 @@ pub(super) fn left_behind(terrain: &Terrain, outline: &Outline, tolerance: f64) 
     if hangs(rear, -1.0) { Some(rear.x) } else { hangs(front, 1.0).then_some(front.x) }
 }
 
-/// The corner of a side that is behind a segment which the side crosses, as deep as the shortest way that takes one off
-/// the other; `None` if they do not cross.
+/// Returns the place where a side of a foot crosses a segment, at the side's corner that is behind the segment; `None`
+/// if they do not cross. The depth is the reach of the rim plus the shortest distance that separates side and segment.
 fn crossing(face: &Face, outline: &Outline, side: usize) -> Option<Touch> {
     let bone = &outline.bones[side];
     let [from, to] = [face.height(bone.from), face.height(bone.to)];
@@ -201,7 +207,7 @@ fn crossing(face: &Face, outline: &Outline, side: usize) -> Option<Touch> {
     (parted(from, to) && parted(begin, end)).then(|| outline.touch(behind, face.normal, -depth()))
 }
 
-/// A corner's rim at a segment.
+/// Returns the contact of a corner's rim with a segment; `None` if there is none or it belongs to another place.
 fn on_segment(terrain: &Terrain, segment: usize, outline: &Outline, corner: usize, close: Closeness) -> Option<Touch> {
     let face = terrain.face(segment);
     let center = outline.corners[corner];
@@ -210,7 +216,7 @@ fn on_segment(terrain: &Terrain, segment: usize, outline: &Outline, corner: usiz
     if gap.abs() > close.tolerance {
         return None;
     }
-    // In a notch the foot may be a little behind the other segment; beyond a convex corner it is not above this one.
+    // In a notch the foot may be behind the other segment by the tolerance; past a convex corner it belongs elsewhere.
     let [rear, front] = [segment - 1, segment].map(|end| terrain.is_convex(end));
     let reach = |convex: bool| if convex { 0.0 } else { close.tolerance };
     let above = face.past_begin(lowest) >= -reach(rear) && face.past_end(lowest) <= reach(front);
@@ -223,7 +229,7 @@ fn on_segment(terrain: &Terrain, segment: usize, outline: &Outline, corner: usiz
         let beside = outline.beside_corner(corner);
         beside.is_none_or(|beside| beside.into_iter().all(|neighbor| face.clears(center, neighbor, slack, true)))
     };
-    // Behind both sides of a convex corner the one that is left by the shorter way counts.
+    // Behind both segments at a convex corner, the contact belongs to the segment with the shorter way out.
     let height = face.height(center);
     let nearer = |other: usize, convex: bool| {
         let beside = terrain.face(other);
@@ -237,14 +243,14 @@ fn on_segment(terrain: &Terrain, segment: usize, outline: &Outline, corner: usiz
     Some(outline.touch(corner, face.normal, gap))
 }
 
-/// A foot's corner, or the rim about it, on a convex corner of the ground.
+/// Returns the contact of a foot's corner, or of the rim about it, with a convex corner of the ground.
 fn corner_on_corner(terrain: &Terrain, corner: usize, outline: &Outline, close: Closeness) -> Option<Touch> {
     let [before, after] = terrain.at_corner(corner);
     let at = before.to;
     let on = |foot: usize| {
         let beyond = outline.beyond_rim(foot, at);
         let together = outline.is_sharp() && beyond.is_none_or(|(_, far)| far <= close.rounding);
-        // A point that is at the corner, to rounding, is left to it by both segments.
+        // Both segments leave a point at the ground corner, up to rounding, to that corner.
         let past_both = || {
             let [rear, front] = [before, after].map(|face| outline.lowest(foot, face.normal));
             let left = |past: bool, lowest: Vector<f64>| past || (lowest - at).length() <= close.rounding;
@@ -269,21 +275,22 @@ fn corner_on_corner(terrain: &Terrain, corner: usize, outline: &Outline, close: 
     (0..outline.corners.len()).find_map(on)
 }
 
-/// The middle of the normals that a convex corner of the ground and a corner of the foot both allow; where the foot
-/// lies flat on a segment, that segment's normal.
+/// Returns the middle of the normals that a convex corner of the ground and a corner of the foot both allow. If the
+/// foot lies flat on a segment, it is that segment's normal.
 fn common_normal(ground: [&Face; 2], foot: Option<[&Face; 2]>) -> Vector<f64> {
-    // From the rear face's normal clockwise to the front one's. A foot pushes the ground the other way.
+    // The ground allows the normals from the rear face's clockwise to the front face's. Those of a foot are reversed,
+    // because they point into the ground.
     let ground = ground.map(|face| face.normal);
     let Some(foot) = foot.map(|[before, after]| [before, after].map(|side| -side.normal)) else {
         return unit(ground[0] + ground[1]);
     };
-    // A foot's sides run counter-clockwise: its normals, turned round, go clockwise from the second to the first.
+    // A foot's sides run counter-clockwise, so its normals run clockwise from the second to the first.
     let foot = [foot[1], foot[0]];
     let sine = |a: Vector<f64>, b: Vector<f64>| a.z * b.x - a.x * b.z;
     let within = |[first, last]: [Vector<f64>; 2], normal: Vector<f64>| {
         sine(first, normal) >= -PARALLEL && sine(normal, last) >= -PARALLEL && normal.dot(first + last) >= -PARALLEL
     };
-    // The later of both beginnings and the earlier of both ends.
+    // The common range goes from the later beginning to the earlier end.
     let first = if within(ground, foot[0]) { foot[0] } else { ground[0] };
     let last = if within(ground, foot[1]) { foot[1] } else { ground[1] };
     let flat =
@@ -291,7 +298,7 @@ fn common_normal(ground: [&Face; 2], foot: Option<[&Face; 2]>) -> Vector<f64> {
     flat.unwrap_or_else(|| unit(first + last))
 }
 
-/// A foot's side across a convex corner of the ground.
+/// Returns the contact of a foot's side with a convex corner of the ground.
 fn side_on_corner(terrain: &Terrain, corner: usize, outline: &Outline, close: Closeness) -> Option<Touch> {
     let [before, after] = terrain.at_corner(corner);
     let at = before.to;
@@ -299,14 +306,14 @@ fn side_on_corner(terrain: &Terrain, corner: usize, outline: &Outline, close: Cl
         let face = &outline.sides[side];
         let (gap, slack) = (face.height(at), 2.0 * close.tolerance);
         let beneath = face.past_begin(at) >= -close.rounding && face.past_end(at) <= close.rounding;
-        // A line is all surface; the way along the ground decides its side.
+        // A line has no inside: the ground's segments decide which of its two sides touches.
         let solid = outline.sides.len() > 2;
         let clear = |side: &Face| [before.from, after.to].into_iter().all(|end| side.clears(at, end, slack, false));
         let nearer = |other: &Face| solid && gap < 0.0 && other.faces(at) && other.height(at) > gap && clear(other);
         if gap.abs() > close.tolerance || !beneath || !clear(face) || outline.beside(side).into_iter().any(nearer) {
             return None;
         }
-        // Where it lies flat on a segment, that segment's normal.
+        // A side that lies flat on a segment gets that segment's normal.
         let is_flat = |own: &&Face| own.normal.dot(face.normal) < 0.0 && own.normal.dot(face.tangent).abs() <= PARALLEL;
         let touch = outline.on_side(side, at);
         let ground = [before, after].into_iter().find(is_flat).map_or(touch.ground, Face::axes);

@@ -1,27 +1,27 @@
-//! What of a foot stands on a straight ground.
+//! Finds the corners of a foot that stand on straight ground.
 //!
 //! ```text
-//!     corners (t, n) of a convex outline --from the lowest both ways--> those within the tolerance, and of a mesh those
-//!                                                                       that almost level sides join
+//!     corners (t, n) of a convex outline --from the lowest in both directions--> corners within the tolerance; of a
+//!                                                                                mesh, also along almost level sides
 //! ```
 //!
-//! The sole of a mesh is never quite flat: its facets are a micrometer apart, and which of them is lowest means
-//! nothing. Nor are corners that are as close to each other along the ground, as on a wheel, a sole. A straight ground
-//! pushes back through the rearmost and the foremost corner that stand on it.
+//! The sole of a mesh is never quite flat: its facets are about a micrometer apart, and which of them is lowest has no
+//! meaning. Corners that are this close to each other along the ground, as on a wheel, are one point and no sole.
+//! Straight ground pushes back through the rearmost and the foremost corner that stand on it.
 
 use crate::planar::Vector;
 
-/// The slope of a side of a mesh that is level but for the rounding of vertices.
+/// Largest slope of a mesh's side that counts as level, because vertices are rounded.
 const LEVEL: f64 = 1e-3;
 
-/// The rearmost and the foremost corner that stands, of an outline whose `count` corners are at the (t, n) `place` \[m\],
-/// counter-clockwise: those from one to the other stand. Sides of 45 degrees and more are no sole. A corner is on the
-/// ground up to the height `highest`; the rest of an almost level sole, up to `bumps` above the lowest corner \[m\]. A
-/// sole no longer than `bumps` is its lowest corner.
+/// Returns the rearmost and the foremost corner that stand; all corners between them stand, too. `None` if no corner
+/// does. The outline has `count` corners, counter-clockwise, at the positions (t, n) from `place` \[m\]. Sides of 45
+/// degrees and more do not belong to a sole. A corner stands up to the height `highest` \[m\], or along almost level
+/// sides up to `bumps` \[m\] above the lowest corner. A sole no longer than `bumps` is only its lowest corner.
 pub(super) fn sole(count: usize, place: impl Fn(usize) -> Vector<f64>, highest: f64, bumps: f64) -> Option<[usize; 2]> {
     let low = (0..count).map(|at| (at, place(at))).filter(|(_, place)| place.z <= highest);
     let (lowest, least) = low.min_by(|(_, a), (_, b)| a.z.total_cmp(&b.z))?;
-    // Counter-clockwise from the lowest is forward.
+    // From the lowest corner, counter-clockwise is forward.
     let end = |(step, forward): (usize, f64)| {
         let (mut at, mut from) = (lowest, least);
         loop {

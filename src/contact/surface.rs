@@ -1,4 +1,4 @@
-//! The ground as feet meet it.
+//! The ground in the form that feet are tested against.
 
 use super::Contact;
 use super::face::PARALLEL;
@@ -13,13 +13,13 @@ use crate::error::{Error, Reason, shortest_within};
 use crate::planar::Vector;
 use crate::state::Ground;
 
-/// A ground, compiled once for all feet of a state.
+/// The ground, prepared once for all feet of a state.
 pub(crate) enum Surface {
     HalfPlane(HalfPlane),
     Profile(Terrain),
 }
 
-/// A foot that is too deep: by how much \[m\], and what to do.
+/// The error for a foot that is too deep in the ground: its depth \[m\] and a remedy.
 pub(super) struct Sunk {
     pub depth: f64,
     pub remedy: String,
@@ -33,7 +33,8 @@ impl Surface {
         }
     }
 
-    /// The plane on which the foot of a stance is placed, and the point of the ground that it is placed at \[m\].
+    /// Returns the plane on which a stance places its foot, and the ground's point at x = 0 \[m\]. Returns an error if
+    /// there is no ground at x = 0.
     pub(super) fn stance(&self) -> crate::Result<(HalfPlane, Vector<f64>)> {
         match self {
             Self::HalfPlane(plane) => Ok((*plane, Vector::zero())),
@@ -51,19 +52,19 @@ impl Surface {
         }
     }
 
-    /// The contact of a circle or point that was named, whatever its height.
+    /// Returns the contact of a named circle or point at any height.
     pub(super) fn touch(&self, placement: &Placement, named: Point, tolerance: f64) -> Touch {
         match self {
             Self::HalfPlane(plane) => plane.touch(placement, named),
             Self::Profile(terrain) => {
-                // A circle's place is the same whatever the normal.
+                // A named contact is a circle, so its center is the same for every normal.
                 let circle = placement.circle(named, Vector::new(0.0, 1.0));
                 terrain.nearest_touch(circle, placement.world(circle.body, circle.center), tolerance)
             }
         }
     }
 
-    /// How far heights are off by rounding alone \[m\].
+    /// Bounds the rounding of heights \[m\].
     pub(super) fn rounding(&self, placement: &Placement, size: f64) -> f64 {
         match self {
             Self::HalfPlane(plane) => plane.rounding(placement, size),
@@ -71,7 +72,7 @@ impl Surface {
         }
     }
 
-    /// Finds where a foot is `close` to the ground.
+    /// Passes to `found` each contact of a foot that is `close` to the ground.
     pub(super) fn touching(
         &self,
         foot: &Foot,
@@ -79,7 +80,7 @@ impl Surface {
         close: Closeness,
         found: impl FnMut(Touch),
     ) -> Result<(), Sunk> {
-        // How far to move along the vertical for one meter along the normal.
+        // `along` is the vertical distance for one meter along the normal.
         let (touching, how, along) = match self {
             Self::HalfPlane(plane) => {
                 (plane.touching(foot, placement, close.tolerance, found), "raise the base", 1.0 / plane.normal.z)
@@ -90,7 +91,7 @@ impl Surface {
             }
         };
         touching.map_err(|depth| {
-            // What is left of the depth, or missing from it, is within the tolerance.
+            // The digits that the remedy leaves out are within the tolerance.
             let enough = shortest_within(depth * along, 0.5 * close.tolerance * along);
             let remedy =
                 format!("{how} by {enough:?} m, correct the pose, or accept it by a greater `contact_tolerance`");
@@ -98,7 +99,7 @@ impl Surface {
         })
     }
 
-    /// Whether a foot is so far away that no point of it can be within `tolerance` \[m\] of the ground.
+    /// Returns whether a foot is so far away that no point of it can be within `tolerance` \[m\] of the ground.
     pub(super) fn is_out_of_reach(&self, foot: &Foot, placement: &Placement, tolerance: f64) -> bool {
         match self {
             Self::HalfPlane(plane) => plane.least_gap(foot, placement) > tolerance,
@@ -108,7 +109,8 @@ impl Surface {
         }
     }
 
-    /// What contacts of a link are in the order of: the place along a plane, x along a profile \[m\].
+    /// Returns the coordinate by which the contacts of a link are sorted \[m\]: along the tangent of a plane, or x on a
+    /// profile.
     pub(super) fn along(&self, point: Vector<f64>) -> f64 {
         match self {
             Self::HalfPlane(plane) => plane.along(point),
@@ -116,8 +118,8 @@ impl Surface {
         }
     }
 
-    /// Whether two contacts of a link are one: the same point, and on a profile the same place with the same normal up
-    /// to `rounding` \[m\], because a side's point at a corner is found and not given.
+    /// Returns whether two contacts of a link are the same: on a plane the same point; on a profile the same position
+    /// up to `rounding` \[m\] and the same normal, because the point of a side at a ground corner is computed.
     pub(super) fn is_same(&self, a: &Contact, b: &Contact, rounding: f64) -> bool {
         let same_place = match self {
             Self::HalfPlane(_) => a.center == b.center,
@@ -128,7 +130,7 @@ impl Surface {
         same_place && (a.link, a.body, a.radius) == (b.link, b.body, b.radius)
     }
 
-    /// Whether a contact's normal is that of no straight piece of the ground.
+    /// Returns whether a contact's normal differs from those of all segments of the ground.
     pub fn is_corner(&self, contact: &Contact) -> bool {
         match self {
             Self::HalfPlane(_) => false,
@@ -136,7 +138,7 @@ impl Surface {
         }
     }
 
-    /// How far a foot is from the ground \[m\].
+    /// Returns the distance of a foot from the ground \[m\], negative in it.
     pub fn clearance(&self, foot: &Foot, placement: &Placement) -> f64 {
         match self {
             Self::HalfPlane(plane) => plane.clearance(foot, placement),

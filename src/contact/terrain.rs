@@ -1,12 +1,13 @@
-//! A profile compiled: its faces, their corners, and what of it is near.
+//! A ground profile, prepared for queries: its faces and corners, and which of them are near.
 //!
 //! ```text
-//!     points --points on a straight line dropped--> faces [wall, segment, ..., segment, wall], corner k between k and k + 1
+//!     points --drop points on a straight line--> faces [wall, segment, ..., segment, wall], corner k between k and k + 1
 //! ```
 //!
-//! The solid below the profile ends in upright walls below its ends. They bound the directions that the end points may
-//! push in, but are no ground themselves. A corner is convex where the ground falls away behind it, and concave in a
-//! notch. parry's polyline finds the segments near a foot and the nearest point, but not which side is inside.
+//! The solid below the profile is bounded by upright walls below its two ends. The walls limit the directions in which
+//! the end points may push, but they are not ground. A corner is convex if the ground falls away on both sides of it,
+//! and concave in a notch. parry's polyline finds the segments near a foot and the nearest point, but not which side is
+//! solid.
 
 use super::face::{Face, unit, upright};
 use super::point::{Circle, Touch};
@@ -45,17 +46,17 @@ impl Terrain {
         &self.faces[1..self.faces.len() - 1]
     }
 
-    /// The faces of these indices: 0 is the wall at the rear end.
+    /// Returns the face of this index; 0 is the wall at the rear end.
     pub(super) fn face(&self, index: usize) -> &Face {
         &self.faces[index]
     }
 
-    /// The faces that meet in a corner: 0 is the rear end.
+    /// Returns the faces that meet at a corner; corner 0 is the rear end.
     pub(super) fn at_corner(&self, corner: usize) -> [&Face; 2] {
         [&self.faces[corner], &self.faces[corner + 1]]
     }
 
-    /// Whether the ground falls away on both sides of a corner.
+    /// Returns whether the ground falls away on both sides of a corner.
     pub(super) fn is_convex(&self, corner: usize) -> bool {
         let [before, after] = self.at_corner(corner);
         before.tangent.x * after.tangent.z < before.tangent.z * after.tangent.x
@@ -65,7 +66,7 @@ impl Terrain {
         index == 0 || index + 1 == self.faces.len()
     }
 
-    /// Indices of the segments within the box from `low` to `high`, ascending.
+    /// Returns the indices of the segments that may reach into the box from `low` to `high`, ascending.
     pub(super) fn near(&self, low: Vector<f64>, high: Vector<f64>) -> Vec<usize> {
         let region = Aabb::new(ParryVector::new(low.x, low.z), ParryVector::new(high.x, high.z));
         let mut near: Vec<usize> =
@@ -74,7 +75,7 @@ impl Terrain {
         near
     }
 
-    /// How deep a point is in the solid \[m\], and the normal of the segment that is nearest; `None` outside.
+    /// Returns the depth of a point in the solid \[m\] and the normal of the nearest segment; `None` outside.
     pub(super) fn depth_of(&self, point: Vector<f64>) -> Option<(f64, Vector<f64>)> {
         let (face, corner) = self.is_inside(point).then(|| self.nearest(point))?;
         let depth = match corner {
@@ -84,7 +85,7 @@ impl Terrain {
         Some((depth, self.faces[face].normal))
     }
 
-    /// The segment nearest to a point, and its corner where that is nearest.
+    /// Returns the segment nearest to a point, and its corner if the nearest point is a corner.
     fn nearest(&self, point: Vector<f64>) -> (usize, Option<usize>) {
         let at = ParryVector::new(point.x, point.z);
         let (_, (segment, location)) = self.polyline.project_local_point_and_get_location(at, false);
@@ -95,8 +96,8 @@ impl Terrain {
         }
     }
 
-    /// The segment above, below or at x; `None` beyond the ends. Of two that meet there it is the less steep one, of
-    /// equally steep ones the rear one.
+    /// Returns the segment at `x`; `None` beyond the ends. Where two segments meet, it is the less steep one, or the
+    /// rear one if both are equally steep.
     pub(super) fn segment_at(&self, x: f64) -> Option<&Face> {
         let segments = self.segments();
         let next = segments.partition_point(|face| face.to.x < x);
@@ -114,9 +115,9 @@ impl Terrain {
         [segments[0].from, segments[segments.len() - 1].to]
     }
 
-    /// The contact of a circle or point that was named: with the ground nearest to its center, which is in the world at
-    /// `center`. A point within `tolerance` of a corner takes the middle of the corner's normals; beyond the ends the
-    /// last segment counts as going on.
+    /// Returns the contact of a named circle or point with the ground nearest to its `center` in the world. At a convex
+    /// corner, a point within `tolerance` \[m\] gets the middle of the corner's normals. Beyond an end, the last
+    /// segment is extended.
     pub(super) fn nearest_touch(&self, circle: Circle, center: Vector<f64>, tolerance: f64) -> Touch {
         let (face, corner) = self.nearest(center);
         let inner = corner.filter(|&corner| corner > 0 && corner + 2 < self.faces.len() && self.is_convex(corner));
@@ -139,17 +140,17 @@ impl Terrain {
         unit(before.normal + after.normal)
     }
 
-    /// What stands in for a plane where the foot of a stance is placed: axes and point of the ground at x = 0.
+    /// Returns the ground's axes and point at x = 0, which define the plane of a stance; `None` if there is no ground.
     pub(super) fn at_origin(&self) -> Option<(Rotation<f64>, Vector<f64>)> {
         let face = self.segment_at(0.0)?;
-        // The height at x = 0, from the nearer end.
+        // The height at x = 0, interpolated from the nearer end.
         let [near, far] = if -face.from.x <= face.to.x { [face.from, face.to] } else { [face.to, face.from] };
         let z = near.z - near.x * ((far.z - near.z) / (far.x - near.x));
         Some((face.axes(), Vector::new(0.0, z)))
     }
 }
 
-/// The points without those that lie, to rounding, on the straight line between their neighbors.
+/// Returns the points without those that lie, up to rounding, on the straight line between their neighbors.
 fn without_straight_ones(points: &[Vector<f64>]) -> Vec<Vector<f64>> {
     let mut kept: Vec<Vector<f64>> = Vec::with_capacity(points.len());
     for (at, &point) in points.iter().enumerate() {
