@@ -238,7 +238,7 @@ impl Answerer<'_> {
     fn result(&mut self, state: &State, around: Around<'_>, block: &mut Block) -> Result<()> {
         let Question { robot, ref options, detail, header, columns, .. } = *self.question;
         block.summary.own_friction += u64::from(state.scene.has_own_friction(self.question.defaults.friction));
-        // Those of a touchdown are found.
+        // The contacts of a touchdown are found, not named by the input.
         let own_contacts = state.scene.contacts.is_some() && around.landing.is_none();
         block.summary.own_contacts += u64::from(own_contacts && !options.feet.is_empty());
         let answer = match &self.question.total {

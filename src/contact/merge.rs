@@ -63,7 +63,7 @@ pub(super) fn merge(
             height - low - slope * (along - from)
         };
         let acts_through_outer = |at: usize| {
-            // Whether an edge of the friction cone meets the line between the outer two; never if it is along the ground.
+            // Whether an edge of the friction cone meets the line between the outer two; an edge along it never does.
             let meets = |lean: f64| {
                 let steeper = 1.0 - slope * lean;
                 let along = place(at)[0] - off(at) * lean / steeper;

@@ -1,7 +1,7 @@
 //! A ground profile, prepared for queries: its faces and corners, and which of them are near.
 //!
 //! ```text
-//!     points --drop points on a straight line--> faces [wall, segment, ..., segment, wall], corner k between k and k + 1
+//!     points --drop straight points--> faces [wall, segment, ..., segment, wall], corner k between faces k and k + 1
 //! ```
 //!
 //! The solid below the profile is bounded by upright walls below its two ends. The walls limit the directions in which

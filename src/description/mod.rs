@@ -25,7 +25,7 @@ pub use pose::{Matrix, Pose, apply, product, turn, unit};
 
 use crate::error::{Error, Location, Result};
 
-/// The caution about joints of Drake's own kinds. Its planar joint has no axis, so the axis must be added.
+/// The caution about joints of another namespace. Drake's planar joint has no axis, so the axis must be added.
 pub(crate) const FOREIGN_JOINTS: &str = "joints of another namespace, as <drake:joint>, are not read: write <joint>, with \
     <axis xyz=\"0 0 1\"/> for a planar one of Drake";
 

@@ -267,7 +267,7 @@ impl Scratch {
                 let found = families.found;
                 pass.collected.add_families(found);
             }
-            // Reasons are last: a budget that ends here leaves no outcome open.
+            // Reasons are solved last, so that a budget that ends here leaves no outcome open.
             if pass.turns_to_reasons() {
                 climb(&mut pass);
             }

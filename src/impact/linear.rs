@@ -106,9 +106,9 @@ impl<T: Real> Solutions<T> {
 }
 
 impl<T: Ordered> Solutions<T> {
-    /// `constant + coefficients . x` on the solutions, as a function of y.
+    /// Returns `constant + coefficients . x` on the solutions, as a function of y.
     pub fn affine(&self, constant: T, coefficients: &[T]) -> LinearFunction<T> {
-        // Most entries of a direction are zero.
+        // Zeros are skipped, because most entries of a direction are zero.
         let along = |x: &Vec<T>| {
             let terms = coefficients.iter().zip(x).filter(|(_, own)| own.sign() != Sign::Zero);
             terms.fold(T::zero(), |sum, (&coefficient, &own)| sum + coefficient * own)

@@ -106,7 +106,7 @@ pub struct Undecided {
 }
 
 impl Undecided {
-    /// Returns whether the combination is known to be no outcome.
+    /// Returns whether the combination is already known not to be an outcome.
     fn is_rejected(&self) -> bool {
         matches!(self.blunt, Some(Solved::Rejected(_)))
     }
@@ -115,7 +115,7 @@ impl Undecided {
 /// The pass over the combinations that need more digits than f64 has.
 pub struct UndecidedPass<'a, 'c> {
     pub undecided: Vec<Undecided>,
-    /// Listed combinations that are no outcomes and are solved only to find the reason.
+    /// Combinations that are listed but are not outcomes. They are solved only to find the reason of the rejection.
     pub rejected: Vec<Undecided>,
     /// Whether all combinations that may be outcomes are decided, and only reasons are missing.
     pub is_decided: bool,
@@ -127,7 +127,7 @@ pub struct UndecidedPass<'a, 'c> {
 }
 
 impl UndecidedPass<'_, '_> {
-    /// Turns to the reasons of rejected combinations; returns false if there are none.
+    /// Makes the rejected combinations the undecided ones, to find their reasons; returns false if there are none.
     pub fn turns_to_reasons(&mut self) -> bool {
         (self.undecided, self.is_decided) = (std::mem::take(&mut self.rejected), true);
         !self.undecided.is_empty()
@@ -164,7 +164,7 @@ impl PrecisionTask for UndecidedPass<'_, '_> {
         }
         let rejections = self.collected.options.rejections;
         if !self.is_decided {
-            // Combinations that the kernel excludes are solved later, only to find the reason.
+            // Combinations that are rejected, or excluded by the kernel, are solved later, only to find the reason.
             let (no, perhaps): (Vec<_>, _) =
                 open.into_iter().partition(|own| own.is_rejected() || self.excludes(&own.pending).is_some());
             self.rejected.extend(no.into_iter().filter(|own| rejections.contain(&own.pending.modes)));
@@ -181,7 +181,8 @@ impl PrecisionTask for UndecidedPass<'_, '_> {
                     let left = if self.is_decided { &mut self.undecided } else { &mut self.rejected };
                     left.push(Undecided { pending, blunt: Some(solved) });
                 }
-                // It has the velocity of others because contacts depend on each other: none of them is on a border.
+                // The velocity is that of other combinations because contacts depend on each other, not because of a
+                // border.
                 Ok(Solved::Rejected(Rejection { because: RejectionReason::OnBorder, .. }))
                     if self.excludes(&pending).is_some() =>
                 {

@@ -153,7 +153,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
             is_of_others |= function.is_constant()? && settled(function.constant)?.is_eq();
         }
         let functions = space.functions();
-        // Then nothing is above zero.
+        // A velocity that is always zero keeps the least slack from exceeding zero.
         let cap = T::from_f64(if is_of_others { 0.0 } else { UNBOUNDED });
         let found = widest(&functions, space.solutions.directions.len(), cap);
         let found = found.and_then(|(inside, least)| Ok((inside, least, settled(least)?)));

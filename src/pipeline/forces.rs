@@ -160,7 +160,7 @@ impl Pipeline<'_> {
             let reason = Reason::Inconsistent("an applied impulse acts in an impact, not in sustained contact".into());
             return Err(Error::new(reason).at("impulse").hint("leave it out, or ask `impact`"));
         }
-        // The uncertainty is ignored, so contacts rest as without it.
+        // Forces ignore the uncertainty, so contacts rest as if there were none.
         let given = state.uncertainty.is_some().then(|| State { uncertainty: None, ..state.clone() });
         let mut prepared = self.prepare(given.as_ref().unwrap_or(state))?;
         self.refuse_uneven(&prepared)?;
@@ -465,7 +465,8 @@ impl Pipeline<'_> {
                     && contact.radius != 0.0
                     && self.assembly.velocity_of(&center, &prepared.velocity) != Vector::zero()
             };
-            // A side that lies flat on the ground has its normal at a corner, too, but turns it.
+            // A side that lies flat on a segment has its normal at a ground corner, too, but the normal turns with the
+            // side.
             let turns = slip.is_ne() && !steady[contact.body] && self.is_on_side(contact);
             if turns || surface.is_corner(contact) && (slip.is_ne() || rolls()) {
                 let reason =

@@ -139,7 +139,8 @@ pub(super) fn about_loops(description: &Description) -> Option<String> {
     Some(format!("what closes loops in the file is left out ({closing}): close them by `loops` in each state"))
 }
 
-/// Returns the caution about joints of another namespace. Without the joint from world to root, a tree is still whole.
+/// Returns the caution about joints of another namespace. Without a joint from the world to the root the tree is still
+/// complete, so no error reports it.
 pub(super) fn about_foreign_joints(description: &Description) -> Option<String> {
     description.has_foreign_joints().then(|| FOREIGN_JOINTS.to_owned())
 }
@@ -352,20 +353,21 @@ fn of_ball(mass: f64) -> f64 {
     0.4 * mass * radius * radius
 }
 
-/// Returns the cautions about bodies without mass that a joint moves, if they extend from joint to joint, touch the
-/// ground or carry no mass; and about joints that nothing resists in any state, so that the mass matrix is singular.
+/// Returns the caution about bodies without mass that a joint moves, if they extend from joint to joint, touch the
+/// ground or carry no mass; and the caution about joints that make the mass matrix singular, because nothing resists
+/// them in any state.
 pub(super) fn about_massless(robot: &Robot) -> Vec<String> {
     let weighs_nothing = |body: &Body| body.mass == 0.0 && body.moment == 0.0;
     // For each rigid body: whether it extends from joint to joint or touches the ground, and whether any part has mass.
     let rigid: Vec<usize> = (0..robot.bodies.len()).map(|body| robot.rigid_body(body)).collect();
     let [mut has_length, mut weighs] = [vec![false; rigid.len()], vec![false; rigid.len()]];
-    // Like `weighs`, but including all bodies that it carries; and whether any of these resists the body's own motion.
-    // Bodies behind a joint with the same axis do not, because that joint can turn back.
+    // `carries` is like `weighs`, but includes all bodies that the body carries. `resists` tells whether any of them
+    // resists the body's own motion. Bodies behind a joint with the same axis do not, because that joint can turn back.
     let [mut carries, mut resists] = [vec![false; rigid.len()], vec![false; rigid.len()]];
-    // A mimic joint of this joint may move a mass.
+    // A mimic joint that follows this joint may move a mass.
     let is_alone = |joint: usize| !robot.mimic_joints.iter().any(|mimic| mimic.mimicked == joint);
     let hinge = |body: &Body| body.joint.map(|mover| robot.hinge(mover));
-    // The root can turn about any point: about its CoG or, if it has no mass, about its first joint.
+    // The root can rotate about any point. This is its center of gravity or, if it has no mass, its first joint.
     let first = robot.bodies.iter().filter_map(hinge).find(|(parent, ..)| *parent == 0 && robot.bodies[0].mass == 0.0);
     let pivot = first.map_or(robot.bodies[0].com, |(_, origin, _)| origin);
     let motion = |body: usize| match hinge(&robot.bodies[body]) {

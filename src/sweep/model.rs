@@ -81,7 +81,7 @@ fn subject(sentence: &str) -> Vec<&str> {
     sentence.split(' ').filter(|word| !is_number(word)).collect()
 }
 
-/// The number of points that are remembered: the nodes of an interval, of its halves and of their halves.
+/// Number of points that are remembered: the nodes of an interval, of its halves and of its quarters.
 const RECENT: usize = 17;
 
 impl RobotStudy<'_> {
@@ -152,7 +152,8 @@ impl RobotStudy<'_> {
         self.readable(|state| state.scene.has_own_friction(given))
     }
 
-    /// The same refusal; else whether the state names its contacts, so that feet of the options are not used.
+    /// Returns whether the state names its contacts, so that the feet of the options are not used. Returns the same
+    /// error as [`Self::has_own_friction`].
     pub fn has_own_contacts(&self) -> Result<bool> {
         self.readable(|state| state.scene.contacts.is_some() && !self.options.feet.is_empty())
     }

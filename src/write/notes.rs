@@ -11,7 +11,8 @@ pub fn own_friction(count: u64, what: &str) -> Option<String> {
     not_used("`friction` is", &format!("a {what} has its own"), count)
 }
 
-/// The same of feet that are added for all, where states or studies name their contacts.
+/// Notes that `count` inputs, each called a `what`, name their contacts, so that the common feet are not used; `None`
+/// if none does.
 pub fn own_contacts(count: u64, what: &str) -> Option<String> {
     not_used("feet given by `feet` are", &format!("a {what} names its contacts"), count)
 }

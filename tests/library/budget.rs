@@ -54,7 +54,8 @@ fn a_budget_that_suffices_changes_nothing() {
     assert!(without.open.is_none() && without.verdict != Verdict::Undecided);
 }
 
-/// A plank that slides on supports of unequal friction has a family, and combinations that are solved for reasons alone.
+/// A plank that slides on supports of unequal friction has a family, and combinations that are solved only for their
+/// reasons.
 #[test]
 fn families_are_decided_before_reasons() {
     let rows = [-1.0, 0.0, 1.0].map(|x| [[1.0, 0.0, -1.0], [0.0, 1.0, x]]).concat();

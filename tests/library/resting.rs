@@ -284,6 +284,6 @@ fn a_slide_that_strikes_by_rounding_is_noted() {
     let (own, is_noted) = beside.into_iter().find(|(own, _)| *own != 0.0).expect("more than rounding");
     assert!(own.abs() < 1e-15 && is_noted, "{own}");
     assert!(!noted(1e-3 - carried).1);
-    // f64 rounds to zero what the exact numbers leave.
+    // The velocity is zero in f64, but not in exact numbers.
     assert_eq!(noted(-carried), (0.0, true));
 }

@@ -5,10 +5,10 @@
 //! ```
 //!
 //! Only elements that affect vertex positions are read (COLLADA 1.4.1, chapters 5 and 6): asset, visual scene, nodes,
-//! and the positions that faces and lines of geometries use, those of skins in their bind shape. In a file without a
-//! visual scene, all geometries are read without transformation. The up axis is not read, as in RViz, MoveIt, Gazebo and Pinocchio: many
-//! robot files say y although they use the axes of their link. There is no recursion, and node instances are counted,
-//! because a file of a few lines could request 2^100 of them.
+//! and the positions that faces and lines of geometries use. The positions of skins are those of their bind shape. In a
+//! file without a visual scene, all geometries are read without transformation. The up axis is not read, as in RViz,
+//! MoveIt, Gazebo and Pinocchio: many robot files say y although they use the axes of their link. There is no
+//! recursion, and node instances are counted, because a file of a few lines could request 2^100 of them.
 
 use super::super::pose::{Matrix, apply, product, turn, unit};
 use super::super::xml;
@@ -24,7 +24,7 @@ const LONGEST_NUMBER: usize = 400;
 /// Largest nesting depth of nodes, including instances.
 const DEEPEST: usize = 200;
 
-/// The elements that join vertices.
+/// Tags of the elements that connect vertices to faces or lines.
 const PRIMITIVES: [&str; 7] = ["triangles", "polylist", "polygons", "trifans", "tristrips", "lines", "linestrips"];
 
 /// A linear map followed by a translation.
@@ -169,10 +169,10 @@ impl<'a, 'input: 'a> Shown<'a, 'input> {
     }
 }
 
-/// Marks the vertices that a primitive uses by this one of its inputs.
+/// Marks in `used` the vertices to which a primitive refers through `input`, the one of its inputs for vertices.
 fn mark(primitive: Node<'_, '_>, input: Node<'_, '_>, used: &mut [bool]) -> Result<(), String> {
     let offset = |input: Node<'_, '_>| input.attribute("offset").and_then(|offset| offset.trim().parse().ok());
-    // Each corner has an index for every input; several may share one.
+    // Each corner has one index per offset; several inputs may share an offset.
     let stride = primitive.children().filter_map(offset).max().unwrap_or(0_usize).saturating_add(1);
     for indices in primitive.descendants().filter(|node| is(*node, "p") || is(*node, "h")) {
         for word in text(indices).split_whitespace().skip(offset(input).unwrap_or(0)).step_by(stride) {

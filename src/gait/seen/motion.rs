@@ -30,7 +30,7 @@ pub(super) struct Motion {
     /// For each coordinate, sums over the steps from row to row of v^2, of (dq/dt)^2, of their product, and of the
     /// squared change of dq/dt.
     sums: Vec<[f64; 4]>,
-    /// dq/dt in the step before; empty at the start of a clip.
+    /// dq/dt of the previous step; empty at the start of a clip.
     rates: Vec<f64>,
     /// Sums of squared differences from dq/dt of the base's velocity, as it is and rotated by the pitch.
     errors: [f64; 2],
@@ -98,7 +98,7 @@ impl Motion {
     fn compare(&mut self, rates: &[f64], velocities: &[f64], half: f64, state: &State, robot: &Robot) {
         self.sums.resize(rates.len(), [0.0; 4]);
         if self.rates.is_empty() {
-            // The first step of a clip changes nothing.
+            // The first step of a clip has no previous rates, so its change is zero.
             self.rates.extend(rates);
         }
         self.steps += 1;

@@ -449,12 +449,12 @@ fn is_of_states(name: &str, fields: &[String], own: &HashSet<String>) -> bool {
         || ["held", "rotor_inertia"].iter().any(of_joint)
 }
 
-/// Returns whether a name consists of that of one of the `own` coordinates and one of the `words`.
+/// Returns whether a name consists of the name of one of the `own` coordinates and one of the `words`.
 fn is_of_coordinate(name: &str, words: &[&str], own: &HashSet<String>) -> bool {
     without_one_of(&plain(name), words).iter().any(|rest| own.contains(rest))
 }
 
-/// Returns the names of the coordinates as they are compared.
+/// Returns the names of the coordinates in the form in which [`plain`] compares them.
 fn plain_coordinates(robot: &Robot) -> HashSet<String> {
     in_columns(robot).map(|own| plain(&own)).collect()
 }

@@ -1,42 +1,42 @@
-//! Finds out which column names may be meant as others.
+//! Decides whether the name of a column may be meant as another name.
 //!
 //! ```text
 //!     name, known --[plain]--> the same, the coordinate alone or with another word for position or velocity,
 //!                              or one or two letters wrong
 //! ```
 //!
-//! What depends on one name is computed once, because a table of 20,000 columns has 60,000,000 pairs with the names of a
-//! robot of 1,500 joints.
+//! Everything that depends on only one of both names is computed once per name, because a table of 20,000 columns forms
+//! 60,000,000 pairs with the names of a robot of 1,500 joints.
 
 /// Words for a position and for a velocity.
 const WORDS: [&[&str]; 2] = [
     &["q", "qpos", "pos", "position", "angle"],
     &["v", "vel", "velocity", "dq", "qd", "qdot", "qvel", "dot", "rate", "omega"],
 ];
-/// Largest number of these words that are looked for in a name.
+/// Largest number of words that are looked for in a name.
 const MOST_WORDS: usize = 4;
 
-/// Returns the name in lower case, without a unit in brackets; each other character than a letter or digit is `_`, and
-/// dropped at the ends.
+/// Returns the name in lower case without a unit in brackets. Characters other than letters and digits become `_`, and
+/// are removed at the ends.
 pub(super) fn plain(name: &str) -> String {
     let letter = |c: char| if c.is_alphanumeric() { c.to_ascii_lowercase() } else { '_' };
     let without_unit = name.split(['[', '(']).next().unwrap_or(name);
     without_unit.chars().map(letter).collect::<String>().trim_matches('_').to_owned()
 }
 
-/// Returns what remains of a name if a part that is one of the `words` is removed, as in `base_z` from `base_vel_z`.
+/// Returns the names that remain when one part that is among the `words` is removed, as in `base_z` from `base_vel_z`.
 pub(super) fn without_one_of(name: &str, words: &[&str]) -> Vec<String> {
     let parts: Vec<&str> = name.split('_').collect();
     let places = (0..parts.len()).filter(|&at| words.contains(&parts[at])).take(MOST_WORDS);
     places.map(|at| [&parts[..at], &parts[at + 1..]].concat().join("_")).collect()
 }
 
-/// A name with what its comparisons need.
+/// A name with the values that its comparisons need.
 pub(super) struct Compared {
     pub plain: String,
-    /// A bit for each of its characters, some of which share one.
+    /// The bits of the characters in `plain`; several characters share a bit.
     bits: u64,
-    /// What remains without a word for a position, and without one for a velocity.
+    /// The names that remain without a word for a position, and without a word for a velocity.
     rests: [Vec<String>; 2],
 }
 
@@ -79,7 +79,7 @@ impl Compared {
             4..8 => 1,
             _ => 2,
         };
-        // A replaced letter changes two bits. The distance takes the product of the lengths, so it comes last.
+        // A replaced letter changes at most two bits. The edit distance takes the longest, so it is computed last.
         (self.bits ^ known.bits).count_ones() as usize <= 2 * wrong
             && name.len().abs_diff(known_name.len()) <= wrong
             && strsim::osa_distance(name, known_name) <= wrong

@@ -214,7 +214,7 @@ fn recordings_in_other_units_or_axes_are_noted() {
     };
     assert!(!is_noted(|at| at, 1.0, 100) && is_noted(|at| at, 57.3, 100) && is_noted(|at| at, 0.0, 100));
     assert!(!is_noted(|at| 37 * at, 0.0, 100), "they stand still");
-    // Clips of two rows: what lies between clips is no motion.
+    // In clips of two rows, the change from one clip to the next is not a motion.
     assert!(!is_noted(|at| 37 * (at / 2) + at % 2, 1.0, 2) && is_noted(|at| 37 * (at / 2) + at % 2, 57.3, 2));
     let deep = stderr(|name, cell| if name == "q_base_z" { cell - 0.5 } else { cell });
     assert!(deep.contains("touchdowns of feet far under z = 0, which were lifted to it: "), "{deep}");

@@ -138,7 +138,7 @@ fn a_gait_is_walked_from_impact_to_impact() {
 fn a_single_state_has_the_whole_strip() {
     let state = parsed(&read("examples/ramone.json")).to_string();
     let (page, path) = page(&["batch", RAMONE, "-"], &state, "single.html");
-    // Its band, in both panels, and the key of that.
+    // The band of the state in both panels, and its entry in the key.
     assert_eq!(page.matches("fill=\"#eaf3fb\"").count(), 3, "{page}");
     let script = "found({ widths: all('.track span').map((part) => part.style.width) });";
     let Some(found) = found(&path, WINDOW, script) else { return };

@@ -86,7 +86,7 @@ fn what_leaves_the_range_of_f64_has_a_remedy() {
     assert!(error.remedy().is_some_and(|remedy| remedy.contains("too large for the masses")), "{error}");
 }
 
-/// Flat on a stair whose edge it slides over, a sole turns the normal there once it turns.
+/// A sole slides flat on a stair, over its edge. If the sole rotates, the normal at the edge rotates with it.
 #[test]
 fn a_sole_that_turns_over_an_edge_is_refused() {
     let sole = robot(&urdf::body(0.5, &collision([0.0; 2], "box size=\"0.4 0.1 0.2\"")));

@@ -139,7 +139,8 @@ fn a_circle_on_a_corner_of_the_ground_touches_it() {
     assert_eq!(impact(&disc(), stance).velocity_before, [[0.0; 2]]);
 }
 
-/// Angles that cancel leave a sole tilted by 1e-17 rad, on which contacts that stick could balance with 1e16 N s.
+/// Angles that cancel up to rounding leave a sole tilted by 1e-17 rad. On this tilt, sticking contacts could balance
+/// with impulses of 1e16 N s.
 #[test]
 fn a_level_sole_across_an_edge_has_the_normal_of_its_tread() {
     let foot = collision([0.0, -0.4], "box size=\"0.3 0.1 0.04\"");

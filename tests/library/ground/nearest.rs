@@ -93,8 +93,8 @@ fn nearest_over_a_profile_is_found_at_its_edge() {
     assert_close(&[height, velocity[0], velocity[1]], &[0.05, 0.0, -1.0]);
 }
 
-/// Over slopes, notches and spikes, of two boxes the nearer one: the distance of a corner of one boundary from a side of the
-/// other.
+/// The nearest foot is the nearer of two boxes over slopes, notches and spikes. Its height is the least distance of a
+/// corner of one boundary from a side of the other.
 #[test]
 fn nearest_over_a_profile_is_at_its_distance() {
     let foot = |x: f64| collision([x, 0.0], "box size=\"0.4 1 0.2\"");
@@ -129,7 +129,7 @@ fn nearest_over_a_profile_is_at_its_distance() {
     }
 }
 
-/// The distance of a point from the side between two others.
+/// Returns the distance of a point from the side between two others.
 fn from_side([x, z]: [f64; 2], side: &[[f64; 2]]) -> f64 {
     let ([dx, dz], [x, z]) = ([side[1][0] - side[0][0], side[1][1] - side[0][1]], [x - side[0][0], z - side[0][1]]);
     let part = ((x * dx + z * dz) / (dx * dx + dz * dz)).clamp(0.0, 1.0);

@@ -203,17 +203,17 @@ fn a_thigh_without_its_inertia_is_named() {
     insta::assert_snapshot!(cautions);
 }
 
-/// Named are those by which the mass matrix is singular in a state without symmetries.
+/// The named joints are those that make the mass matrix singular in a state without symmetries.
 #[test]
 fn joints_that_nothing_resists_are_named() {
     const DOWN: urdf::Axis = urdf::Axis::Prismatic([0.0, 1.0]);
-    // Each with its mass, the height of its CoG and its moment.
+    // Mass, height of the center of gravity and moment of inertia.
     const BODY: [f64; 3] = [2.0, -0.2, 0.1];
     const BOB: [f64; 3] = [2.0, -0.2, 0.0];
     const POINT: [f64; 3] = [2.0, 0.0, 0.0];
     const NOTHING: [f64; 3] = [0.0; 3];
     let massive = |name: &str, [mass, height, moment]: [f64; 3]| link(name, mass, [0.0, height], moment, "");
-    // Of the joints j, k and l the motion, the height of the origin, the parent and what it moves.
+    // For each of the joints j, k and l: motion, height of the origin, parent and moved body.
     let moved = |root: [f64; 3], joints: &[(urdf::Axis, f64, &str, [f64; 3])]| {
         let joints = joints.iter().zip(["j", "k", "l"]).map(|(&(axis, height, parent, own), name)| {
             massive(&name.to_uppercase(), own) + &joint(name, axis, [parent, &name.to_uppercase()], [0.0, height], "")
@@ -232,7 +232,7 @@ fn joints_that_nothing_resists_are_named() {
         (moved(BODY, &[(DOWN, -0.5, "root", NOTHING), (HINGE, 0.0, "J", BODY)]), None),
         (moved(BODY, &[(DOWN, -0.5, "root", NOTHING), (DOWN, 0.0, "J", BODY)]), Some("j")),
         (moved(BODY, &[(DOWN, -0.5, "root", POINT), (DOWN, 0.0, "J", BODY)]), None),
-        // The hip of a compass.
+        // The hip of a compass walker.
         (moved(POINT, &[(HINGE, 0.0, "root", BODY), (HINGE, 0.0, "root", BODY)]), Some("the base's pitch")),
         (moved(BOB, &[(HINGE, 0.0, "root", BODY), (HINGE, -0.2, "root", BODY)]), None),
         (moved(NOTHING, &[(HINGE, 0.1, "root", BODY), (HINGE, 0.1, "root", BODY)]), Some("the base's pitch")),

@@ -37,7 +37,7 @@ fn undeclared_prefixes_are_listed_and_passed_over() {
     assert_eq!(robot.left_out(), [left_out("link \"a\"", POINT), listed("camera"), listed("x")]);
 }
 
-/// Without it a tree lacks nothing: the base would float.
+/// Without this joint the tree is still complete, so the base would float without an error.
 #[test]
 fn a_joint_of_another_namespace_is_named() {
     let joint = "<drake:joint name=\"j\" type=\"universal\"><parent link=\"world\"/><child link=\"a\"/></drake:joint>";

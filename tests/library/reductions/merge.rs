@@ -137,7 +137,7 @@ fn outer_points_act_for_all() {
         }
     });
     println!("{merged} points were merged");
-    // Every other case is flat, with two inner points on average.
+    // Every other case is flat and has two inner points on average.
     assert!(merged > states, "{merged}");
     assert_eq!(wrong, 0);
 }
