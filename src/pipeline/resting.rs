@@ -114,8 +114,8 @@ impl Pipeline<'_> {
         }
     }
 
-    /// Returns whether the normal velocity of a contact, which is zero in f64, is not zero in exact numbers. Returns false
-    /// for states with loops, for which this is not computed.
+    /// Returns whether the normal velocity of a contact, which is zero in f64, is not zero in exact numbers; false for
+    /// states with loops, for which this is not computed.
     fn is_rounded_to_zero(&self, state: &State, contact: &Contact, foot: Option<&Contact>) -> bool {
         let mut exact = Assembly::<Residue>::new(Plan::new(self.robot, &[], &[]));
         exact.configuration.set(&exact.plan, &state.position);

@@ -72,7 +72,7 @@ impl PlotShape {
             Self::Marks { points, mark, color, size } => {
                 let (mut drawn, (width, height)) = (BTreeSet::new(), area.size());
                 let seen = points.iter().filter_map(|&point| area.place(point)).filter(|&(x, y)| {
-                    // Of marks within a tenth of a pixel only the first is drawn.
+                    // Only the first of several marks within a tenth of a pixel is drawn.
                     let is_inside = (0.0..=width).contains(&x) && (0.0..=height).contains(&y);
                     is_inside && drawn.insert(((10.0 * x).round() as i64, (10.0 * y).round() as i64))
                 });
