@@ -16,7 +16,7 @@ pub struct Placement {
 }
 
 impl Placement {
-    /// Creates the placement with the root's origin at `base` \[m\]. Requires the results of [`kinematics`].
+    /// Creates the placement with the root's origin at `base` \[m\]. Requires the results of `kinematics`.
     pub fn new(plan: &Plan<f64>, workspace: &Workspace<f64>, base: Vector<f64>) -> Self {
         Self::default().moved(plan, workspace, base)
     }
