@@ -23,14 +23,16 @@ fn exit_status_is_two_for_wrong_usage() {
 
 #[test]
 fn every_command_has_an_example_in_its_help() {
-    for command in ["", "inspect", "impact", "batch", "solve", "schema", "completions", "man"] {
+    const COMMANDS: [&str; 10] =
+        ["inspect", "impact", "forces", "batch", "sweep", "solve", "accuracy", "schema", "completions", "man"];
+    for command in [""].into_iter().chain(COMMANDS) {
         let arguments: Vec<&str> = [command, "--help"].into_iter().filter(|argument| !argument.is_empty()).collect();
         let help = heelstrike(&arguments).well().stdout;
         assert!(help.contains("Example") && help.contains("\n  heelstrike "), "{command:?}: {help}");
         if command.is_empty() {
             let names = help.lines().filter_map(|line| line.strip_prefix("  ")?.split_once("  "));
             let names: Vec<&str> = names.map(|(name, _)| name).collect();
-            for command in ["inspect", "impact", "batch", "solve", "schema", "completions", "man"] {
+            for command in COMMANDS {
                 assert!(names.contains(&command), "{command}: {help}");
             }
         }

@@ -313,6 +313,7 @@ fn the_command_prints_every_schema() {
     for (name, expected) in [
         ("state", schema::state()),
         ("result", schema::result()),
+        ("forces", schema::forces()),
         ("problem", schema::problem()),
         ("study", schema::study()),
         ("sweep", schema::sweep()),

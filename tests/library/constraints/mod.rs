@@ -51,6 +51,7 @@ pub fn assert_struck(found: &Impact, mass: &DMatrix<f64>, jacobian: &DMatrix<f64
     assert_near(&matrices.delassus, &(jacobian * &inverse * jacobian.transpose()), 10.0 * roundings);
     let energy = 0.5 * v.dot(&(mass * v));
     assert!((found.kinetic_energy - energy).abs() <= roundings * f64::EPSILON * energy);
+    assert!(!outcomes(found).is_empty());
     for (outcome, after) in outcomes(found).iter().zip(velocities_after(found)) {
         let expected = v + &inverse * jacobian.transpose() * flat(&outcome.impulse);
         let (error, size) = ((DVector::from_vec(after) - &expected).amax(), expected.amax().max(v.amax()));

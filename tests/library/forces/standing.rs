@@ -111,6 +111,7 @@ fn what_stands_by_rates_that_cancel_stands_in_every_digit() {
             forces(&leg, state)
         };
         let exact = found([0.5, -0.5, 0.0]);
+        assert!(!modes(&exact).is_empty(), "{exact:?}");
         assert!(modes(&exact).iter().all(|own| own.iter().all(|mode| *mode == Mode::Stick)), "{exact:?}");
         assert!(exact.analysis.as_ref().unwrap().proven);
         let last_bit = 0.5 * (1.0 + f64::EPSILON);

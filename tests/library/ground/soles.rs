@@ -59,7 +59,7 @@ fn a_symmetric_fall_on_uneven_soles_is_symmetric() {
         for (contact, x) in found.contacts.iter().zip([-0.071, 0.131, -0.071, 0.131]) {
             assert_eq!(contact.point.x, x, "{}", contact.name);
         }
-        assert!(is_proven(&found));
+        assert!(is_proven(&found) && !outcomes(&found).is_empty());
         for outcome in outcomes(&found) {
             assert_eq!(outcome.modes[..2], outcome.modes[2..]);
             let [left_hip, left_ankle, right_hip, right_ankle] = outcome.velocity().skip(3).collect::<Vec<_>>()[..]

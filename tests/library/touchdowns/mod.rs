@@ -60,7 +60,7 @@ fn rabbit(at: At, touching: Touching) -> Vec<Sample<usize>> {
 #[test]
 fn rows_of_one_time_are_taken_as_they_are() {
     let [row, crossing] = [At::Row, At::Crossing].map(|at| rabbit(at, Touching::Strike));
-    assert_eq!(row.len(), 4);
+    assert_eq!([row.len(), crossing.len()], [4, 4]);
     for (row, crossing) in row.iter().zip(&crossing) {
         assert_eq!((row.source, row.time), (crossing.source, crossing.time));
         assert_eq!(row.state.position, crossing.state.position);
@@ -115,6 +115,7 @@ fn the_command_prints_line_and_foot_of_a_touchdown() {
     let feet = ["--contact", "right_shin:0,0,0.4", "--contact", "left_shin:0,0,0.4"];
     let walk = [&["batch", RABBIT, WALK, "--touchdowns", "--friction", "0.8"], &feet[..]].concat();
     let results = heelstrike(&[&walk[..], &["--at", "row"]].concat()).well().lines();
+    assert_eq!(results.len(), 4);
     for (result, row) in results.iter().zip([91, 330, 595, 847]) {
         assert_eq!((&result["line"], &result["touchdown"]["row"]), (&json!(row), &json!(row)), "the line of the file");
     }

@@ -142,6 +142,11 @@ pub fn assert_in_the_box(state: &State, other: &State) {
     };
     assert!(within(&state.position, &other.position, &known.position));
     assert!(within(&state.velocity, &other.velocity, &known.velocity));
+    let rotors = |state: &State| {
+        let joints = known.rotor_inertia.len();
+        state.scene.rotor_inertia.iter().copied().chain(std::iter::repeat(0.0)).take(joints).collect::<Vec<f64>>()
+    };
+    assert!(within(&rotors(state), &rotors(other), &known.rotor_inertia));
     for contact in other.scene.contacts.iter().flatten() {
         let width = known.friction.of(contact.link).unwrap_or(0.0);
         match (state.scene.friction.of(contact.link), other.scene.friction.of(contact.link)) {
