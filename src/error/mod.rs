@@ -274,6 +274,26 @@ pub(crate) fn finite(value: f64, what: impl FnOnce() -> String) -> Result<f64> {
     if value.is_finite() { Ok(value) } else { Err(Reason::NotFinite { what: what(), value }.into()) }
 }
 
+/// Returns `value`, or an error that names it `what` if it is not a finite number from 0 on.
+#[inline]
+pub(crate) fn from_zero(value: f64, what: &str) -> Result<f64> {
+    let value = finite(value, || what.into())?;
+    if value >= 0.0 {
+        return Ok(value);
+    }
+    Err(Reason::OutOfRange { what: what.into(), allowed: "0 or more", value }.into())
+}
+
+/// Refuses an index of something, such as `links`, of which the robot has `count`.
+#[inline]
+pub(crate) fn check_index(index: usize, (what, count): (&str, usize)) -> Result<()> {
+    if index < count {
+        return Ok(());
+    }
+    let reason = format!("no index {index}: the robot has {count} {what}, counted from 0");
+    Err(Error::new(Reason::Inconsistent(reason)).hint("take indices from this robot"))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -31,7 +31,7 @@ use crate::budget::{Budget, is_spent, within};
 use crate::contact::{Contact, Feet, Merged, Placement};
 use crate::dynamics::plan::Plan;
 use crate::dynamics::{Closed, RoundingBounds};
-use crate::error::{Error, Result, finite};
+use crate::error::{Error, Result, finite, from_zero};
 use crate::impact::{
     Analysis, AnalysisOptions, ContactProblem, Errors, ListedRejections, Scratch, Verdict, too_many_contacts,
 };
@@ -40,7 +40,7 @@ use crate::planar::Pair;
 use crate::reductions::Reductions;
 use crate::robot::Robot;
 use crate::scalar::Magnitude;
-use crate::state::{NamedContact, Scene, State};
+use crate::state::{NamedContact, Scene, State, check_contacts};
 use serde::{Deserialize, Serialize};
 use std::mem::replace;
 use std::sync::Arc;
@@ -98,6 +98,16 @@ pub struct Options {
     /// The time limit per state; what is open at its end is undecided. Without a limit, a state with many nearly
     /// dependent contacts may take hours.
     pub budget: Option<Budget>,
+}
+
+impl Options {
+    /// Refuses numbers that are not finite or negative, and feet of links that the robot does not have.
+    fn check(&self, robot: &Robot) -> Result<()> {
+        let number = |value: Option<f64>, what| from_zero(value.unwrap_or_default(), what);
+        number(self.contact_tolerance, "the tolerance").map_err(|error| error.at("contact_tolerance"))?;
+        number(self.resting_speed, "the speed").map_err(|error| error.at("resting_speed"))?;
+        check_contacts(robot, "feet", &self.feet)
+    }
 }
 
 /// The default contact tolerance, as a fraction of the robot's size (see [`Feet::size`]).
@@ -236,6 +246,8 @@ pub struct Matrices {
 pub struct Pipeline<'r> {
     robot: &'r Robot,
     options: Options,
+    /// Why the options are refused, which every answer then reports.
+    refused: Option<Error>,
     feet: Feet,
     /// Names of the base's coordinates, and names of the joints.
     names: [Arc<[String]>; 2],
@@ -253,14 +265,17 @@ pub struct Pipeline<'r> {
 }
 
 impl<'r> Pipeline<'r> {
-    /// Creates a pipeline for states of `robot`.
+    /// Creates a pipeline for states of `robot`. If the options have a number that is negative or not finite, or a foot
+    /// on a link that the robot does not have, every answer is an error that names the option.
     pub fn new(robot: &'r Robot, options: Options) -> Self {
+        let refused = options.check(robot).err();
         let feet = Feet::new(robot, &options.feet);
         // A tolerance that the user gives is applied exactly, without the allowance for uneven mesh soles.
         let feet = if options.contact_tolerance.is_none() { feet.uneven() } else { feet };
         let mut names = robot.coordinates().map(str::to_owned);
         Self {
             robot,
+            refused,
             feet: if options.reductions.reach { feet } else { feet.reaching_everywhere() },
             options,
             names: [names.by_ref().take(robot.base_dofs()).collect(), names.collect()],
@@ -281,7 +296,9 @@ impl<'r> Pipeline<'r> {
     /// Returns an error with one of these [`Reason`](crate::Reason)s: `Singular` if a coordinate has no inertia,
     /// `Penetration` if a foot is deep in the ground, `Inconsistent` if a joint is outside strict limits or the pose or
     /// velocity leaves a loop open, `Missing` if a contact has no friction or a stance has no foot, `MatricesTooLarge`
-    /// for hundreds of contacts, and `NotFinite` if products of the given numbers leave the range of f64.
+    /// for hundreds of contacts, and `NotFinite` if products of the given numbers leave the range of f64. A state built in
+    /// code is refused for what JSON is refused for: `OutOfRange` or `NotFinite` for a number, `Inconsistent` for a list
+    /// of another length, an unknown index or a base that is placed twice. The error's place is that of the JSON field.
     pub fn impact(&mut self, state: &State) -> Result<Box<Impact>> {
         within(self.options.budget, || {
             let mut answer = self.strike(state, None)?;

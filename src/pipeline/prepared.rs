@@ -19,7 +19,7 @@ use crate::impact::{ContactProblem, Errors};
 use crate::planar::{Pair, Vector};
 use crate::robot::Robot;
 use crate::scalar::Residue;
-use crate::state::{NamedLoop, Scene, State, Uncertainty, check_length};
+use crate::state::{NamedLoop, Scene, State, Uncertainty, coordinate_place};
 use std::mem::take;
 
 /// A foot that does not touch.
@@ -86,7 +86,10 @@ impl Pipeline<'_> {
     /// Computes everything up to the contact problem.
     pub(crate) fn prepare(&mut self, state: &State) -> Result<Box<Prepared>> {
         let scene = &state.scene;
-        self.check_lengths(state)?;
+        if let Some(error) = &self.refused {
+            return Err(error.clone());
+        }
+        state.check(self.robot)?;
         self.compile(scene);
         self.assembly.configuration.set(&self.assembly.plan, &state.position);
         self.assembly.place();
@@ -172,24 +175,6 @@ impl Pipeline<'_> {
         self.problem(scene, contacts, change, problem)?;
         problem.velocity_before().clone_into(velocity_before);
         Ok(prepared)
-    }
-
-    /// Refuses a state with a list whose length does not fit the robot, or with an index that the robot does not have.
-    fn check_lengths(&self, state: &State) -> Result<()> {
-        let coordinates = self.robot.dofs();
-        check_length("position", state.position.len(), coordinates)?;
-        check_length("velocity", state.velocity.len(), coordinates)?;
-        let joints = self.robot.joints.len() + self.robot.mimic_joints.len();
-        check_length("rotor_inertia", joints.max(state.scene.rotor_inertia.len()), joints)?;
-        if let Some(Uncertainty { position, velocity, friction, rotor_inertia }) = &state.uncertainty {
-            let greatest = friction.links.keys().next_back().map_or(0, |link| link + 1);
-            let links = self.robot.links.len();
-            check_length("uncertainty.friction", greatest.max(links), links)?;
-            check_length("uncertainty.position", position.len(), coordinates)?;
-            check_length("uncertainty.velocity", velocity.len(), coordinates)?;
-            check_length("uncertainty.rotor_inertia", joints.max(rotor_inertia.len()), joints)?;
-        }
-        state.scene.check_indices(self.robot)
     }
 
     /// Refuses a joint outside its limits, if the options are strict.
@@ -283,11 +268,11 @@ impl Pipeline<'_> {
         let Assembly { plan, workspace, motions, .. } = &mut self.assembly;
         let energy = kinetic_energy(plan, velocity, workspace, motions);
         finite(energy, || "the kinetic energy".into()).map_err(|error| {
-            let named = self.robot.coordinates().zip(given).enumerate();
-            let greatest = named.max_by(|(_, (_, a)), (_, (_, b))| a.abs().total_cmp(&b.abs()));
-            let part = |at| if at < self.robot.base_dofs() { "base" } else { "joints" };
-            let place = greatest.map(|(at, (name, _))| format!("velocity.{}.{name}", part(at)));
-            place.into_iter().fold(too_large(error), Error::at)
+            let greatest = given.iter().enumerate().max_by(|(_, a), (_, b)| a.abs().total_cmp(&b.abs()));
+            greatest
+                .map(|(at, _)| coordinate_place(self.robot, "velocity", at))
+                .into_iter()
+                .fold(too_large(error), Error::at)
         })
     }
 

@@ -12,6 +12,5 @@ pub mod table;
 
 pub use problem::Problem;
 #[cfg(feature = "cli")]
-pub(crate) use state::PLACED_BY_JOINTS;
 pub use state::loops_from_json;
 pub use study::{Parameter, Study};

@@ -5,11 +5,10 @@ use crate::law::Friction;
 use crate::planar::Vector;
 use crate::robot::Base;
 use crate::state::{
-    AppliedImpulse, ByLink, Defaults, Ground, LinkPoint, NamedContact, NamedLoop, Profile, SpringEnd, SpringLaw, State,
-    Uncertainty, VirtualSpring,
+    AppliedImpulse, ByLink, Defaults, Ground, LinkPoint, NamedContact, NamedLoop, PLACED_BY_JOINTS, Profile, SpringEnd,
+    SpringLaw, State, Uncertainty, VirtualSpring, bolted, check_restitution, check_slope, placed_twice,
 };
 use crate::{Reason, Result, Robot};
-use std::f64::consts::FRAC_PI_2;
 
 /// The entries of a floating base in the order of q.
 pub(super) const BASE: [&str; 3] = ["x", "z", "pitch"];
@@ -79,8 +78,7 @@ pub(crate) fn read(root: Node, robot: &Robot, defaults: &Defaults) -> Result<Sta
         }
     }
     if let (Some(_), Some((field, true))) = (scene.stance, own_place) {
-        let reason = Reason::Inconsistent("the stance already places the base".into());
-        return Err(field.refuse(reason).hint("leave out either the stance or \"place\""));
+        return Err(field.refuse_inside(placed_twice()));
     }
     let by_default = || defaults.place_lowest && scene.stance.is_none();
     scene.place_lowest = own_place.map_or_else(by_default, |(_, lowest)| lowest);
@@ -153,15 +151,11 @@ fn lowest(field: Node, robot: &Robot) -> Result<bool> {
     }
 }
 
-/// The remedy for a bolted robot that is to be placed.
-pub(crate) const PLACED_BY_JOINTS: &str = "put its foot on the ground by its joints, or give `base: floating`";
-
 fn refuse_bolted(field: Node, robot: &Robot, what: &str) -> Result<()> {
     if robot.base == Base::Floating {
         return Ok(());
     }
-    let reason = Reason::Inconsistent(format!("the robot is bolted to the world, {what}"));
-    Err(field.refuse(reason).hint("leave it out, or give `base: floating`"))
+    Err(field.refuse_inside(bolted(what)))
 }
 
 /// Reads a value for all links, or an object of values by link with an optional `default`.
@@ -197,33 +191,22 @@ pub(crate) fn friction(node: Node) -> Result<Friction> {
 
 /// Reads a number from 0 to 1.
 pub(crate) fn restitution(node: Node) -> Result<f64> {
-    let value = node.number()?;
-    if (0.0..=1.0).contains(&value) {
-        return Ok(value);
-    }
-    Err(node.refuse(Reason::OutOfRange { what: "restitution".into(), allowed: "between 0 and 1", value }))
+    check_restitution(node.number()?).map_err(|error| node.refuse_inside(error))
 }
 
 /// Reads `{"slope": radians}` or `{"profile": [[x, z], ...]}`.
 fn ground(field: Node) -> Result<Ground> {
     match field.object("Ground", ["slope", "profile"])? {
         [None, None] => Ok(Ground::default()),
-        [Some(entry), None] => slope(entry).map(Ground::Slope),
+        [Some(entry), None] => {
+            check_slope(entry.number()?).map(Ground::Slope).map_err(|error| entry.refuse_inside(error))
+        }
         [None, Some(entry)] => profile(entry).map(Ground::Profile),
         [Some(_), Some(entry)] => {
             let reason = Reason::Inconsistent("the ground has either a slope or a profile".into());
             Err(entry.refuse(reason).hint("leave one of them out: a profile of two points is a slope, too"))
         }
     }
-}
-
-fn slope(entry: Node) -> Result<f64> {
-    let value = entry.number()?;
-    if value.abs() < FRAC_PI_2 {
-        return Ok(value);
-    }
-    let error = entry.refuse(Reason::OutOfRange { what: "slope".into(), allowed: "between -pi/2 and pi/2", value });
-    Err(error.hint("it is in radians: 10 degrees are 0.1745"))
 }
 
 /// Reads a list of `[x, z]`.

@@ -6,7 +6,7 @@
 //! ```
 
 use crate::description::{Description, JointKind, Matrix, Mimic, Pose, UrdfJoint, apply, product, turn, unit};
-use crate::error::{Reason, Result};
+use crate::error::{Reason, Result, check_index};
 
 /// Axes of all joints and poses of all links, with the values of frozen joints.
 pub(super) struct ReferencePose {
@@ -32,6 +32,7 @@ impl ReferencePose {
         let joints = &description.joints;
         let mut frozen = vec![None; joints.len()];
         for &(index, value) in hold {
+            check_index(index, ("joints", joints.len())).map_err(|error| error.at("hold"))?;
             let joint = &joints[index];
             refuse_no_coordinate(joint, joints)?;
             if frozen[index].replace(value).is_some() {

@@ -4,7 +4,11 @@ mod ground;
 mod named;
 mod scene;
 mod oddities;
+mod checks;
 
+pub(crate) use checks::{
+    PLACED_BY_JOINTS, bolted, check_contacts, check_restitution, check_slope, coordinate_place, placed_twice,
+};
 pub use ground::{Ground, Profile};
 pub(crate) use named::Entries;
 pub use named::Named;
@@ -101,7 +105,8 @@ pub struct Uncertainty {
     pub velocity: Vec<f64>,
     /// For the friction of each contact's link. Friction does not go below zero, and infinite friction is certain.
     pub friction: ByLink<f64>,
-    /// For the rotor inertia, by joint \[kg m^2\]. It does not go below zero.
+    /// For the rotor inertia, by joint and then, if given, by mimic joint \[kg m^2\]; empty for none. It does not go
+    /// below zero.
     pub rotor_inertia: Vec<f64>,
 }
 

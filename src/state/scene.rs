@@ -1,7 +1,6 @@
 //! The surroundings of the robot: ground, friction, restitution, braked joints, loops, impulses, gravity, torques.
 
 use super::ground::Ground;
-use crate::error::{Error, Reason, Result};
 use crate::law::Friction;
 use crate::planar::Vector;
 use crate::robot::{LONGEST, Robot};
@@ -66,32 +65,6 @@ impl Scene {
     pub fn has_own_friction(&self, given: Option<Friction>) -> bool {
         let ByLink { default, links } = &self.friction;
         given.is_some() && (*default != given || links.values().any(|own| Some(*own) != given))
-    }
-
-    /// Refuses an index of a link or joint that `robot` does not have.
-    pub(crate) fn check_indices(&self, robot: &Robot) -> Result<()> {
-        let of_springs = self.springs.iter().flat_map(|spring| match spring.b {
-            SpringEnd::Link(b) => [spring.a.link, b.link],
-            SpringEnd::World(_) => [spring.a.link; 2],
-        });
-        let (links, joints) = (("links", robot.links.len()), ("joints", robot.joints.len()));
-        let greatest: [(&str, Option<usize>, _); 8] = [
-            ("stance", self.stance, links),
-            ("held", self.braked.iter().copied().max(), joints),
-            ("contacts", self.contacts.iter().flatten().map(|contact| contact.link).max(), links),
-            ("loops", self.loops.iter().flat_map(|own| [own.a.link, own.b.link]).max(), links),
-            ("impulse", self.impulses.iter().map(|impulse| impulse.link).max(), links),
-            ("virtual", of_springs.max(), links),
-            ("friction", self.friction.links.keys().next_back().copied(), links),
-            ("restitution", self.restitution.links.keys().next_back().copied(), links),
-        ];
-        match greatest.into_iter().find(|&(_, index, (_, count))| index.is_some_and(|index| index >= count)) {
-            Some((place, Some(index), (what, count))) => {
-                let reason = format!("no index {index}: the robot has {count} {what}, counted from 0");
-                Err(Error::new(Reason::Inconsistent(reason)).at(place).hint("take indices from this robot"))
-            }
-            _ => Ok(()),
-        }
     }
 }
 

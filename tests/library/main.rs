@@ -4,6 +4,7 @@
 mod accuracy;
 mod architecture;
 mod budget;
+mod built;
 #[cfg(feature = "accuracy")]
 mod compliant;
 mod constraints;

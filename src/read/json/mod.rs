@@ -12,6 +12,7 @@ mod value;
 
 pub(crate) use value::{Value, id_in, id_of, raw_fields};
 
+use crate::error::from_zero;
 use crate::read::expression::{CONSTANTS, FUNCTIONS, Fault, Names};
 use crate::{Error, Reason, Result};
 use std::borrow::Cow;
@@ -146,11 +147,7 @@ impl<'n> Node<'n> {
 
     /// Returns a number that is 0 or more; `what` names it in errors.
     pub(crate) fn number_from_zero(&self, what: &str) -> Result<f64> {
-        let value = self.number()?;
-        if value >= 0.0 {
-            return Ok(value);
-        }
-        Err(self.refuse(Reason::OutOfRange { what: what.to_owned(), allowed: "0 or more", value }))
+        from_zero(self.number()?, what).map_err(|error| self.refuse_inside(error))
     }
 
     /// The names that expressions may use; `None` if strings are not expressions.
@@ -270,7 +267,7 @@ impl<'n> Node<'n> {
 
     /// Gives an error that was found later this value's line and column.
     pub(crate) fn locate(&self, error: Error) -> Error {
-        let (line, column) = self.location("");
+        let (line, column) = self.location(self.as_text().unwrap_or_default());
         error.on(line, column)
     }
 
