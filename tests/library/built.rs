@@ -10,7 +10,8 @@ use heelstrike::state::{
     AppliedImpulse, ByLink, Ground, LinkPoint, NamedContact, NamedLoop, SpringEnd, SpringLaw, Uncertainty,
     VirtualSpring,
 };
-use heelstrike::{Defaults, Error, Friction, Pipeline, Robot, State};
+use heelstrike::{Defaults, Detail, Error, Friction, Pipeline, Report, Robot, State};
+use serde_json::Value;
 use std::f64::{INFINITY, NAN};
 
 /// A state that falls on its lower foot, and whose half-widths are zero.
@@ -178,4 +179,20 @@ fn a_held_joint_that_does_not_exist_is_refused() {
     let reduction = Reduction { hold: vec![(99, 0.0)], ..Reduction::default() };
     let error = Robot::reduce(&description, &reduction).expect_err("no such joint");
     assert!(said(&error).starts_with("hold: no index 99: the robot has "), "{error}");
+}
+
+/// All ways of writing a report of forces give the names of forces.
+#[test]
+fn forces_have_their_own_names_however_they_are_written() {
+    let robot = ramone();
+    let mut state = State { uncertainty: None, ..falling(&robot) };
+    state.velocity.fill(0.0);
+    let forces = Pipeline::new(&robot, Options::default()).forces(&state).expect("forces");
+    let report = Report::of_state(&robot, &state, &forces, Detail::default()).expect("a report");
+    let (mut lines, mut whole) = (Vec::new(), Vec::new());
+    heelstrike::write::append_line(&mut lines, &report);
+    report.append_json(Detail::default(), &mut whole);
+    assert_eq!(String::from_utf8(lines), String::from_utf8(whole.clone()));
+    assert_eq!(serde_json::to_value(&report).unwrap(), serde_json::from_slice::<Value>(&whole).unwrap());
+    assert!(serde_json::to_string(&report).unwrap().contains(r#""contact_acceleration""#));
 }

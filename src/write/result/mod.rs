@@ -23,12 +23,13 @@ use crate::read::Problem;
 use crate::read::table::CarriedValue;
 use crate::state::{Named, State};
 use crate::{Mode, Robot};
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::Value;
 use serde_json::value::RawValue;
 use std::borrow::Cow;
 
-/// The result of a state or of a contact problem.
+/// The result of a state or of a contact problem. It is serialized whole; [`Report::append_json`] also writes it in
+/// brief. Forces are serialized as their [`ForcesRecord`], under their own names; only results of impacts are read back.
 ///
 /// ```
 /// # fn main() -> heelstrike::Result<()> {
@@ -48,6 +49,7 @@ use std::borrow::Cow;
 /// ```
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(remote = "Self")]
 pub struct Report<'a> {
     /// What the user calls it.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -245,6 +247,9 @@ impl<'a> Report<'a> {
     ///
     /// # Errors
     /// Returns the refusal of the outcomes as an error if no matrices were requested.
+    ///
+    /// # Panics
+    /// May panic if `impact` is the answer of another robot, whose indices this one may not have.
     pub fn of_state(robot: &'a Robot, state: &'a State, impact: &'a Impact, detail: Detail) -> crate::Result<Self> {
         let error = match impact.analyzed() {
             Err(error) if impact.matrices.is_none() => return Err(error),
@@ -331,11 +336,25 @@ impl<'a> Report<'a> {
 
     /// Appends the result as one line of JSON, whole or in brief.
     pub fn append_json(&self, detail: Detail, out: &mut Vec<u8>) {
-        match self.forces() {
-            _ if detail.brief => super::append_line(out, &self.brief()),
-            Some(forces) => super::append_line(out, &forces),
-            None => super::append_line(out, self),
+        match detail.brief {
+            true => super::append_line(out, &self.brief()),
+            false => super::append_line(out, self),
         }
+    }
+}
+
+impl Serialize for Report<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self.forces() {
+            Some(forces) => forces.serialize(serializer),
+            None => Self::serialize(self, serializer),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Report<'_> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Self::deserialize(deserializer)
     }
 }
 

@@ -28,7 +28,7 @@ fn arm(base: Base) -> Robot {
 fn record(robot: &Robot, state: &Value, found: &Impact) -> Value {
     let state = State::from_json(&state.to_string(), robot, &Defaults::default()).unwrap();
     let report = Report::of_state(robot, &state, found, Detail::default()).unwrap();
-    serde_json::to_value(report.forces()).unwrap()
+    serde_json::to_value(report).unwrap()
 }
 
 fn near(found: &Value, expected: f64) -> bool {
