@@ -3,6 +3,8 @@
 
 use crate::support::impact::{ramone, reduced};
 use heelstrike::description::Description;
+use heelstrike::dynamics::plan::{Configuration, Plan};
+use heelstrike::dynamics::{Workspace, kinematics, mass_matrix};
 use heelstrike::pipeline::{Aspect, Options};
 use heelstrike::planar::Vector;
 use heelstrike::robot::{Base, Reduction};
@@ -195,4 +197,29 @@ fn forces_have_their_own_names_however_they_are_written() {
     assert_eq!(String::from_utf8(lines), String::from_utf8(whole.clone()));
     assert_eq!(serde_json::to_value(&report).unwrap(), serde_json::from_slice::<Value>(&whole).unwrap());
     assert!(serde_json::to_string(&report).unwrap().contains(r#""contact_acceleration""#));
+}
+
+/// M in the order of q, as a result has it, from the columns of a plan.
+#[test]
+fn columns_of_a_plan_have_coordinates() {
+    let robot = ramone();
+    let braked = robot.joint("left_hip").expect("a joint");
+    let mut state = State { uncertainty: None, ..falling(&robot) };
+    state.scene.braked = vec![braked];
+    let mut pipeline = Pipeline::new(&robot, Options { matrices: true, ..Options::default() });
+    let expected = pipeline.impact(&state).expect("an impact").matrices.expect("matrices");
+
+    let plan: Plan = Plan::new(&robot, &[braked], &[]);
+    let (mut configuration, mut workspace) = (Configuration::default(), Workspace::default());
+    configuration.set(&plan, &state.position);
+    kinematics(&plan, &configuration, &mut workspace);
+    mass_matrix(&plan, &mut workspace);
+    let coordinates = plan.coordinates();
+    let mut order: Vec<usize> = (0..plan.columns()).collect();
+    order.sort_by_key(|&column| coordinates[column]);
+    let names: Vec<&str> = robot.coordinates().collect();
+    assert_eq!(expected.coordinates, order.iter().map(|&column| names[coordinates[column]]).collect::<Vec<_>>());
+    let entry = |i: usize, j: usize| workspace.mass_matrix[i.max(j) * plan.columns() + i.min(j)];
+    let found: Vec<Vec<f64>> = order.iter().map(|&i| order.iter().map(|&j| entry(i, j)).collect()).collect();
+    assert_eq!(found, expected.mass_matrix);
 }
