@@ -12,6 +12,9 @@ use std::borrow::Cow;
 impl State {
     /// Returns the state as the JSON object that [`State::from_json`] reads, without the fields that follow from
     /// others.
+    ///
+    /// # Panics
+    /// Panics if an index of the state is not one of `robot`.
     pub fn to_json(&self, robot: &Robot) -> String {
         // This cannot fail, because all keys of a state are strings.
         serde_json::to_string(&StateRecord { robot, state: self }).unwrap_or_default()
