@@ -19,6 +19,7 @@ const LISTS: usize = 1000;
 
 /// Counts over the states of a batch. Its size is bounded, and does not depend on how threads share the states.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[non_exhaustive]
 pub struct Summary {
     /// The question about the states.
     #[serde(skip_serializing_if = "Aspect::is_impact")]

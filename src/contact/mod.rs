@@ -33,6 +33,7 @@ use std::sync::Arc;
 
 /// A closed contact of one state; [`Pipeline`](crate::Pipeline) has an example.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Contact {
     /// Index into [`Robot::links`](crate::Robot) of the URDF link that carries the shape; the link may be merged into
     /// the body of another.

@@ -11,6 +11,7 @@ use std::sync::LazyLock;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Verdict {
     /// Exactly one outcome.
     Unique,
@@ -103,6 +104,7 @@ pub struct Outcome {
 /// zero then take part.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Next {
     /// The answer in one word, as of forces.
     pub verdict: Verdict,
@@ -118,6 +120,7 @@ pub struct Next {
 /// have other modes.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Family {
     /// One mode per contact.
     pub modes: Vec<Mode>,
@@ -133,6 +136,7 @@ pub type Range = [Option<f64>; 2];
 /// Where an outcome turns into others: impulse inequalities that are zero for every admissible impulse.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Border {
     /// The impulse inequalities that are exactly zero.
     pub at_zero: Vec<AtZero>,
@@ -187,6 +191,7 @@ impl Outcome {
 
 /// Impulses and velocities of a combination, [tangential, normal] per contact.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Motion {
     /// Contact impulses \[N s\].
     pub impulse: Vec<Pair<f64>>,
@@ -240,6 +245,7 @@ impl Rejection {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename = "Open")]
+#[non_exhaustive]
 pub struct OpenCombinations {
     /// How many combinations of modes there are: 4^n for n contacts.
     pub combinations: u64,

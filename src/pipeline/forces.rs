@@ -37,6 +37,7 @@ const LIKELY: f64 = 4.0;
 /// after the impact are accelerations \[m/s^2, rad/s^2\]. The velocities of its problem are accelerations without
 /// contact forces. Its contacts are those that take part, and `velocity_before` is their velocity.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Sustained {
     /// The sliding direction of each contact: the sign of its velocity along t.
     pub slips: Vec<Ordering>,

@@ -215,6 +215,7 @@ struct Answer {
 
 /// The matrices behind an answer.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Matrices {
     /// Names of the moving coordinates in the order of q: the rows and columns of M and the columns of J. Braked joints
     /// have none.

@@ -24,6 +24,7 @@ use std::mem::take;
 
 /// A foot that does not touch.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct NearestFoot {
     /// The URDF link of the foot (an index into [`Robot::links`]).
     pub link: usize,

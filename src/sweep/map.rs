@@ -42,6 +42,7 @@ const BESIDE: f64 = 0.013_7;
 
 /// All areas of a study with two parameters.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct Map {
     /// The different regimes, in the order in which the grid meets them.
     pub areas: Vec<Area>,

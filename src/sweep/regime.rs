@@ -8,6 +8,7 @@ use std::mem::{Discriminant, discriminant};
 /// The regime of a point. All points of a region have the same regime.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 #[allow(missing_docs, reason = "the text of each variant names its fields")]
+#[non_exhaustive]
 pub enum Regime {
     /// The state is answered.
     Answered {

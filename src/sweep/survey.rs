@@ -12,6 +12,7 @@ use std::sync::Arc;
 
 /// All regions along one parameter.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct Survey {
     /// The regions from the least to the greatest value. Each has positive width; neighbors differ.
     pub regions: Vec<Region>,
@@ -25,6 +26,7 @@ pub struct Survey {
 
 /// A stretch of the parameter with one set of outcomes.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Region {
     /// The least value of the parameter.
     pub from: f64,
@@ -43,6 +45,7 @@ pub struct Region {
 /// A border between two regions.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct RegionBorder {
     /// Where it is, to [`RESOLUTION`] of the parameter's range.
     pub at: f64,

@@ -42,6 +42,7 @@ pub enum Side {
 /// What changes at a border.
 #[derive(Debug, Clone, Default, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Transition {
     /// The inequalities that are zero there.
     #[serde(rename = "turns")]

@@ -37,7 +37,7 @@ fn what_a_budget_leaves_open_is_undecided() {
     for (contacts, count) in [(10, 2), (10, 0), (12, 2)] {
         let Analysis { verdict, proven, outcomes, open, index_sum, no_slip_consistent, .. } =
             analyzed(contacts, Some(looks(count)));
-        let OpenCombinations { combinations, undecided, beyond_budget } = open.expect("something is open");
+        let OpenCombinations { combinations, undecided, beyond_budget, .. } = open.expect("something is open");
         assert_eq!((verdict, proven, index_sum), (Verdict::Undecided, false, None));
         assert_eq!((combinations, beyond_budget), (4_u64.pow(contacts as u32), true));
         let listed = outcomes.iter().filter(|outcome| !outcome.decided).count() as u64;

@@ -68,8 +68,8 @@ fn straight_lines_stay_near_the_outcomes() {
                     let analysis = solver.answer(&[at]).expect("an impact").analysis.expect("an analysis");
                     for ((modes, a), (_, b)) in pair[0].outcomes.iter().zip(&pair[1].outcomes) {
                         let own = analysis.outcomes.iter().find(|own| own.modes == *modes).expect("the outcome");
-                        let own = Motion { velocity_after: own.velocity_after.clone(), impulse: own.impulse.clone() };
-                        let [a, b, own] = [a, b, &own].map(numbers);
+                        let own = [own.velocity_after.concat(), own.impulse.concat()];
+                        let [a, b] = [a, b].map(numbers);
                         for (kind, scale) in scales.into_iter().enumerate() {
                             for ((a, b), own) in a[kind].iter().zip(&b[kind]).zip(&own[kind]) {
                                 let off = (line(*a, *b) - own).abs();

@@ -41,6 +41,7 @@ pub enum Robustness {
 
 /// A state of the box whose outcomes differ, as its own proven analysis shows.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Counterexample {
     /// The state. Its contacts are named, so that they stay contacts at any height.
     pub state: State,

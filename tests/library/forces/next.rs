@@ -38,10 +38,10 @@ fn disc_rests_slides_or_bounces() {
         let mut state =
             json!({"position": {"base": {"z": 0.5}}, "velocity": {"base": {"z": -1.0}}, "impulse": impulse});
         state.as_object_mut().unwrap().extend(change.as_object().unwrap().clone());
-        nexts(&disc, state)
+        nexts(&disc, state).into_iter().map(|next| (next.verdict, next.proven, next.modes)).collect::<Vec<_>>()
     };
     let none = json!([]);
-    let expected = |verdict, modes: Option<Mode>| vec![Next { verdict, proven: true, modes: vec![vec![modes]] }];
+    let expected = |verdict, modes: Option<Mode>| vec![(verdict, true, vec![vec![modes]])];
     assert_eq!(after(json!({}), none.clone()), expected(Verdict::Unique, Some(Stick)));
     assert_eq!(after(json!({"gravity": -1.0}), none.clone()), expected(Verdict::Unique, Some(Separate)));
     assert_eq!(after(json!({"restitution": 0.5}), none), expected(Verdict::NoContact, None));
@@ -136,12 +136,9 @@ fn held_legs_stand_on_both_feet_after_an_impact() {
             "velocity": {"base": {"x": x, "z": -0.5}}, "place": "lowest", "friction": friction,
             "held": ["left_hip", "left_knee", "right_hip", "right_knee"],
         });
-        let both = vec![vec![Some(Stick); 2]];
-        assert_eq!(
-            nexts(&ramone, state),
-            [Next { verdict: Verdict::Unique, proven: true, modes: both }],
-            "{x} {friction}"
-        );
+        let found = nexts(&ramone, state);
+        let [Next { verdict: Verdict::Unique, proven: true, modes, .. }] = &found[..] else { panic!("{found:?}") };
+        assert_eq!(modes, &[[Some(Stick); 2]], "{x} {friction}");
     }
 }
 

@@ -35,7 +35,7 @@ fn nearest(impact: &Impact) -> NearestFoot {
 fn near_miss_is_named_with_height_and_velocity() {
     let impact = impact(&two_feet(3e-5), striking(0.0, json!({})));
     assert_eq!(impact.contacts.len(), 1);
-    let NearestFoot { link, height, velocity } = nearest(&impact);
+    let NearestFoot { link, height, velocity, .. } = nearest(&impact);
     assert_eq!(link, 1);
     assert_close(&[height, velocity[0], velocity[1]], &[3e-5, 1.5e-5, -1.1]);
     let expected = "other nearly touches, 3e-5 m above the ground: to let it touch, give the option `contact_tolerance: 3.3e-5`, or \
