@@ -34,13 +34,14 @@ class Plot:
 def plot(result: Result | Robot) -> Plot:
     """Draw a robot, or the result of `Robot.impact`, `Robot.forces` of one state or `Robot.sweep`.
 
-    The question of a result is answered again for its picture."""
+    The question of a result is answered again for its picture: that of a sweep on as many threads, and within the same
+    budget, which also covers the picture."""
     if isinstance(result, Robot):
         return Plot(*result._drawn())
     if isinstance(result, Result):
         if result._drawn is None:
             raise ValueError("the result was copied or comes from another process: ask its robot again to draw it")
-        robot, kind, question, friction = result._drawn
-        return Plot(*robot._picture(kind, question, friction))
+        robot, *question = result._drawn
+        return Plot(*robot._picture(*question))
     what = "Answers have" if isinstance(result, Answers) else f"a {type(result).__name__} has"
     raise TypeError(f"{what} no picture: give a Robot, or the result of one state or of a sweep")

@@ -13,6 +13,7 @@ use heelstrike::write::sweep::Regions;
 use heelstrike::write::{Palette, Subject, text};
 use heelstrike::{Detail, Inspection};
 use pyo3::prelude::*;
+use std::time::Duration;
 
 /// A picture as SVG, if there is something to draw, and text.
 type Shown = (Option<String>, String);
@@ -23,13 +24,20 @@ pub fn robot(model: &Model) -> Shown {
     (picture::robot(robot, &options.feet, Forward::Along).svg(), text)
 }
 
-/// Answers a state or a study again, and draws the answer.
-pub fn answer(py: Python<'_>, model: &Model, kind: &str, question: &str, friction: Option<&str>) -> PyResult<Shown> {
+/// Answers a state or a study again, and draws the answer. A study has a number of threads and a budget \[s\].
+pub fn answer(
+    py: Python<'_>,
+    model: &Model,
+    (kind, question): (&str, &str),
+    friction: Option<&str>,
+    (count, budget): (Option<usize>, Option<f64>),
+) -> PyResult<Shown> {
     let friction = friction.and_then(|friction| friction.parse().ok());
     let Model { robot, options, .. } = model;
     let made = || {
         if kind == "sweep" {
-            let work = Work { friction, threads: threads(0), budget: None };
+            let budget = budget.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+            let work = Work { friction, threads: threads(count.unwrap_or(0)), budget };
             let drawn = studied(model, question, work, |study, findings, workers| {
                 let text = Regions::new(study.study, findings).text(robot.name(), &Palette::default());
                 (sweep::of(study, findings, Forward::Along, workers).svg(), text)

@@ -171,7 +171,7 @@ pub fn friction(value: &Bound<'_, PyAny>) -> PyResult<Friction> {
 }
 
 /// An argument `budget`.
-struct Limit(Seconds);
+pub struct Limit(pub Seconds);
 
 impl<'py> FromPyObject<'_, 'py> for Limit {
     type Error = PyErr;
@@ -379,15 +379,18 @@ impl Robot {
         picture::robot(&self.model)
     }
 
-    /// The picture of a question, which is answered again, as SVG, and the answer as text.
+    /// The picture of a question, which is answered again, as SVG, and the answer as text. A study has these `threads`
+    /// and this `budget` again.
     fn _picture(
         &self,
         py: Python<'_>,
         kind: &str,
         question: &str,
         friction: Option<&str>,
+        threads: Option<usize>,
+        budget: Option<f64>,
     ) -> PyResult<(Option<String>, String)> {
-        picture::answer(py, &self.model, kind, question, friction)
+        picture::answer(py, &self.model, (kind, question), friction, (threads, budget))
     }
 
     #[staticmethod]
@@ -457,6 +460,6 @@ impl Robot {
         warn(py, notes::own_friction(has_own.into(), "state"))?;
         let kind = if aspect == Aspect::Impact { "impact" } else { "forces" };
         let mu = friction.map(|own| own.to_string());
-        from_json(py, &out, Some((slf, kind, text, mu).into_pyobject(py)?.into_any()))
+        from_json(py, &out, Some((slf, kind, text, mu, None::<usize>, None::<f64>).into_pyobject(py)?.into_any()))
     }
 }

@@ -1,8 +1,8 @@
 //! Sweeps, touchdowns and contact problems, as the command answers them.
 
-use crate::robot::{Robot, friction};
+use crate::robot::{Limit, Robot, friction};
 use crate::values::{from_json, refused, refused_in, to_json, warn};
-use crate::watch::{budget, interrupted, raised, shared, without_python};
+use crate::watch::{self, budget, interrupted, raised, shared, without_python};
 use heelstrike::batch::{Batch, Question, States, Summary, recorded};
 use heelstrike::budget::TotalBudget;
 use heelstrike::cli::{RecordingOptions, Seconds, records, seconds, threads};
@@ -95,7 +95,11 @@ pub fn sweep<'py>(
     let (out, notes) = made.map_err(|error| refused_in(study, error))?;
     warn(py, notes)?;
     let mu = work.friction.map(|own| own.to_string());
-    from_json(py, &out, Some((robot, "sweep", text, mu).into_pyobject(py)?.into_any()))
+    from_json(
+        py,
+        &out,
+        Some((robot, "sweep", text, mu, count, budget.map(|own| own.as_secs_f64())).into_pyobject(py)?.into_any()),
+    )
 }
 
 pub fn touchdowns<'py>(
@@ -177,9 +181,10 @@ fn found(
 ///
 /// `G` is the Delassus matrix [1/kg], (2 n, 2 n), with a tangential and a normal row per contact; `c` the contact
 /// velocities before [m/s], (n, 2) or (2 n,); `friction` one number from 0 to inf, or one per contact; `restitution`
-/// one number from 0 to 1, or one per contact. Raises Refused.
+/// one number from 0 to 1, or one per contact. What is not decided after `budget` seconds of processor time, None for no
+/// limit, is undecided. Raises Refused.
 #[pyfunction]
-#[pyo3(signature = (G, c, friction, restitution = None, *, explain = false))]
+#[pyo3(signature = (G, c, friction, restitution = None, *, explain = false, budget = Limit(Some(Duration::from_secs(10)))))]
 #[expect(non_snake_case, reason = "the name of the Delassus matrix")]
 pub fn solve<'py>(
     py: Python<'py>,
@@ -188,6 +193,7 @@ pub fn solve<'py>(
     friction: &Bound<'py, PyAny>,
     restitution: Option<&Bound<'py, PyAny>>,
     explain: bool,
+    budget: Limit,
 ) -> PyResult<Bound<'py, PyAny>> {
     let text = py.import("heelstrike._values")?.call_method1("problem", (G, c, friction, restitution))?;
     let text: String = text.extract()?;
@@ -195,8 +201,8 @@ pub fn solve<'py>(
     let solved = || {
         let problem = Problem::from_json(&text, &Defaults::default())?;
         let asked = AnalysisOptions { rejections: explain.into(), ..AnalysisOptions::default() };
-        let analysis = budget(Some(Duration::from_secs(10)))
-            .within(|| Scratch::default().analyze(&problem.contact, &problem, asked))?;
+        let analysis =
+            watch::budget(budget.0).within(|| Scratch::default().analyze(&problem.contact, &problem, asked))?;
         let mut out = Vec::new();
         Report::of_problem(&problem, &analysis, detail).append_json(detail, &mut out);
         Ok(out)
