@@ -151,7 +151,7 @@ fn a_level_sole_across_an_edge_has_the_normal_of_its_tread() {
         joint("hip", HINGE, ["torso", "thigh"], [0.0; 2], ""),
         joint("knee", HINGE, ["thigh", "foot"], [0.0, -0.4], ""),
     ]));
-    for (pitch, hip) in (1..40).map(|step| 0.01 * f64::from(step)).map(|pitch| (pitch, 0.7 - 3.0 * pitch)) {
+    for (pitch, hip) in (50..90).map(|step| 0.01 * f64::from(step)).map(|pitch| (pitch, 0.3 - 7.0 * pitch)) {
         let base = json!({"x": 0.4 * f64::sin(pitch + hip) + 0.02, "pitch": pitch});
         let joints = json!({"hip": hip, "knee": -(pitch + hip)});
         let velocity = json!({"base": {"x": 0.3, "z": -1, "pitch": 0.4}, "joints": {"hip": -0.7, "knee": 0.2}});
