@@ -277,6 +277,7 @@ impl Answerer<'_> {
         block.summary.early += u64::from(around.landing.is_some_and(|landing| landing.is_early));
         block.summary.slowed += u64::from(around.landing.is_some_and(|landing| landing.is_slowed));
         block.summary.deep += u64::from(around.landing.is_some_and(|landing| landing.is_deep));
+        block.summary.crowded += u64::from(around.landing.is_some_and(|landing| landing.is_crowded));
         let place = || StateRef { id: state.id.clone().map(short_id), line: around.line };
         if !impact.notes.is_empty() {
             // Notes on odd numbers come first in the list.

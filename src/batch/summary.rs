@@ -73,6 +73,9 @@ pub struct Summary {
     /// Touchdowns of feet that are far below the ground in the recording.
     #[serde(skip_serializing_if = "is_zero")]
     pub deep: u64,
+    /// Touchdowns with another one so near that no velocity between both is known.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub crowded: u64,
     /// Touchdowns whose foot does not come down at the chosen moment, so that nothing strikes.
     #[serde(skip_serializing_if = "is_zero")]
     pub no_strike: u64,
@@ -254,13 +257,14 @@ impl Summary {
         self.early += following.early;
         self.slowed += following.slowed;
         self.deep += following.deep;
+        self.crowded += following.crowded;
         self.no_strike += following.no_strike;
     }
 
     /// Returns notes on the touchdowns.
     pub fn of_touchdowns(&self) -> impl Iterator<Item = String> {
-        let Self { early, slowed, deep, no_strike, .. } = *self;
-        notes::odd_touchdowns([early, slowed, deep, no_strike])
+        let Self { early, slowed, deep, crowded, no_strike, .. } = *self;
+        notes::odd_touchdowns([early, slowed, deep, crowded, no_strike])
     }
 
     fn near(&mut self, state: impl Fn() -> StateRef, outcomes: &[Outcome]) {

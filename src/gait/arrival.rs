@@ -74,7 +74,7 @@ impl<S: Clone> Arrival<'_, '_, S> {
                 self.between(point, row, level, &mut sample);
             }
         }
-        if motion.rows.len() > 1 {
+        if motion.rows.len() > 1 || motion.from.is_some() {
             let onward = self.window.onward(&motion, sample.time);
             let used = |entry: usize| match (is_difference(&sample), self.heights) {
                 (true, _) => motion.position[entry].max(2),
@@ -83,7 +83,8 @@ impl<S: Clone> Arrival<'_, '_, S> {
                 (false, Heights::True) => motion.velocity[entry],
             };
             let used: Vec<usize> = (0..sample.state.velocity.len()).map(used).collect();
-            self.carry_velocity(&motion.rows, |entry| &onward[used[entry] - 1], &mut sample);
+            let position = |at: usize| self.window.position(&motion, at);
+            self.carry_velocity(&motion.rows, position, |entry| &onward[used[entry] - 1], &mut sample);
         }
         sample
     }
@@ -111,18 +112,25 @@ impl<S: Clone> Arrival<'_, '_, S> {
             }
         }
         let line = Interpolation::along(sample.time, &times);
-        self.carry_velocity(rows, |_| &line, &mut sample);
+        let position = |at: usize| &self.window.frames[rows[at]].sample.state.position[..];
+        self.carry_velocity(rows, position, |_| &line, &mut sample);
         sample
     }
 
-    /// Sets a sample's velocity from `rows` by weights `onward`: recorded velocities, or the rate of positions.
-    fn carry_velocity<'i>(&self, rows: &[usize], onward: impl Fn(usize) -> &'i Interpolation, sample: &mut Sample<S>) {
-        let state = |at: usize| &self.window.frames[rows[at]].sample.state;
+    /// Sets a sample's velocity by weights `onward`: from the velocities recorded in `rows`, or as rate of positions.
+    fn carry_velocity<'i>(
+        &self,
+        rows: &[usize],
+        position: impl Fn(usize) -> &'i [f64],
+        onward: impl Fn(usize) -> &'i Interpolation,
+        sample: &mut Sample<S>,
+    ) {
+        let velocity = |at: usize| &self.window.frames[rows[at]].sample.state.velocity;
         let differences = is_difference(sample);
         for (entry, own) in sample.state.velocity.iter_mut().enumerate() {
             *own = match differences {
-                true => onward(entry).rate(|at| state(at).position[entry]),
-                false => onward(entry).value(|at| state(at).velocity[entry]),
+                true => onward(entry).rate(|at| position(at)[entry]),
+                false => onward(entry).value(|at| velocity(at)[entry]),
             };
         }
     }

@@ -61,7 +61,7 @@ pub fn find<'r, S: Clone, I: Iterator<Item = Sampled<S>>>(
         seen: None,
         clock: Clock::default(),
         counted: 0,
-        window: Window { frames: VecDeque::new(), last: None },
+        window: Window { frames: VecDeque::new() },
         descents: Vec::new(),
         ready: VecDeque::new(),
     })
@@ -178,7 +178,9 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
             self.window.frames.pop_front();
         }
         let noise = if self.heights == Heights::True { Vec::new() } else { self.window.noise(sample.time, &places) };
-        self.window.frames.push_back(Frame { sample, row: self.counted, places, noise, before_impact: false });
+        let row = self.counted;
+        let frame = Frame { sample, row, places, noise, before_impact: false, strikes: 0, struck: None };
+        self.window.frames.push_back(frame);
         match (self.heights, step) {
             (Heights::True, _) => self.reach_ground(),
             (Heights::Recorded, ClockStep::Later(passed)) => self.follow(passed),
@@ -211,15 +213,15 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
                 } else if last.abs() <= self.level && falling {
                     // The point may be stopped already in the first row on the ground. If heights are rounded by as
                     // much as `level`, it may be stopped in the row before, too.
-                    let mut rows = [row.checked_sub(2), before].into_iter().flatten();
+                    let stopped = |row: &usize| self.window.height(point, row + 1) <= 2.0 * self.level;
+                    let mut rows = [row.checked_sub(2).filter(stopped), before].into_iter().flatten();
                     let found = rows.find(|&row| self.onward_height(point, row) <= self.level);
                     Some((found.or(before).unwrap_or(row), Some(0.0)))
                 } else {
                     None
                 };
-                let strike = |(row, height)| Strike { point, row, height, smooth: row, onward: Way::Through(SMOOTH) };
                 sinks |= found.is_some();
-                strikes.extend(found.map(strike));
+                strikes.extend(found.map(|(row, height)| Strike::after(point, row, height)));
             }
             if sinks && height >= last {
                 self.see_end(row, last);
@@ -229,7 +231,14 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
             let from = if falling && last > self.level && height >= -self.level { from } else { height };
             self.descents[point] = Descent { from, falling, sinks };
         }
+        strikes.sort_by_key(|strike: &Strike| strike.row);
         self.strike(strikes);
+    }
+
+    /// Returns the sample at a strike.
+    fn arrival(&mut self, at: At, strike: &Strike) -> Sample<S> {
+        let Self { window, points, heights, level, .. } = self;
+        Arrival { window, points, at, heights: *heights, level: *level }.sample(strike)
     }
 
     /// Notes the height at which the lowest foot ends a descent that is no touchdown, or that continues in the ground.
@@ -323,6 +332,20 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
         Strike { row: row.min(last), smooth: last, ..strike }
     }
 
+    /// Marks the touchdown of a strike in the row before it. Returns the strike from which its state is computed, and
+    /// whether true heights show no velocity between it and another touchdown.
+    fn mark(&mut self, strike: Strike) -> (Strike, bool) {
+        let Frame { sample, strikes, .. } = &self.window.frames[strike.row];
+        let (is_true, differences, shares) = (self.heights == Heights::True, is_difference(sample), *strikes > 0);
+        let alone = if is_true && differences { self.window.before_alone(strike.row) } else { None };
+        let is_crowded = is_true && (shares || alone.is_some());
+        let struck = (is_true && !is_crowded).then(|| self.arrival(At::Crossing, &strike));
+        let frame = &mut self.window.frames[strike.row];
+        frame.struck = struck.map(|sample| (sample.time, sample.state.position));
+        frame.strikes += 1;
+        (alone.map_or(strike, |row| Strike { row, ..strike }), is_crowded)
+    }
+
     /// Ends the clip. A point that is still falling has reached the ground if it is at z = 0.
     fn end_clip(&mut self) {
         let (Thresholds { drop, above, .. }, is_true) = (self.thresholds, self.heights == Heights::True);
@@ -335,8 +358,7 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
             if !falling || from - last < drop || last > if is_true { self.level } else { above } {
                 None
             } else if is_true {
-                let row = before?;
-                Some(Strike { point, row, height: Some(0.0), smooth: row, onward: Way::Through(SMOOTH) })
+                Some(Strike::after(point, before?, Some(0.0)))
             } else if last >= -above {
                 Some(Strike { point, row: before_impact.unwrap_or(end), height: None, smooth: end, onward: Way::Soft })
             } else {
@@ -347,25 +369,23 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
         self.strike(self.descents.iter().enumerate().filter_map(strike).collect());
         self.window.frames.clear();
         self.descents.clear();
-        self.window.last = None;
     }
 
     /// Makes touchdowns of the strikes whose points are free toward the ground. Simultaneous strikes are one touchdown.
     fn strike(&mut self, mut strikes: Vec<Strike>) {
         let (together, at, touching) = (self.thresholds.together, self.at, self.touching);
         strikes.retain(|strike| self.points.is_free(strike.point, &self.window.frames[strike.row].places, together));
-        let mut last = None;
         while !strikes.is_empty() {
             let first = strikes.remove(0);
             let (also, later): (Vec<_>, Vec<_>) =
                 strikes.into_iter().partition(|other| self.window.together(&first, other, together));
             strikes = later;
             let first = if self.heights == Heights::Recorded { self.before_stop(first) } else { first };
-            last = last.max(Some(self.window.frames[first.row].row));
             let also: Vec<usize> = also.iter().map(|strike| strike.point).collect();
-            let (window, heights, level) = (&self.window, self.heights, self.level);
-            let mut sample = Arrival { window, points: &mut self.points, at, heights, level }.sample(&first);
-            let level = (heights == Heights::True).then_some(level);
+            let heights = self.heights;
+            let (first, is_crowded) = self.mark(first);
+            let mut sample = self.arrival(at, &first);
+            let level = (heights == Heights::True).then_some(self.level);
             let (shift_z, striking) =
                 self.points.touch(&mut sample.state, (first.point, &also), touching, (together, level));
             let noise = self.window.measured(first.point);
@@ -379,7 +399,8 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
             if let Some(Ok(mut seen)) = self.seen.map(Mutex::lock) {
                 seen.add_touchdown(is_level.then_some(shift_z));
             }
-            sample.landing = Some(Landing { row, striking, shift_z, at, touching, is_early, is_slowed, is_deep });
+            let landing = Landing { row, striking, shift_z, at, touching, is_early, is_slowed, is_deep, is_crowded };
+            sample.landing = Some(landing);
             let finite = sample.state.position.iter().chain(&sample.state.velocity).all(|entry| entry.is_finite());
             self.ready.push_back(if finite {
                 Ok(sample)
@@ -388,6 +409,5 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
                 Err((sample.source, Error::new(Reason::Inconsistent(reason))))
             });
         }
-        self.window.last = last.or(self.window.last);
     }
 }

@@ -65,7 +65,8 @@
 //! when it crosses z = 0, or stops within a millionth of the robot's size of it, after a descent of
 //! [`Thresholds::drop`] or more. At the moment of contact its height is zero if all coordinates continue on the
 //! polynomial through up to six rows before. None of these rows is before the last touchdown, or before two rows of one
-//! time. With six rows and more, each coordinate and each rate uses as many rows as have predicted its last two values
+//! time. If that leaves one or two rows, they continue from the last touchdown, unless it is too near to the first of
+//! them to show a rate; a single row without recorded velocity then leaves the row before that touchdown. With six rows and more, each coordinate and each rate uses as many rows as have predicted its last two values
 //! best, because accelerations may jump from row to row, as with a controller. Recorded velocities are extrapolated;
 //! differences are replaced by the rates of the polynomial. If the polynomial does not reach the ground before the next
 //! row, time and positions are on the line between both rows. A clip that ends aloft ends without a touchdown.
@@ -168,6 +169,9 @@ pub struct Landing {
     pub is_slowed: bool,
     /// Whether the foot is far below z = 0, as in a recording with other axes or units.
     pub is_deep: bool,
+    /// Whether another touchdown is so near that true heights show no velocity between both. The state is then the one
+    /// before both.
+    pub is_crowded: bool,
 }
 
 /// The meaning of recorded heights.

@@ -33,6 +33,11 @@ pub(super) enum Way {
 }
 
 impl Strike {
+    /// The strike of a point after `row` in a recording with true heights.
+    pub fn after(point: usize, row: usize, height: Option<f64>) -> Self {
+        Self { point, row, height, smooth: row, onward: Way::Through(SMOOTH) }
+    }
+
     /// Returns whether the point is above the level on which it stops.
     pub fn is_soft(&self) -> bool {
         self.onward == Way::Soft && self.height.is_some()

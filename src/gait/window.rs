@@ -1,7 +1,7 @@
 //! The last rows of a clip, and the continuation of its motion after one of them.
 
 use super::Sample;
-use super::carry::Interpolation;
+use super::carry::{Interpolation, REACH};
 use crate::planar::Vector;
 use std::collections::VecDeque;
 
@@ -19,8 +19,6 @@ const LEAST: usize = 6;
 #[derive(Debug)]
 pub(super) struct Window<S> {
     pub frames: VecDeque<Frame<S>>,
-    /// The row before the last touchdown.
-    pub last: Option<usize>,
 }
 
 /// A sample, and the places of its points.
@@ -34,6 +32,17 @@ pub(super) struct Frame<S> {
     pub noise: Vec<f64>,
     /// Whether the next sample has the same time.
     pub before_impact: bool,
+    /// The number of touchdowns between this sample and the next.
+    pub strikes: usize,
+    /// The time and q of the only one of them, if they are known.
+    pub struck: Option<(f64, Vec<f64>)>,
+}
+
+impl<S> Frame<S> {
+    /// Returns whether the motion after the sample does not continue that before it.
+    fn ends_motion(&self) -> bool {
+        self.before_impact || self.strikes > 0
+    }
 }
 
 impl<S> Window<S> {
@@ -50,20 +59,21 @@ impl<S> Window<S> {
     /// Returns at most `most` rows from which the motion continues after `row`, the last one first. None is from before
     /// an impact.
     pub fn smooth_rows(&self, row: usize, most: usize) -> Vec<usize> {
-        let is_after_impact = |row: usize| self.last.is_some_and(|last| self.frames[row].row <= last);
-        let before = (0..row).rev().take_while(|&row| !(self.frames[row].before_impact || is_after_impact(row)));
+        let before = (0..row).rev().take_while(|&row| !self.frames[row].ends_motion());
         std::iter::once(row).chain(before).take(most).collect()
     }
 
     /// Returns the continuation of the motion after `row`, by at most `most` rows. For rows without noise (`exact`),
-    /// each coordinate uses as many rows as have predicted it best.
+    /// each coordinate uses as many rows as have predicted it best. If there are fewer than [`BEFORE`], it begins with
+    /// the touchdown before them.
     pub fn motion(&self, row: usize, most: usize, exact: bool) -> Motion {
         let mut rows = self.smooth_rows(row, if exact { most + FORETOLD } else { most });
         let state = |at: usize| &self.frames[rows[at]].sample.state;
         let coordinates = state(0).position.len();
         if !exact || rows.len() < LEAST {
-            let used = vec![rows.len().min(most); coordinates];
-            return Motion { position: used.clone(), velocity: used, rows };
+            let from = if exact && rows.len() < BEFORE { self.struck_before(&rows) } else { None };
+            let used = |rows: usize| vec![rows.min(most); coordinates];
+            return Motion { position: used(rows.len() + from.iter().len()), velocity: used(rows.len()), from, rows };
         }
         let times = self.times(rows.iter().copied());
         // For each number of rows, the predicted rows (counted back from the last one) with their weights.
@@ -84,22 +94,44 @@ impl<S> Window<S> {
         let position = (0..coordinates).map(|entry| used(&|at| state(at).position[entry])).collect();
         let velocity = (0..coordinates).map(|entry| used(&|at| state(at).velocity[entry])).collect();
         rows.truncate(most);
-        Motion { position, velocity, rows }
+        Motion { position, velocity, rows, from: None }
+    }
+
+    /// Returns time and q of the touchdown after which a motion of these `rows` begins, unless it is so near to the
+    /// first of them that it does not show the rate.
+    fn struck_before(&self, rows: &[usize]) -> Option<(f64, Vec<f64>)> {
+        let (last, first) = (*rows.first()?, *rows.last()?);
+        let [next, last_time, first_time] = [last + 1, last, first].map(|row| self.frames[row].sample.time);
+        let struck = self.frames[first.checked_sub(1)?].struck.as_ref();
+        struck.filter(|(time, _)| next - last_time <= REACH * (first_time - time)).cloned()
+    }
+
+    /// Returns the row before `row` if it is the only row of its motion, so that no rate of its own is known.
+    pub fn before_alone(&self, row: usize) -> Option<usize> {
+        let before = row.checked_sub(1)?;
+        (self.frames[before].ends_motion() && self.struck_before(&[row]).is_none()).then_some(before)
     }
 
     /// Returns the weights for `time` of the last row of a motion alone, of its last two rows, and so on.
     pub fn onward(&self, motion: &Motion, time: f64) -> Vec<Interpolation> {
-        let times = self.times(motion.rows.iter().copied());
+        let mut times = self.times(motion.rows.iter().copied());
+        times.extend(motion.from.iter().map(|(time, _)| *time));
         (1..=times.len()).map(|used| Interpolation::at(time, &times[..used])).collect()
     }
 
     /// Returns q at `time` if the motion continues.
     pub fn onward_position(&self, motion: &Motion, time: f64) -> Vec<f64> {
         let onward = self.onward(motion, time);
-        let value = |(entry, &used): (usize, &usize)| {
-            onward[used - 1].value(|at| self.frames[motion.rows[at]].sample.state.position[entry])
-        };
+        let value = |(entry, &used): (usize, &usize)| onward[used - 1].value(|at| self.position(motion, at)[entry]);
         motion.position.iter().enumerate().map(value).collect()
+    }
+
+    /// Returns q of a row of a motion, counted back from its last one, or of the touchdown before them.
+    pub fn position<'a>(&'a self, motion: &'a Motion, at: usize) -> &'a [f64] {
+        match (motion.rows.get(at), &motion.from) {
+            (None, Some((_, position))) => position,
+            _ => &self.frames[motion.rows[at]].sample.state.position,
+        }
     }
 }
 
@@ -108,6 +140,8 @@ impl<S> Window<S> {
 pub(super) struct Motion {
     /// That row and the rows before it, the last one first.
     pub rows: Vec<usize>,
+    /// Time and q of the touchdown with which it begins.
+    pub from: Option<(f64, Vec<f64>)>,
     /// The number of these rows that each coordinate uses, and the number that its rate uses.
     pub position: Vec<usize>,
     pub velocity: Vec<usize>,

@@ -55,8 +55,9 @@ pub fn left_out(header: &Header, dropped: &Dropped) -> impl Iterator<Item = Stri
 }
 
 /// Notes on odd touchdowns. `counts` are those taken above the ground, of feet whose heights have no noise; those of
-/// feet that are already slowed down; those taken far below the ground; those without an impact.
-pub fn odd_touchdowns(counts: [u64; 4]) -> impl Iterator<Item = String> {
+/// feet that are already slowed down; those taken far below the ground; those with another one too near; those
+/// without an impact.
+pub fn odd_touchdowns(counts: [u64; 5]) -> impl Iterator<Item = String> {
     let what = [
         ("taken above the ground, from heights without noise", "if they are of a simulation, give `simulated`"),
         (
@@ -66,6 +67,10 @@ pub fn odd_touchdowns(counts: [u64; 4]) -> impl Iterator<Item = String> {
         (
             "of feet far under z = 0, which were lifted to it",
             "are the base's height and axes right, or does the ground descend?",
+        ),
+        (
+            "so soon after another that no velocity between them is known",
+            "theirs is the state before both: give more rows in a second",
         ),
         (
             "without an impact, as their foot does not come down",

@@ -342,3 +342,53 @@ fn a_touchdown_can_be_asked_again() {
 fn heelstrike_on(arguments: &[&str], state: &Value) -> Value {
     heelstrike_reads(arguments, state.to_string()).well().line()
 }
+
+/// A tilted rod falls until its front end strikes after 0.4 s. It then turns about this end at 2 rad/s, until the rear
+/// end strikes 10 ms later.
+fn slapping_rod() -> Motion {
+    const TILT: f64 = 0.02;
+    let fall = |time: f64| [vec![0.5 * G * (0.16 - time * time) + 0.5 * TILT.sin(), TILT], vec![-G * time, 0.0]];
+    let slap = |time: f64| {
+        let turn = TILT - 2.0 * time;
+        if turn < 0.0 { [vec![0.0; 2], vec![0.0; 2]] } else { [vec![0.5 * turn.sin(), turn], vec![-turn.cos(), -2.0]] }
+    };
+    Motion { before: fall, after: slap, ..rod() }
+}
+
+#[test]
+fn a_strike_a_row_after_another_has_the_motion_between() {
+    let motion = slapping_rod();
+    // The first row after the first strike, as a part of the step. One or two rows are between the strikes.
+    for (step, part) in [0.006, 0.008].into_iter().flat_map(|step| [0.5, 0.7, 0.9].map(|part| (step, part))) {
+        for with_rates in [true, false] {
+            let table = motion.table(step, (0.4 / step + part).fract(), with_rates, 0.6);
+            let case = format!("{step} s, {part}, rates {with_rates}");
+            let found = motion.found(&table, with_rates, At::Crossing);
+            let [first, second] = &found[..] else { panic!("{case}: {} touchdowns", found.len()) };
+            assert!((first.time - 0.4).abs() < 1e-8, "{case}: {}", first.time);
+            assert!((second.time - 0.41).abs() < 1e-6, "{case}: {}", second.time);
+            // Tolerance: the sine of the tilt is not a line.
+            let [speed, turn] = [1, 2].map(|entry| second.state.velocity[entry]);
+            assert!((speed + 1.0).abs() < 1e-3 && (turn + 2.0).abs() < 1e-6, "{case}: {speed}, {turn}");
+            assert!(found.iter().all(|touchdown| touchdown.landing.as_ref().is_some_and(|own| !own.is_crowded)));
+            let at_row = motion.found(&table, with_rates, At::Row);
+            assert!((at_row[1].state.velocity[2] + 2.0).abs() < 1e-6, "{case}: {:?}", at_row[1].state.velocity);
+        }
+    }
+}
+
+#[test]
+fn a_strike_too_near_another_has_the_state_before_both() {
+    let motion = slapping_rod();
+    // The only row between the strikes is just after the first one, or there is none.
+    for (step, part) in [(0.008, 0.3), (0.02, 0.9)] {
+        let found = motion.found(&motion.table(step, (0.4 / step + part).fract(), false, 0.6), false, At::Crossing);
+        let [first, second] = &found[..] else { panic!("{step} s: {} touchdowns", found.len()) };
+        for touchdown in [first, second] {
+            let [speed, turn] = [1, 2].map(|entry| touchdown.state.velocity[entry]);
+            assert!((speed + G * touchdown.time).abs() < 1e-6 && turn.abs() < 1e-6, "{step} s: {speed}, {turn}");
+        }
+        let is_crowded = |touchdown: &Sample<usize>| touchdown.landing.as_ref().is_some_and(|own| own.is_crowded);
+        assert_eq!([first, second].map(is_crowded), [false, true], "{step} s");
+    }
+}
