@@ -26,6 +26,8 @@ const NOISE: f64 = 5.0;
 const SHORTLY: f64 = 0.01;
 /// The greatest deceleration of a foot by its leg, as a multiple of [`Thresholds::slow`] per second: 25 m/s^2.
 const BRAKES: f64 = 500.0;
+/// A point strikes before another if that is earlier by at least this part of the time from row to row.
+const EARLIER: f64 = 0.01;
 /// The greatest depth to which feet sink, as a multiple of the default [`Thresholds::ground`].
 const DEEP: f64 = 5.0;
 
@@ -191,23 +193,15 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
     /// Follows every point to the last row of the window, with true heights.
     fn reach_ground(&mut self) {
         let Some(row) = self.window.frames.len().checked_sub(2) else { return };
-        let mut strikes = Vec::new();
+        let before = row.checked_sub(1);
+        let (mut strikes, mut risen) = (Vec::new(), Vec::new());
         for point in 0..self.descents.len() {
             let Descent { from, falling, mut sinks } = self.descents[point];
             let [last, height] = [row, row + 1].map(|row| self.window.height(point, row));
+            let stops = falling && last > self.level && height <= last + self.level;
             if from - last.min(height) >= self.thresholds.drop {
-                let before = row.checked_sub(1);
                 let found = if last > self.level && height < -self.level {
                     Some((row, Some(0.0)))
-                } else if last > self.level && falling && height >= last {
-                    // The point has bounced since this row or the one before. It rebounds at most twice as fast, so at
-                    // most twice as far as it would have gone into the ground.
-                    let mut rows = [before, Some(row)].into_iter().flatten();
-                    let bounces = |row: &usize| {
-                        let onward = self.onward_height(point, *row);
-                        onward <= 0.0 && self.window.height(point, row + 1) <= -2.0 * onward + self.level
-                    };
-                    rows.find(bounces).map(|row| (row, Some(0.0)))
                 } else if last.abs() <= self.level && falling && self.window.frames[row].before_impact {
                     Some((row, None))
                 } else if last.abs() <= self.level && falling {
@@ -222,17 +216,43 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
                 };
                 sinks |= found.is_some();
                 strikes.extend(found.map(|(row, height)| Strike::after(point, row, height)));
+                if falling && last > self.level && height > last + self.level {
+                    risen.push(point);
+                }
             }
             if sinks && height >= last {
                 self.see_end(row, last);
             }
-            let falling = height < last;
+            // A point that is as high as in the row before may have bounced, if the next row is higher.
+            let fell = || before.is_some_and(|before| self.window.height(point, before) > last + self.level);
+            let falling = height < last || stops && fell();
             sinks &= falling;
             let from = if falling && last > self.level && height >= -self.level { from } else { height };
             self.descents[point] = Descent { from, falling, sinks };
         }
         strikes.sort_by_key(|strike: &Strike| strike.row);
         self.strike(strikes);
+        // These may have bounced or, after a strike of another point, stopped above the ground.
+        let bounced = risen.into_iter().filter_map(|point| {
+            let mut rows = [before, Some(row)].into_iter().flatten().map(|row| Strike::after(point, row, Some(0.0)));
+            rows.find(|strike| self.bounces(strike))
+        });
+        let bounced = bounced.collect();
+        self.strike(bounced);
+    }
+
+    /// Returns whether a point bounces after the row of a strike, before any other point strikes. It rebounds at most
+    /// twice as fast, so at most twice as far as it would have gone into the ground.
+    fn bounces(&mut self, strike: &Strike) -> bool {
+        let &Strike { point, row, .. } = strike;
+        let onward = self.onward_height(point, row);
+        if onward > 0.0 || self.window.height(point, row + 1) > -2.0 * onward + self.level {
+            return false;
+        }
+        let position = self.arrival(At::Crossing, strike).state.position;
+        let places = self.points.at(&position);
+        let earlier = EARLIER * (onward - self.window.height(point, row));
+        (0..places.len()).all(|other| places[other].z >= earlier || self.window.height(other, row) <= self.level)
     }
 
     /// Returns the sample at a strike.

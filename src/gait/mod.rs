@@ -70,6 +70,8 @@
 //! best, because accelerations may jump from row to row, as with a controller. Recorded velocities are extrapolated;
 //! differences are replaced by the rates of the polynomial. If the polynomial does not reach the ground before the next
 //! row, time and positions are on the line between both rows. A clip that ends aloft ends without a touchdown.
+//! A point that rises between two rows has bounced if its motion before leads into the ground, and no other point into
+//! the ground before it.
 //!
 //! A jump back in time starts a new clip, and so does a step more than ten times the longest of the clip so far. A
 //! refused sample is passed on in its place and left out of the motion. Touchdowns come in the order in which their

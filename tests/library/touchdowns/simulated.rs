@@ -343,6 +343,61 @@ fn heelstrike_on(arguments: &[&str], state: &Value) -> Value {
     heelstrike_reads(arguments, state.to_string()).well().line()
 }
 
+/// A level rod, its front end lower by 1 mm, that falls until this end strikes after 0.4 s.
+fn nearly_level_rod(after: fn(f64) -> [Vec<f64>; 2]) -> Motion {
+    const TILT: f64 = 1e-3;
+    let fall = |time: f64| [vec![0.5 * G * (0.16 - time * time) + 0.5 * TILT.sin(), TILT], vec![-G * time, 0.0]];
+    Motion { before: fall, after, ..rod() }
+}
+
+#[test]
+fn a_foot_that_another_stops_aloft_does_not_strike() {
+    let stays = nearly_level_rod(|_| [vec![0.5 * 1e-3_f64.sin(), 1e-3], vec![0.0; 2]]);
+    let rises = nearly_level_rod(|time| {
+        let turn = 1e-3 + 0.5 * time;
+        [vec![0.5 * turn.sin(), turn], vec![0.25 * turn.cos(), 0.5]]
+    });
+    let bounces = nearly_level_rod(|time| {
+        let (turn, height) = (1e-3 + 0.5 * time, 0.5 * 1e-3_f64.sin() + 2.0 * time - 0.5 * G * time * time);
+        [vec![height, turn], vec![2.0 - G * time, 0.5]]
+    });
+    for (name, motion) in [("stays", stays), ("rises", rises), ("bounces", bounces)] {
+        for (step, with_rates) in [2e-3, 5e-3, 1e-2].into_iter().flat_map(|step| [(step, true), (step, false)]) {
+            for phase in [0.0, 0.2, 0.4, 0.6, 0.8] {
+                let found = motion.found(&motion.table(step, phase, with_rates, 0.6), with_rates, At::Crossing);
+                let case = format!("{name}, {step} s, phase {phase}, rates {with_rates}");
+                let [touchdown] = &found[..] else { panic!("{case}: {} touchdowns", found.len()) };
+                assert!((touchdown.time - 0.4).abs() < 1e-8, "{case}: {}", touchdown.time);
+                let [speed, turn] = [1, 2].map(|entry| touchdown.state.velocity[entry]);
+                assert!((speed + 0.4 * G).abs() < 1e-6 && turn.abs() < 1e-6, "{case}: {speed}, {turn}");
+            }
+        }
+    }
+}
+
+#[test]
+fn only_a_foot_that_rises_again_has_bounced() {
+    let stops = Motion { strikes: (2.0 * 0.996 / G).sqrt(), after: |_| [vec![0.104], vec![0.0]], ..ball() };
+    let bounces = |time: f64| {
+        let speed = (2.0 * G).sqrt();
+        [vec![0.1 + (speed - 0.5 * G * time) * time], vec![speed - G * time]]
+    };
+    let bounces = Motion { after: bounces, ..ball() };
+    for with_rates in [true, false] {
+        for phase in [0.0, 0.2, 0.4, 0.6, 0.8] {
+            let table = stops.table(0.01, phase, with_rates, 0.6);
+            assert!(stops.found(&table, with_rates, At::Crossing).is_empty(), "phase {phase}, rates {with_rates}");
+        }
+        // Also if the rows before and after are at the same height.
+        let phase = (bounces.strikes / 0.01 - 0.5).fract();
+        for phase in [phase, phase - 1e-9, phase + 1e-9, phase + 0.2] {
+            let found = bounces.found(&bounces.table(0.01, phase, with_rates, 0.6), with_rates, At::Crossing);
+            let [touchdown] = &found[..] else { panic!("phase {phase}: {} touchdowns", found.len()) };
+            assert!((touchdown.time - bounces.strikes).abs() < 1e-8, "phase {phase}: {}", touchdown.time);
+        }
+    }
+}
+
 /// A tilted rod falls until its front end strikes after 0.4 s. It then turns about this end at 2 rad/s, until the rear
 /// end strikes 10 ms later.
 fn slapping_rod() -> Motion {
