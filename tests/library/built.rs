@@ -14,7 +14,6 @@ use heelstrike::state::{
 };
 use heelstrike::{Defaults, Detail, Error, Friction, Pipeline, Report, Robot, State};
 use serde_json::Value;
-use std::f64::{INFINITY, NAN};
 
 /// A state that falls on its lower foot, and whose half-widths are zero.
 fn falling(robot: &Robot) -> State {
@@ -61,10 +60,10 @@ fn half_widths_built_in_code_are_checked() {
     };
     let negative = "a half-width must be 0 or more, not -0.001";
     let nan = "a half-width must be a finite number, not NaN";
-    assert_eq!(of(&|own| own.position[3] = NAN), format!("uncertainty.position.joints.left_hip: {nan}"));
+    assert_eq!(of(&|own| own.position[3] = f64::NAN), format!("uncertainty.position.joints.left_hip: {nan}"));
     assert_eq!(of(&|own| own.velocity[2] = -1e-3), format!("uncertainty.velocity.base.pitch: {negative}"));
-    assert!(of(&|own| own.position[3] = INFINITY).ends_with("not inf"));
-    assert_eq!(of(&|own| own.friction = ByLink::everywhere(NAN)), format!("uncertainty.friction: {nan}"));
+    assert!(of(&|own| own.position[3] = f64::INFINITY).ends_with("not inf"));
+    assert_eq!(of(&|own| own.friction = ByLink::everywhere(f64::NAN)), format!("uncertainty.friction: {nan}"));
     let of_foot = [(robot.link("left_foot").unwrap(), -1e-3)].into();
     let friction = ByLink { default: None, links: of_foot };
     assert_eq!(of(&|own| own.friction = friction.clone()), format!("uncertainty.friction.left_foot: {negative}"));
@@ -101,28 +100,28 @@ fn a_number_that_is_not_finite_is_refused_with_its_place() {
     let robot = ramone();
     let at = |change: &dyn Fn(&mut State)| refused(&robot, change).split(": ").next().unwrap_or_default().to_owned();
     let velocity = "velocity.base.x: a velocity must be a finite number, not NaN";
-    assert_eq!(refused(&robot, |state| state.velocity[0] = NAN), velocity);
-    assert_eq!(at(&|state| state.position[4] = INFINITY), "position.joints.left_knee");
-    assert_eq!(at(&|state| state.scene.rotor_inertia = vec![0.0, 0.0, NAN, 0.0]), "rotor_inertia.right_hip");
-    assert_eq!(at(&|state| state.scene.torque = vec![NAN; 4]), "torque.left_hip");
+    assert_eq!(refused(&robot, |state| state.velocity[0] = f64::NAN), velocity);
+    assert_eq!(at(&|state| state.position[4] = f64::INFINITY), "position.joints.left_knee");
+    assert_eq!(at(&|state| state.scene.rotor_inertia = vec![0.0, 0.0, f64::NAN, 0.0]), "rotor_inertia.right_hip");
+    assert_eq!(at(&|state| state.scene.torque = vec![f64::NAN; 4]), "torque.left_hip");
     assert_eq!(at(&|state| state.scene.torque = vec![1.0]), "torque");
     assert_eq!(at(&|state| state.scene.rotor_inertia = vec![0.01]), "rotor_inertia");
-    assert_eq!(at(&|state| state.scene.gravity = Some(NAN)), "gravity");
-    assert_eq!(at(&|state| state.scene.ground = Ground::Slope(NAN)), "ground.slope");
-    assert_eq!(at(&|state| state.scene.contacts = Some(vec![contact(NAN, 0.0)])), "contacts[0].offset[2]");
-    assert_eq!(at(&|state| state.scene.contacts = Some(vec![contact(0.0, NAN)])), "contacts[0].radius");
-    let [sound, broken] = [0.0, NAN].map(|y| LinkPoint { link: 0, offset: [0.0, y, 0.0] });
+    assert_eq!(at(&|state| state.scene.gravity = Some(f64::NAN)), "gravity");
+    assert_eq!(at(&|state| state.scene.ground = Ground::Slope(f64::NAN)), "ground.slope");
+    assert_eq!(at(&|state| state.scene.contacts = Some(vec![contact(f64::NAN, 0.0)])), "contacts[0].offset[2]");
+    assert_eq!(at(&|state| state.scene.contacts = Some(vec![contact(0.0, f64::NAN)])), "contacts[0].radius");
+    let [sound, broken] = [0.0, f64::NAN].map(|y| LinkPoint { link: 0, offset: [0.0, y, 0.0] });
     assert_eq!(at(&|state| state.scene.loops = vec![NamedLoop { a: sound, b: broken }]), "loops[0].b.offset[1]");
     let impulse = |x, y| AppliedImpulse { link: 0, offset: [0.0, y, 0.0], vector: Vector::new(x, 0.0) };
-    assert_eq!(at(&|state| state.scene.impulses = vec![impulse(1.0, NAN)]), "impulse[0].offset[1]");
-    assert_eq!(at(&|state| state.scene.impulses = vec![impulse(NAN, 0.0)]), "impulse[0].vector[0]");
+    assert_eq!(at(&|state| state.scene.impulses = vec![impulse(1.0, f64::NAN)]), "impulse[0].offset[1]");
+    assert_eq!(at(&|state| state.scene.impulses = vec![impulse(f64::NAN, 0.0)]), "impulse[0].vector[0]");
     let spring = |b, damping| {
         let laws = [SpringLaw { damping, ..SpringLaw::default() }; 3];
         move |state: &mut State| state.scene.springs = vec![VirtualSpring { a: sound, b, laws }]
     };
     assert_eq!(at(&spring(SpringEnd::Link(broken), 0.0)), "virtual[0].b.offset[1]");
-    assert_eq!(at(&spring(SpringEnd::World(Vector::new(0.0, NAN)), 0.0)), "virtual[0].b.world[1]");
-    assert_eq!(at(&spring(SpringEnd::Link(sound), NAN)), "virtual[0].laws[1]");
+    assert_eq!(at(&spring(SpringEnd::World(Vector::new(0.0, f64::NAN)), 0.0)), "virtual[0].b.world[1]");
+    assert_eq!(at(&spring(SpringEnd::Link(sound), f64::NAN)), "virtual[0].laws[1]");
 }
 
 #[test]
@@ -137,7 +136,7 @@ fn placeholders_of_a_stance_may_be_anything() {
         let impact = Pipeline::new(&robot, Options::default()).impact(&state).expect("a stance");
         format!("{:?}", (impact.analysis, impact.kinetic_energy, impact.notes))
     };
-    assert_eq!(impact(NAN), impact(0.0));
+    assert_eq!(impact(f64::NAN), impact(0.0));
 }
 
 #[test]
@@ -160,7 +159,7 @@ fn options_built_in_code_are_checked() {
     let robot = ramone();
     let state = State { uncertainty: None, ..falling(&robot) };
     let of = |options: Options| said(&Pipeline::new(&robot, options).impact(&state).expect_err("refused"));
-    for (value, rule) in [(NAN, "a finite number, not NaN"), (-1e-3, "0 or more, not -0.001")] {
+    for (value, rule) in [(f64::NAN, "a finite number, not NaN"), (-1e-3, "0 or more, not -0.001")] {
         let tolerance = Options { contact_tolerance: Some(value), ..Options::default() };
         assert_eq!(of(tolerance), format!("contact_tolerance: the tolerance must be {rule}"));
         let speed = Options { resting_speed: Some(value), ..Options::default() };
@@ -169,7 +168,7 @@ fn options_built_in_code_are_checked() {
         assert_eq!(of(feet), format!("feet[1].radius: radius must be {rule}"));
     }
     let feet = |foot| of(Options { feet: vec![foot], ..Options::default() });
-    assert_eq!(feet(contact(NAN, 0.1)), "feet[0].offset[2]: a number must be a finite number, not NaN");
+    assert_eq!(feet(contact(f64::NAN, 0.1)), "feet[0].offset[2]: a number must be a finite number, not NaN");
     let foreign = NamedContact { link: 99, ..contact(0.0, 0.0) };
     let links = robot.links().len();
     assert_eq!(feet(foreign), format!("feet: no index 99: the robot has {links} links, counted from 0"));
