@@ -11,6 +11,5 @@ mod study;
 pub mod table;
 
 pub use problem::Problem;
-#[cfg(feature = "cli")]
 pub use state::loops_from_json;
 pub use study::{Parameter, Study};
