@@ -161,8 +161,9 @@ impl Pipeline<'_> {
             let reason = Reason::Inconsistent("an applied impulse acts in an impact, not in sustained contact".into());
             return Err(Error::new(reason).at("impulse").hint("leave it out, or ask `impact`"));
         }
-        // Forces ignore the uncertainty, so contacts rest as if there were none.
-        let given = state.uncertainty.is_some().then(|| State { uncertainty: None, ..state.clone() });
+        // Forces check the uncertainty but ignore it, so contacts rest as if there were none.
+        let checked = |_| state.check(self.robot).map(|()| State { uncertainty: None, ..state.clone() });
+        let given = state.uncertainty.as_ref().map(checked).transpose()?;
         let mut prepared = self.prepare(given.as_ref().unwrap_or(state))?;
         self.refuse_uneven(&prepared)?;
         let Prepared { velocity, foot, levels, still, impact, .. } = &mut *prepared;
