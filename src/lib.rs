@@ -3,7 +3,7 @@
 //! A foot strikes the ground. Most simulators assume that it sticks and return one answer. In some states, no outcome
 //! in which the foot sticks exists, and the other foot slides at any friction. In other states, several outcomes are
 //! equally valid. This crate reads a robot's URDF and a state just before the impact. It finds all outcomes with their
-//! modes, impulses and velocities, and tells whether the answer is unique, ambiguous or absent.
+//! modes, impulses and velocities, and states whether the answer is unique, ambiguous or absent.
 //!
 //! # Data flow
 //!

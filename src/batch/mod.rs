@@ -282,7 +282,7 @@ impl Answerer<'_> {
         if !impact.notes.is_empty() {
             // Notes on odd numbers come first in the list.
             let odd = state.oddities(robot);
-            // The verdict already tells that nothing touches.
+            // The verdict already states that nothing touches.
             let mut others = impact.notes.iter().skip(odd.len()).filter(|_| !impact.contacts.is_empty());
             let other = others.find(|note| !note.contains(AT_REST)).cloned();
             let of = |what| OddStates { states: 1, first: Some(Oddity { state: place(), what }) };

@@ -183,7 +183,7 @@ pub struct ModeCount {
     pub modes: Vec<Mode>,
     /// How many outcomes have these modes.
     pub outcomes: u64,
-    /// A hash by which most different lists are told apart quickly.
+    /// A hash by which most different lists are distinguished quickly.
     #[serde(skip)]
     key: u64,
 }

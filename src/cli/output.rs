@@ -73,7 +73,7 @@ const FORMATS: [&str; 22] = [
 /// Endings that are refused only for outputs: the first bytes of such an input lead to an error with a better remedy.
 const PACKED: [&str; 8] = ["bz2", "gz", "ods", "pq", "xls", "xz", "zip", "zst"];
 
-/// Refuses a file whose ending means another format than the command's; `is_written` tells an output from an input.
+/// Refuses a file whose ending means another format than the command's; `is_written` is true for an output.
 /// `reason` names the formats of the command, and `option` is the option that overrides the ending.
 pub(super) fn check_ending(
     (path, is_written): (Option<&Path>, bool),

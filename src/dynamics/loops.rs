@@ -253,7 +253,7 @@ pub fn eliminate_loops<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
 }
 
 /// Corrects `velocity` (dq/dt by coordinate) by the impulses that close the loops: v := v - M^-1 K^T W^-1 K v. `closed`
-/// tells whether it is a velocity, a change of velocity or an acceleration. Returns the amplitude of each constraint,
+/// states whether it is a velocity, a change of velocity or an acceleration. Returns the amplitude of each constraint,
 /// for [`loop_impulse`] and [`spent_energy`].
 pub fn close<T: Real>(
     plan: &Plan<T>,

@@ -361,7 +361,7 @@ pub(super) fn about_massless(robot: &Robot) -> Vec<String> {
     // For each rigid body: whether it extends from joint to joint or touches the ground, and whether any part has mass.
     let rigid: Vec<usize> = (0..robot.bodies.len()).map(|body| robot.rigid_body(body)).collect();
     let [mut has_length, mut weighs] = [vec![false; rigid.len()], vec![false; rigid.len()]];
-    // `carries` is like `weighs`, but includes all bodies that the body carries. `resists` tells whether any of them
+    // `carries` is like `weighs`, but includes all bodies that the body carries. `resists` states whether any of them
     // resists the body's own motion. Bodies behind a joint with the same axis do not, because that joint can turn back.
     let [mut carries, mut resists] = [vec![false; rigid.len()], vec![false; rigid.len()]];
     // A mimic joint that follows this joint may move a mass.
