@@ -73,7 +73,7 @@ impl ReferencePose {
 
     /// Freezes mimic joints at their offset if their mimicked joint is frozen at zero. Returns whether there were any.
     ///
-    /// This applies only if `stay(mimic joint, mimicked joint, turns)` is true. `turns` tells whether the mimic joint
+    /// This applies only if `stay(mimic joint, mimicked joint, turns)` is true. `turns` states whether the mimic joint
     /// is on the path from the root to the mimicked joint, and so rotates it.
     pub(super) fn follow(&mut self, description: &Description, stay: impl Fn(usize, usize, bool) -> bool) -> bool {
         let mut moved = false;

@@ -11,7 +11,7 @@ use super::{Ordered, Real, Residue, Sign, Trigonometry};
 pub struct Certified<B> {
     /// The enclosure of the number.
     pub enclosure: B,
-    /// The residue of the number, which tells whether it is zero.
+    /// The residue of the number, which shows whether it is zero.
     pub residue: Residue,
 }
 

@@ -137,7 +137,7 @@ impl Gait<'_> {
             let shift_z = found.touchdown.as_ref().expect("a touchdown").shift_z;
             // Tables in three dimensions have nine digits, also for x up to 33 m.
             assert!((shift_z - expected.shift_z).abs() < 1e-8, "{place}: {shift_z} {}", expected.shift_z);
-            // The tolerance tells heel and toe apart, which are 0.28 m from each other.
+            // The tolerance distinguishes heel and toe, which are 0.28 m from each other.
             let x = found.contacts[0].point.expect("a point").x;
             let should = self.strikes_at(expected);
             assert!((x - should).abs() < 1e-7, "{place}: {x} {should}");

@@ -56,7 +56,7 @@ pub fn difference(one: &Impact, other: &Impact, rate: Option<f64>) -> Result<(),
         return Err(format!("verdict, rank and index sum {found:?} and {expected:?}"));
     }
     if let (Some(one), Some(other)) = (a.condition, b.condition) {
-        // A condition tells how many of its own digits are lost.
+        // A condition shows how many of its own digits are lost.
         compare(TOLERANCE, "conditions", &[one.recip()], &[other.recip()], 1.0)?;
     }
     let [a, b] = [one, other].map(sorted);
