@@ -48,15 +48,22 @@ impl<'a, T: Trigonometry> Computation<'a, T> {
         velocity.extend(state.velocity.iter().map(|&entry| T::from_f64(entry)));
     }
 
-    /// Computes G by the sparse factorization of M, or without M. The factorization also computes J and c, because
-    /// loops are eliminated from them and from G.
-    pub fn delassus(&mut self, by: Elimination) {
-        self.assembly.elimination = by;
+    /// Computes G by the sparse factorization of M, which never fails, and J and c, because loops are eliminated from
+    /// them and from G.
+    pub fn by_ltl(&mut self) -> bool {
+        self.assembly.elimination = Elimination::Ltl;
         self.assembly.factorize();
-        if by == Elimination::Ltl {
-            self.velocities();
-        }
+        self.velocities();
         self.assembly.delassus();
+        true
+    }
+
+    /// Computes G without M, which never fails.
+    pub fn by_articulated_bodies(&mut self) -> bool {
+        self.assembly.elimination = Elimination::ArticulatedBodies;
+        self.assembly.factorize();
+        self.assembly.delassus();
+        true
     }
 
     /// Computes J and the contact velocities c = J v.
@@ -76,7 +83,7 @@ impl<'a, T: Trigonometry> Computation<'a, T> {
 
 impl Computation<'_, f64> {
     /// Computes G by a dense Cholesky factorization of M; returns false if M is not numerically positive definite.
-    pub fn delassus_by_cholesky(&mut self) -> bool {
+    pub fn by_dense_cholesky(&mut self) -> bool {
         mass_matrix(&self.assembly.plan, &mut self.assembly.workspace);
         self.velocities();
         let nv = self.assembly.plan.columns();

@@ -43,12 +43,11 @@ pub fn mass_matrix_condition(plan: &Plan, workspace: &Workspace) -> f64 {
 fn growth(length: usize, map: impl Fn(&[f64]) -> Vec<f64>) -> f64 {
     // The first vector neither misses a direction nor prefers one.
     let mut vector: Vec<f64> = (0..length).map(|index| libm::sin(1.0 + index as f64)).collect();
-    let mut norm = 0.0;
+    let norm = |vector: &[f64]| vector.iter().map(|entry| entry * entry).sum::<f64>().sqrt();
     for _ in 0..STEPS {
-        let length = vector.iter().map(|entry| entry * entry).sum::<f64>().sqrt();
+        let length = norm(&vector);
         vector.iter_mut().for_each(|entry| *entry /= length);
         vector = map(&vector);
-        norm = vector.iter().map(|entry| entry * entry).sum::<f64>().sqrt();
     }
-    norm
+    norm(&vector)
 }

@@ -8,7 +8,6 @@
 use super::computation::{Computation, Factorization};
 use super::number::Number;
 use crate::dynamics::{Workspace, mass_matrix};
-use crate::pipeline::assembly::Elimination;
 use crate::pipeline::exact::{Contacts, ExactState};
 use crate::planar::Rotation;
 use crate::robot::Robot;
@@ -41,11 +40,11 @@ impl<'a> Reference<'a> {
         let mut computation = Computation::new(state);
         computation.place();
         let factorization = if computation.assembly.has_articulated_bodies() {
-            computation.delassus(Elimination::ArticulatedBodies);
+            computation.by_articulated_bodies();
             computation.velocities();
             Factorization::ArticulatedBodies
         } else {
-            computation.delassus(Elimination::Ltl);
+            computation.by_ltl();
             Factorization::SparseLtl
         };
         Self { factorization, contacts: computation.collect(), computation }

@@ -67,8 +67,7 @@ pub fn chain(links: usize) -> Robot {
 }
 
 /// Returns `robot` with all masses multiplied by `mass` and all lengths by `length`.
-pub fn resized(robot: &Robot, mass: f64, length: f64) -> Robot {
-    let mut robot = robot.clone();
+pub fn resized(mut robot: Robot, mass: f64, length: f64) -> Robot {
     for body in &mut robot.bodies {
         body.mass *= mass;
         body.com = body.com * length;

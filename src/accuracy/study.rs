@@ -9,7 +9,7 @@ use super::timing::{Budget, Spread, time};
 use crate::Error;
 use crate::impact::enumerate::Tableau;
 use crate::impact::{Analysis, AnalysisOptions, ContactProblem, Scratch, Verdict};
-use crate::pipeline::assembly::{Assembly, Elimination};
+use crate::pipeline::assembly::Assembly;
 use crate::pipeline::exact::{Contacts, ExactState};
 use crate::pipeline::{Options, Pipeline};
 use crate::planar::Pair;
@@ -145,40 +145,30 @@ pub fn of_state(name: &str, robot: &Robot, state: &State, options: &Options, bud
     let found = pipeline.impact(state).and_then(|impact| Ok((impact, pipeline.prepare(state)?)));
     let (impact, prepared) = match found {
         Ok(found) => found,
-        Err(error) => return study.refuse(error),
+        Err(error) => return CaseStudy { refused: Some(error), ..study },
     };
     let exact = pipeline.exact(state, &prepared);
     study.contacts = impact.contacts.len();
-    let analysis = match impact.analyzed() {
-        Ok(analysis) => study.answered(analysis),
-        Err(error) => {
-            study = study.refuse(error);
-            None
-        }
-    };
+    let analysis = impact.analyzed().map_err(|error| study.refused = Some(error)).ok();
+    analysis.into_iter().for_each(|analysis| study.answered(analysis));
     with_precision(robot, || {
         let (problem, mut reference) = (&impact.problem, None);
         let time = time(Budget { samples: 5, ..budget }, || reference = Some(Reference::new(&exact)));
         let Some(reference) = reference else { return };
-        let (condition, methods) = (None, Vec::new());
-        let mut bench = Bench { state: &exact, problem, reference, analysis, budget, condition, methods };
-        bench.every_method(time);
-        study.condition.mass_matrix = bench.condition;
-        study.methods = bench.methods;
+        let bench = Bench { state: &exact, problem, reference, analysis, budget, methods: Vec::new() };
+        (study.condition.mass_matrix, study.methods) = bench.every_method(time);
     });
-    for (number, proves) in answers(!options.no_proof) {
+    study.methods.extend(answers(!options.no_proof, |proves| {
         let mut pipeline = Pipeline::new(robot, Options { no_proof: !proves, ..options.clone() });
-        let whole = time(budget, || {
-            std::hint::black_box(&pipeline.impact(state));
-        });
-        study.methods.push(Method::new(number, Work::Answer, Some(whole)));
-    }
+        time(budget, || pipeline.impact(state))
+    }));
     study
 }
 
-/// Returns the methods that give the whole answer, each with whether it proves the answer.
-fn answers(prove: bool) -> impl Iterator<Item = (&'static str, bool)> {
-    [("f64", false), ("f64 with proof", true)].into_iter().filter(move |(_, proves)| prove || !proves)
+/// Times the whole answer without its proof and, with `prove`, with it.
+fn answers(prove: bool, mut timed: impl FnMut(bool) -> Spread) -> Vec<Method> {
+    let ways = [("f64", false), ("f64 with proof", true)].into_iter().filter(|(_, proves)| prove || !proves);
+    ways.map(|(number, proves)| Method::new(number, Work::Answer, Some(timed(proves)))).collect()
 }
 
 /// Studies a contact problem given as matrices, which are taken as exact.
@@ -190,7 +180,7 @@ pub fn of_problem(name: &str, problem: &ContactProblem, prove: bool, budget: Bud
         |prove| scratch.analyze(problem, problem, AnalysisOptions { prove, ..AnalysisOptions::default() });
     let analysis = match analyze(prove) {
         Ok(analysis) => analysis,
-        Err(error) => return study.refuse(error),
+        Err(error) => return CaseStudy { refused: Some(error), ..study },
     };
     study.answered(&analysis);
     Interval::scope(PRECISION, || {
@@ -203,21 +193,12 @@ pub fn of_problem(name: &str, problem: &ContactProblem, prove: bool, budget: Bud
         row("f64", outcome_error(&analysis, problem, &exact));
         row("double-double", outcome_error(&analysis, &problem.map(DoubleDouble::from_f64), &exact));
     });
-    for (number, proves) in answers(prove) {
-        let whole = time(budget, || {
-            std::hint::black_box(&analyze(proves));
-        });
-        study.methods.push(Method::new(number, Work::Answer, Some(whole)));
-    }
+    study.methods.extend(answers(prove, |proves| time(budget, || analyze(proves))));
     study
 }
 
 impl CaseStudy {
-    fn refuse(self, error: Error) -> Self {
-        Self { refused: Some(error), ..self }
-    }
-
-    fn answered<'a>(&mut self, analysis: &'a Analysis) -> Option<&'a Analysis> {
+    fn answered(&mut self, analysis: &Analysis) {
         let margins = analysis.outcomes.iter().filter_map(|outcome| outcome.margin);
         self.answer = Some(AnswerSummary {
             verdict: analysis.verdict,
@@ -228,7 +209,6 @@ impl CaseStudy {
             rank: analysis.rank,
         });
         self.condition.delassus = analysis.condition;
-        Some(analysis)
     }
 }
 
@@ -249,102 +229,82 @@ struct Bench<'a> {
     reference: Reference<'a>,
     analysis: Option<&'a Analysis>,
     budget: Budget,
-    /// Condition number of M.
-    condition: Option<f64>,
     methods: Vec<Method>,
 }
 
 impl<'a> Bench<'a> {
-    /// Runs every method; `time` is the run time of the reference.
-    fn every_method(&mut self, time: Spread) {
-        use Factorization::{ArticulatedBodies, SparseLtl};
-        self.method::<f32>("f32", SparseLtl);
-        self.method::<f32>("f32", ArticulatedBodies);
-        let factorized = self.method::<f64>("f64", SparseLtl);
-        self.condition = factorized.map(|Computation { assembly: Assembly { plan, workspace, .. }, .. }| {
+    /// Runs every method, and returns the condition number of M and the results; `time` is the run time of the
+    /// reference.
+    fn every_method(mut self, time: Spread) -> (Option<f64>, Vec<Method>) {
+        use Factorization::{ArticulatedBodies, DenseCholesky, SparseLtl};
+        self.method::<f32>("f32", SparseLtl, Computation::by_ltl);
+        self.method::<f32>("f32", ArticulatedBodies, Computation::by_articulated_bodies);
+        let factorized = self.method::<f64>("f64", SparseLtl, Computation::by_ltl);
+        let condition = |Computation { assembly: Assembly { plan, workspace, .. }, .. }: Computation<f64>| {
             mass_matrix_condition(&plan, &workspace)
-        });
-        self.dense_cholesky();
-        self.method::<f64>("f64", ArticulatedBodies);
-        if self.state.position.len() <= LONGEST_FACTORIZED {
-            self.method::<DoubleDouble>("double-double", SparseLtl);
-        } else {
-            self.leave_out("double-double", SparseLtl, TOO_LONG);
-        }
-        self.method::<DoubleDouble>("double-double", ArticulatedBodies);
+        };
+        let condition = factorized.map(condition);
+        self.method::<f64>("f64", DenseCholesky, Computation::by_dense_cholesky);
+        self.method::<f64>("f64", ArticulatedBodies, Computation::by_articulated_bodies);
+        self.method::<DoubleDouble>("double-double", SparseLtl, Computation::by_ltl);
+        self.method::<DoubleDouble>("double-double", ArticulatedBodies, Computation::by_articulated_bodies);
         let error = MethodErrors { mass_matrix: None, delassus: Some(self.reference.own_error()), outcome: None };
         let method = Method::delassus("reference", self.reference.factorization, Some(time));
         self.methods.push(Method { error: Some(error), ..method });
+        (condition, self.methods)
     }
 
-    fn leave_out(&mut self, number: &'static str, factorization: Factorization, why: &'static str) {
-        let method = Method::delassus(number, factorization, None);
-        self.methods.push(Method { left_out: Some(why), ..method });
-    }
-
-    /// Runs one method and returns its computation; `None` if the method was left out.
-    fn method<T: Number>(&mut self, number: &'static str, factorization: Factorization) -> Option<Computation<'a, T>> {
+    /// Runs one method; `delassus` computes G, or returns false if it cannot. Returns the computation of G; `None` if
+    /// there is none.
+    fn method<T: Number>(
+        &mut self,
+        number: &'static str,
+        factorization: Factorization,
+        delassus: fn(&mut Computation<'a, T>) -> bool,
+    ) -> Option<Computation<'a, T>> {
         let mut computation = Computation::<T>::new(self.state);
-        let by = match factorization {
-            Factorization::ArticulatedBodies => Elimination::ArticulatedBodies,
-            Factorization::SparseLtl | Factorization::DenseCholesky => Elimination::Ltl,
+        let assembly = &computation.assembly;
+        let left_out = match factorization {
+            Factorization::ArticulatedBodies => (!assembly.has_articulated_bodies()).then_some(NOT_ARTICULATED),
+            Factorization::DenseCholesky => assembly.is_constrained().then_some(NOT_DENSE),
+            Factorization::SparseLtl => {
+                let is_long = number == "double-double" && self.state.position.len() > LONGEST_FACTORIZED;
+                is_long.then_some(TOO_LONG)
+            }
         };
-        if by == Elimination::ArticulatedBodies && !computation.assembly.has_articulated_bodies() {
-            self.leave_out(number, factorization, NOT_ARTICULATED);
+        if left_out.is_some() {
+            self.methods.push(Method { left_out, ..Method::delassus(number, factorization, None) });
             return None;
-        }
-        let spread = time(self.budget, || {
-            computation.place();
-            computation.delassus(by);
-            std::hint::black_box(&computation.assembly.workspace);
-        });
-        self.take(number, factorization, spread, &mut computation);
-        Some(computation)
-    }
-
-    fn dense_cholesky(&mut self) {
-        let mut computation = Computation::<f64>::new(self.state);
-        if computation.assembly.is_constrained() {
-            return self.leave_out("f64", Factorization::DenseCholesky, NOT_DENSE);
         }
         let mut succeeds = true;
         let spread = time(self.budget, || {
             computation.place();
-            succeeds &= computation.delassus_by_cholesky();
+            succeeds &= delassus(&mut computation);
         });
-        if succeeds {
-            return self.take("f64", Factorization::DenseCholesky, spread, &mut computation);
-        }
-        self.methods.push(Method::delassus("f64", Factorization::DenseCholesky, Some(spread)));
+        let error = succeeds.then(|| self.errors(number, factorization, &mut computation));
+        self.methods.push(Method { error, ..Method::delassus(number, factorization, Some(spread)) });
+        error.map(|_| computation)
     }
 
-    fn take<T: Number>(
-        &mut self,
-        number: &'static str,
-        factorization: Factorization,
-        time: Spread,
-        computation: &mut Computation<T>,
-    ) {
-        let delassus = self.reference.delassus_error(&computation.assembly.workspace.delassus);
-        let mass_matrix = match factorization {
-            Factorization::ArticulatedBodies => None,
-            Factorization::SparseLtl => {
-                Some(self.reference.mass_matrix_error(&computation.assembly.workspace.mass_matrix))
+    fn errors<T: Number>(&self, number: &str, by: Factorization, computation: &mut Computation<T>) -> MethodErrors {
+        let workspace = &computation.assembly.workspace;
+        let delassus = Some(self.reference.delassus_error(&workspace.delassus));
+        let mass_matrix = match by {
+            Factorization::ArticulatedBodies => {
+                computation.velocities();
+                None
             }
+            Factorization::SparseLtl => Some(self.reference.mass_matrix_error(&workspace.mass_matrix)),
             // Dense Cholesky factorizes the same M.
             Factorization::DenseCholesky => {
                 self.methods.iter().find(|method| method.number == number).and_then(|method| method.error?.mass_matrix)
             }
         };
-        if factorization == Factorization::ArticulatedBodies {
-            computation.velocities();
-        }
         let outcome = self.analysis.and_then(|analysis| {
             let problem = filled(self.problem, &computation.collect());
             outcome_error(analysis, &problem, &filled(self.problem, &self.reference.contacts))
         });
-        let error = Some(MethodErrors { mass_matrix, delassus: Some(delassus), outcome });
-        self.methods.push(Method { error, ..Method::delassus(number, factorization, Some(time)) });
+        MethodErrors { mass_matrix, delassus, outcome }
     }
 }
 

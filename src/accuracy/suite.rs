@@ -65,11 +65,12 @@ pub fn cases() -> Result<Vec<Case>> {
 struct Suite(Vec<Case>);
 
 impl Suite {
-    fn state(&mut self, name: impl Into<String>, robot: Robot, state: State) {
-        self.ending(name, robot, state, Expected::Answered);
+    fn state(&mut self, name: impl Into<String>, robot: Robot, state: impl FnOnce(&Robot) -> State) {
+        self.ending(Expected::Answered, name, robot, state);
     }
 
-    fn ending(&mut self, name: impl Into<String>, robot: Robot, state: State, end: Expected) {
+    fn ending(&mut self, end: Expected, name: impl Into<String>, robot: Robot, state: impl FnOnce(&Robot) -> State) {
+        let state = state(&robot);
         self.0.push(Case { name: name.into(), subject: CaseSubject::State(Box::new((robot, state))), end });
     }
 
@@ -86,46 +87,43 @@ impl Suite {
                         body.moment *= factor;
                     }
                 });
-                let state = ramone(&robot, 0.5);
-                self.state(format!("{part} mass times {factor:e}"), robot, state);
+                self.state(format!("{part} mass times {factor:e}"), robot, |robot| ramone(robot, 0.5));
             }
         }
         for (name, factor) in [("needle", 1e-12), ("point", 0.0)] {
             let robot = robots::with_bodies(robots::ramone()?, |body| body.moment *= factor);
-            let state = ramone(&robot, 0.5);
-            self.state(format!("{name} inertias"), robot, state);
+            self.state(format!("{name} inertias"), robot, |robot| ramone(robot, 0.5));
         }
         // A leg whose point mass lies 1 nm from its hinge turns at a touch.
         for (name, com, end) in [("1 nm off", -1e-9, Expected::Answered), ("at", 0.0, Expected::Singular)] {
             let mut robot = robots::minimalistic()?;
             robot.bodies[1].com = Vector::new(0.0, com);
-            let state = walker(&robot, 1.4);
-            self.ending(format!("a leg's point mass {name} its hinge"), robot, state, end);
+            self.ending(end, format!("a leg's point mass {name} its hinge"), robot, |robot| walker(robot, 1.4));
         }
         let robot = robots::with_massless_feet()?;
-        let feet = State { scene: Scene { braked: vec![1, 2], ..standing(&robot, 2) }, ..with_feet(&robot) };
-        self.state("massless feet, held", robot.clone(), feet);
-        let scene = Scene { rotor_inertia: vec![0.0, 1e-6, 1e-6], ..standing(&robot, 2) };
-        self.state("massless feet with rotors", robot.clone(), State { scene, ..with_feet(&robot) });
-        let loose = with_feet(&robot);
-        self.ending("massless feet, loose", robot, loose, Expected::Singular);
+        let with = |scene| move |robot: &Robot| State { scene, ..with_feet(robot) };
+        self.state("massless feet, held", robot.clone(), with(Scene { braked: vec![1, 2], ..standing(&robot, 2) }));
+        let rotors = Scene { rotor_inertia: vec![0.0, 1e-6, 1e-6], ..standing(&robot, 2) };
+        self.state("massless feet with rotors", robot.clone(), with(rotors));
+        self.ending(Expected::Singular, "massless feet, loose", robot, with_feet);
         Ok(())
     }
 
     fn chains(&mut self) {
         for links in [10, 100, 1000] {
             for (pose, bend) in [("folded", 2.5), ("curved", 0.1), ("straight", 0.0)] {
-                let robot = robots::chain(links);
-                let mut state = blank(&robot);
-                for (index, angle) in state.position[3..].iter_mut().enumerate() {
-                    *angle = if index % 2 == 0 || pose == "curved" { bend } else { -bend };
-                }
-                state.position[2] = 0.3;
-                state.velocity[..3].copy_from_slice(&[0.5, -1.0, 0.1]);
-                let ends = [(0, [0.0; 3]), (1, [0.0, 0.0, -1.0])];
-                let contact = |(link, offset)| NamedContact { link, offset, radius: 0.0 };
-                state.scene.contacts = Some(ends.map(contact).to_vec());
-                self.state(format!("chain of {links} links, {pose}"), robot, state);
+                self.state(format!("chain of {links} links, {pose}"), robots::chain(links), |robot| {
+                    let mut state = blank(robot);
+                    for (index, angle) in state.position[3..].iter_mut().enumerate() {
+                        *angle = if index % 2 == 0 || pose == "curved" { bend } else { -bend };
+                    }
+                    state.position[2] = 0.3;
+                    state.velocity[..3].copy_from_slice(&[0.5, -1.0, 0.1]);
+                    let ends = [(0, [0.0; 3]), (1, [0.0, 0.0, -1.0])];
+                    let contact = |(link, offset)| NamedContact { link, offset, radius: 0.0 };
+                    state.scene.contacts = Some(ends.map(contact).to_vec());
+                    state
+                });
             }
         }
     }
@@ -134,43 +132,39 @@ impl Suite {
         let ramone_mass = robots::ramone()?.mass();
         for (weight, kilograms) in [("a milligram", 1e-6), ("RAMone's weight", ramone_mass), ("a kiloton", 1e6)] {
             for (length, meters) in [("millimeters", 1e-3), ("meters", 1.0), ("kilometers", 1e3)] {
-                let robot = robots::resized(&robots::ramone()?, kilograms / ramone_mass, meters);
-                let state = ramone(&robot, 0.5);
-                self.state(format!("{weight}, {length}"), robot, state);
+                let robot = robots::resized(robots::ramone()?, kilograms / ramone_mass, meters);
+                self.state(format!("{weight}, {length}"), robot, |robot| ramone(robot, 0.5));
             }
         }
         Ok(())
     }
 
     fn poses(&mut self) -> Result<()> {
-        let robot = robots::ramone()?;
-        let legs = |left: [f64; 2], right: [f64; 2]| {
-            let mut state = ramone(&robot, 0.0);
-            state.position[3..].copy_from_slice(&[left[0], left[1], right[0], right[1]]);
-            state.velocity[3..].copy_from_slice(&[0.1, 0.2, -0.3, 0.4]);
-            state
-        };
-        self.state("straight legs", robot.clone(), legs([0.4, 0.0], [-0.4, 0.0]));
-        self.state("legs bent by 1e-8", robot.clone(), legs([0.4, -1e-8], [-0.4, -1e-8]));
-        self.state("straight legs, coincident feet", robot.clone(), legs([0.0, 0.0], [0.0, 0.0]));
-        self.state("coincident feet", robot.clone(), legs([0.4, -0.8], [0.4, -0.8]));
-        self.state("feet 1e-8 apart", robot.clone(), legs([0.4, -0.8], [0.4 + 1e-8, -0.8 - 2e-8]));
+        for (name, joints) in [
+            ("straight legs", [0.4, 0.0, -0.4, 0.0]),
+            ("legs bent by 1e-8", [0.4, -1e-8, -0.4, -1e-8]),
+            ("straight legs, coincident feet", [0.0; 4]),
+            ("coincident feet", [0.4, -0.8, 0.4, -0.8]),
+            ("feet 1e-8 apart", [0.4, -0.8, 0.4 + 1e-8, -0.8 - 2e-8]),
+        ] {
+            self.state(name, robots::ramone()?, |robot| {
+                let mut state = ramone(robot, 0.0);
+                state.position[3..].copy_from_slice(&joints);
+                state.velocity[3..].copy_from_slice(&[0.1, 0.2, -0.3, 0.4]);
+                state
+            });
+        }
         for (name, alpha) in [("a split", FRAC_PI_2), ("1e-9 before a split", FRAC_PI_2 - 1e-9)] {
-            let robot = robots::walker(0.04)?;
-            let state = walker(&robot, alpha);
-            self.state(name, robot, state);
+            self.state(name, robots::walker(0.04)?, |robot| walker(robot, alpha));
             // With the legs in a split, point masses do not resist a rise of the hip. At 1e-9 rad before the split,
             // 1e-18 of the mass resists it, which is exactly zero in f64: M has a condition of 1e18, and an f64 answer
             // would have no digit.
-            let robot = robots::minimalistic()?;
-            let state = walker(&robot, alpha);
-            self.ending(format!("{name}, point masses"), robot, state, Expected::Singular);
+            let name = format!("{name}, point masses");
+            self.ending(Expected::Singular, name, robots::minimalistic()?, |robot| walker(robot, alpha));
         }
         // At this moment of inertia and angle every outcome touches every other.
         for (name, angle) in [("degenerate walker", FRAC_PI_4), ("one ulp beside it", FRAC_PI_4.next_up())] {
-            let robot = robots::walker(0.24)?;
-            let state = walker(&robot, angle);
-            self.state(name, robot, state);
+            self.state(name, robots::walker(0.24)?, |robot| walker(robot, angle));
         }
         Ok(())
     }
@@ -182,11 +176,12 @@ impl Suite {
                 Friction::Finite(mu) => format!("{mu:e}"),
                 Friction::Infinite => "infinite".to_owned(),
             };
-            for (legs, robot, alpha) in [("biped", robots::minimalistic()?, 1.4), ("RAMone", robots::ramone()?, 0.5)] {
-                let mut state = if legs == "biped" { walker(&robot, alpha) } else { ramone(&robot, alpha) };
+            let on = |mut state: State| {
                 state.scene.friction = ByLink::everywhere(friction);
-                self.state(format!("friction {name}, {legs}"), robot, state);
-            }
+                state
+            };
+            self.state(format!("friction {name}, biped"), robots::minimalistic()?, |robot| on(walker(robot, 1.4)));
+            self.state(format!("friction {name}, RAMone"), robots::ramone()?, |robot| on(ramone(robot, 0.5)));
         }
         Ok(())
     }
@@ -195,17 +190,19 @@ impl Suite {
         for (name, speed) in
             [("grazing contact", 0.0), ("approach at 1e-300 m/s", -1e-300), ("leaving at 1e-300 m/s", 1e-300)]
         {
-            let robot = robots::block()?;
-            let mut state = blank(&robot);
-            state.velocity[..2].copy_from_slice(&[1.0, speed]);
-            state.scene.friction = ByLink::everywhere(Friction::Finite(0.5));
-            self.state(name, robot, state);
+            self.state(name, robots::block()?, |robot| {
+                let mut state = blank(robot);
+                state.velocity[..2].copy_from_slice(&[1.0, speed]);
+                state.scene.friction = ByLink::everywhere(Friction::Finite(0.5));
+                state
+            });
         }
         for speed in [1e-100, 1e100] {
-            let robot = robots::ramone()?;
-            let mut state = ramone(&robot, 0.5);
-            state.velocity[2] *= speed;
-            self.state(format!("speeds times {speed:e}"), robot, state);
+            self.state(format!("speeds times {speed:e}"), robots::ramone()?, |robot| {
+                let mut state = ramone(robot, 0.5);
+                state.velocity[2] *= speed;
+                state
+            });
         }
         Ok(())
     }
@@ -214,9 +211,8 @@ impl Suite {
         // Borders between lift-off and sliding, sliding and stopping, one and three outcomes (paper, section 5).
         for (name, border) in [("lift-off", PI / 12.0), ("stop", FRAC_PI_6), ("three outcomes", 5.0 * PI / 12.0)] {
             for (side, angle) in [("before", border.next_down()), ("at", border), ("beyond", border.next_up())] {
-                let robot = robots::minimalistic()?;
-                let state = walker(&robot, angle);
-                self.state(format!("the f64 {side} the border to {name}"), robot, state);
+                let name = format!("the f64 {side} the border to {name}");
+                self.state(name, robots::minimalistic()?, |robot| walker(robot, angle));
             }
         }
         // G = 1 and c = (-1/2, -1): sticking needs a friction of exactly 1/2.
@@ -251,7 +247,7 @@ fn standing(robot: &Robot, link: usize) -> Scene {
 
 /// A two-legged walker at the paper's leg angle `alpha`, turning about its left foot at 1 rad/s.
 fn walker(robot: &Robot, alpha: f64) -> State {
-    let mut state = State { scene: standing(robot, 0), ..blank(robot) };
+    let mut state = State { scene: standing(robot, 0), ..State::zero(robot) };
     state.position[2..4].copy_from_slice(&[-alpha, -2.0 * alpha]);
     state.velocity[2] = -1.0;
     state
@@ -268,7 +264,7 @@ fn with_feet(robot: &Robot) -> State {
 /// RAMone at the paper's leg angle `alpha`, its knees bent by a right angle, turning about its left foot at 1 rad/s.
 fn ramone(robot: &Robot, alpha: f64) -> State {
     let foot = robot.link("left_foot").unwrap_or_default();
-    let mut state = State { scene: standing(robot, foot), ..blank(robot) };
+    let mut state = State { scene: standing(robot, foot), ..State::zero(robot) };
     state.position[3..].copy_from_slice(&[RAMONE_HIP + alpha, -FRAC_PI_2, RAMONE_HIP - alpha, -FRAC_PI_2]);
     state.velocity[2] = -1.0;
     state

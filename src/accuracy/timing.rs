@@ -33,9 +33,10 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Returns the quartiles of `samples`, which are in ascending order; NaN if there are none.
-    pub fn of_sorted(samples: &[f64]) -> Self {
-        let [lower_quartile, median, upper_quartile] = [0.25, 0.5, 0.75].map(|share| quantile(samples, share));
+    /// Returns the quartiles of `samples` \[s\]; NaN if there are none.
+    pub fn of(mut samples: Vec<f64>) -> Self {
+        samples.sort_by(f64::total_cmp);
+        let [lower_quartile, median, upper_quartile] = [0.25, 0.5, 0.75].map(|share| quantile(&samples, share));
         Self { lower_quartile, median, upper_quartile, samples: samples.len() }
     }
 }
@@ -54,32 +55,28 @@ pub fn quantile(sorted: &[f64], share: f64) -> f64 {
 const SAMPLE: Duration = Duration::from_micros(20);
 
 /// Measures the run time of `work` in repeated runs.
-pub fn time(budget: Budget, mut work: impl FnMut()) -> Spread {
-    let once = |work: &mut dyn FnMut(), runs: u32| {
+pub fn time<R>(budget: Budget, mut work: impl FnMut() -> R) -> Spread {
+    let mut timed = |runs: u32| {
         let start = Instant::now();
-        (0..runs).for_each(|_| work());
+        (0..runs).for_each(|_| drop(std::hint::black_box(work())));
         start.elapsed()
     };
-    let first = once(&mut work, 1);
+    let first = timed(1);
     if first >= budget.time {
-        return spread(&mut [first.as_secs_f64()]);
+        return Spread::of(vec![first.as_secs_f64()]);
     }
     // Caches are warm now.
-    let warm = if first < SAMPLE { once(&mut work, 8) / 8 } else { first };
-    let runs = (SAMPLE.as_nanos() / warm.as_nanos().max(1)).clamp(1, 100_000) as u32 + 1;
-    let runs = if warm >= SAMPLE { 1 } else { runs };
+    let warm = if first < SAMPLE { timed(8) / 8 } else { first };
+    let runs = match SAMPLE.as_nanos() / warm.as_nanos().max(1) {
+        _ if warm >= SAMPLE => 1,
+        runs => runs.clamp(1, 100_000) as u32 + 1,
+    };
     let start = Instant::now();
     let mut samples = Vec::new();
     while samples.len() < budget.samples.max(1) && (samples.len() < 3 || start.elapsed() < budget.time) {
-        samples.push(once(&mut work, runs).as_secs_f64() / f64::from(runs));
+        samples.push(timed(runs).as_secs_f64() / f64::from(runs));
     }
-    spread(&mut samples)
-}
-
-/// Returns the quartiles of at least one sample.
-fn spread(samples: &mut [f64]) -> Spread {
-    samples.sort_by(f64::total_cmp);
-    Spread::of_sorted(samples)
+    Spread::of(samples)
 }
 
 #[cfg(test)]
@@ -88,10 +85,10 @@ mod tests {
 
     #[test]
     fn quartiles_lie_between_neighbors() {
-        for (mut samples, expected) in
+        for (samples, expected) in
             [(vec![5.0, 1.0, 4.0, 2.0, 3.0], (2.0, 3.0, 4.0)), (vec![8.0, 1.0, 4.0, 2.0], (1.75, 3.0, 5.0))]
         {
-            let spread = spread(&mut samples);
+            let spread = Spread::of(samples);
             assert_eq!((spread.lower_quartile, spread.median, spread.upper_quartile), expected);
         }
         assert_eq!(quantile(&[1.0, f64::INFINITY, f64::INFINITY], 0.75), f64::INFINITY);

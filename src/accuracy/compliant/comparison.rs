@@ -2,7 +2,7 @@
 
 use super::frozen::{CompliantRun, TOLERANCE, run};
 use super::ground::SoftGround;
-use super::moving::Moving;
+use super::moving;
 use crate::accuracy::computation::Computation;
 use crate::accuracy::quantile;
 use crate::budget::{is_spent, within};
@@ -174,9 +174,20 @@ fn comparison(robot: &Robot, state: &State, options: &Options) -> Result<Option<
         }
     }
     let group = |parameter, value: Option<f64>, chosen: &dyn Fn(&SoftGround) -> bool| {
-        let chosen: Vec<NearestOutcome> =
-            landings.iter().filter(|(ground, _)| chosen(ground)).map(|&(_, landing)| landing).collect();
-        gather(parameter, value.filter(|value| value.is_finite()), &chosen, outcomes.len())
+        let chosen = || landings.iter().filter(|(ground, _)| chosen(ground)).map(|(_, landing)| landing);
+        let mut distances: Vec<f64> = chosen().map(|landing| landing.distance).collect();
+        distances.sort_by(f64::total_cmp);
+        let runs = distances.len();
+        let near_none = distances.iter().filter(|distance| **distance > NEAR).count();
+        let nearest = |outcome| chosen().filter(|landing| landing.outcome == outcome).count();
+        Group {
+            parameter,
+            value: value.filter(|value| value.is_finite()),
+            runs,
+            distance: [0.0, 0.5, 1.0].map(|share| quantile(&distances, share)),
+            nearest: (0..outcomes.len()).map(nearest).collect(),
+            near_none: near_none as f64 / runs.max(1) as f64,
+        }
     };
     let mut groups = vec![group(None, None, &|_| true)];
     type Pick = fn(&SoftGround) -> f64;
@@ -188,11 +199,10 @@ fn comparison(robot: &Robot, state: &State, options: &Options) -> Result<Option<
     for (name, values, pick) in parameters {
         groups.extend(values.iter().map(|&value| group(Some(name), Some(value), &|ground| pick(ground) == value)));
     }
-    let all = groups.first();
     let targets = outcomes.iter().enumerate().map(|(at, outcome)| Target {
         modes: outcome.modes.clone(),
         index: outcome.index,
-        nearest: all.map_or(0, |all| all.nearest[at]),
+        nearest: groups[0].nearest[at],
         near: landings.iter().filter(|(_, landing)| landing.outcome == at && landing.distance <= NEAR).count(),
     });
     Ok(Some(Comparison {
@@ -204,35 +214,18 @@ fn comparison(robot: &Robot, state: &State, options: &Options) -> Result<Option<
     }))
 }
 
-fn gather(parameter: Option<&'static str>, value: Option<f64>, landings: &[NearestOutcome], outcomes: usize) -> Group {
-    let mut distances: Vec<f64> = landings.iter().map(|landing| landing.distance).collect();
-    distances.sort_by(f64::total_cmp);
-    let runs = distances.len();
-    let nearest = |outcome| landings.iter().filter(|landing| landing.outcome == outcome).count();
-    let near_none = landings.iter().filter(|landing| landing.distance > NEAR).count();
-    Group {
-        parameter,
-        value,
-        runs,
-        distance: [0.0, 0.5, 1.0].map(|share| quantile(&distances, share)),
-        nearest: (0..outcomes).map(nearest).collect(),
-        near_none: near_none as f64 / runs.max(1) as f64,
-    }
-}
-
 /// The ground in the studies of tolerance and stiffness.
 const PLAIN: SoftGround = SoftGround { damping_ratio: 1.0, stiffness_ratio: 1.0, tangential_damping: 1.0 };
 
 fn by_tolerance(problem: &ContactProblem, outcomes: &[Outcome], energy: f64) -> Result<Vec<ByTolerance>> {
     let finest = run(problem, PLAIN, 1e-12)?;
-    let mut rows = Vec::new();
-    for tolerance in TOLERANCES {
+    let row = |tolerance| {
         let run = run(problem, PLAIN, tolerance)?;
-        let Some(landing) = landing(problem, outcomes, energy, &run) else { continue };
         let change = distance(problem, energy, &run.impulse, &finest.impulse);
-        rows.push(ByTolerance { tolerance, steps: run.steps, change, distance: landing.distance });
-    }
-    Ok(rows)
+        let landing = landing(problem, outcomes, energy, &run);
+        Ok(landing.map(|landing| ByTolerance { tolerance, steps: run.steps, change, distance: landing.distance }))
+    };
+    TOLERANCES.into_iter().filter_map(|tolerance| row(tolerance).transpose()).collect()
 }
 
 fn by_stiffness_of_moving(
@@ -247,12 +240,11 @@ fn by_stiffness_of_moving(
         return Ok(Vec::new());
     }
     computation.place();
-    computation.delassus(Elimination::Ltl);
+    computation.by_ltl();
     let Computation { mut assembly, velocity: mut before, .. } = computation;
     for (before, change) in before.iter_mut().zip(state.change(&mut assembly)) {
         *before += change;
     }
-    let friction = problem.friction().collect::<Vec<_>>();
     let mut after = |impulse: &[Pair<f64>]| {
         let mut velocity = before.clone();
         for (contact, &own) in impulse.iter().enumerate() {
@@ -267,18 +259,12 @@ fn by_stiffness_of_moving(
         let gap: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
         (kinetic_energy(plan, &gap, workspace, &mut Vec::new()).max(0.0) / energy).sqrt()
     };
-    let (robot, position) = (state.robot, state.position);
-    let moving = Moving { robot, assembly: &assembly, position, velocity: &before, friction: &friction };
-    let mut rows = Vec::new();
-    for stiffness in STIFFNESSES {
+    let row = |stiffness| {
         // If the integrator gives up, the row is empty and the study goes on.
-        let end = moving.run(PLAIN, stiffness, MOVING_TOLERANCE).ok();
+        let end = moving::run(state, (&assembly, &before), problem, PLAIN, stiffness).ok();
         let nearest = |end: &Vec<f64>| outcomes.iter().map(|outcome| apart(end, outcome)).fold(f64::INFINITY, f64::min);
         let change = end.as_ref().map(|end| apart(end, &frozen));
-        rows.push(ByStiffness { stiffness, change, distance: end.as_ref().map(nearest) });
-    }
-    Ok(rows)
+        ByStiffness { stiffness, change, distance: end.as_ref().map(nearest) }
+    };
+    Ok(STIFFNESSES.map(row).to_vec())
 }
-
-/// Finer than the difference that remains at a stiffness of 1e12 N/m.
-const MOVING_TOLERANCE: f64 = 1e-9;

@@ -8,7 +8,7 @@
 //! but damping and ratios do.
 
 use super::ground::{SoftGround, Suspension, mean_mobility};
-use super::integrate::{Limits, StiffEquations, integrate};
+use super::integrate::{StiffEquations, integrate};
 use crate::impact::ContactProblem;
 use crate::planar::Pair;
 use crate::{Reason, Result};
@@ -61,8 +61,7 @@ pub fn run(problem: &ContactProblem, ground: SoftGround, tolerance: f64) -> Resu
         free: problem.velocity_free().iter().map(|c| c.map(|entry| entry / speed)).collect(),
         suspension: Suspension::new(ground, spring, damper, problem.friction()),
     };
-    let limits = Limits { relative: tolerance, absolute: 0.01 * tolerance, horizon: HORIZON };
-    let end = integrate(&model, &vec![0.0; 4 * contacts], limits)?;
+    let end = integrate(&model, &vec![0.0; 4 * contacts], [tolerance, 0.01 * tolerance], HORIZON)?;
     let impulse = |i: usize| [0, 1].map(|k| end.state[2 * i + k] * speed / mean_mobility);
     Ok(CompliantRun {
         impulse: (0..contacts).map(impulse).collect(),
@@ -121,8 +120,8 @@ impl StiffEquations for Frozen {
                 jacobian[(2 * i + axis, 3 * n + i)] = by_stretch;
             }
             for at in 0..4 * n {
-                let tangential = jacobian[(2 * i, at)];
-                jacobian[(3 * n + i, at)] = self.suspension.stretch_derivative(tangential, at == 3 * n + i);
+                let by_itself = f64::from(at == 3 * n + i);
+                jacobian[(3 * n + i, at)] = self.suspension.stretch_rate(jacobian[(2 * i, at)], by_itself);
             }
         }
         jacobian

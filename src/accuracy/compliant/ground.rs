@@ -56,11 +56,8 @@ impl Suspension {
         let push = self.stiffness[1] * depth - self.damping[1] * velocity[1];
         let normal = if depth < 0.0 { 0.0 } else { push.max(0.0) };
         let bound = self.friction[contact] * normal;
-        let spring = self.stiffness[0] * stretch;
-        let tangential = (-spring - self.damping[0] * velocity[0]).clamp(-bound, bound);
-        // Spring and damper carry the force that friction allows, which gives the rate of the stretch; the rest is
-        // slip.
-        ([tangential, normal], -(tangential + spring) / self.damping[0])
+        let tangential = (-self.stiffness[0] * stretch - self.damping[0] * velocity[0]).clamp(-bound, bound);
+        ([tangential, normal], self.stretch_rate(tangential, stretch))
     }
 
     /// Returns the derivatives of the tangential and the normal force of [`Self::force`] by depth, stretch, and
@@ -80,11 +77,10 @@ impl Suspension {
         [along, push]
     }
 
-    /// Returns a derivative of the stretch's rate from that of the tangential force; `by_stretch` if it is by the
-    /// stretch.
-    pub fn stretch_derivative(&self, tangential: f64, by_stretch: bool) -> f64 {
-        let spring = if by_stretch { self.stiffness[0] } else { 0.0 };
-        -(tangential + spring) / self.damping[0]
+    /// Returns the rate of a stretch, or its derivative from those of the tangential force and of the stretch. Spring
+    /// and damper carry the force that friction allows; the rest is slip.
+    pub fn stretch_rate(&self, tangential: f64, stretch: f64) -> f64 {
+        -(tangential + self.stiffness[0] * stretch) / self.damping[0]
     }
 }
 

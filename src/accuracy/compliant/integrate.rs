@@ -61,36 +61,38 @@ pub(super) struct RunEnd {
     pub ended: bool,
 }
 
-/// Tolerances and duration of the integration.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Limits {
-    /// Relative tolerance.
-    pub relative: f64,
-    /// Absolute tolerance of every entry.
-    pub absolute: f64,
-    /// The end of the longest run, in the model's own time.
-    pub horizon: f64,
-}
-
-/// Integrates from `start`. The integrator is compiled for a few lengths of arrays: states that models see, and
-/// [`RunEnd::state`], are padded with zeros.
+/// Integrates from `start` with a relative and an absolute tolerance, to `horizon` in the model's own time. The
+/// integrator is compiled for a few lengths of arrays: states that models see, and [`RunEnd::state`], are padded with
+/// zeros.
 ///
 /// # Errors
 /// Returns [`Reason::Unsupported`] if the integrator gives up, or if the start is longer than the longest array.
-pub(super) fn integrate(model: &dyn StiffEquations, start: &[f64], limits: Limits) -> Result<RunEnd> {
-    match start.len() {
-        0..=4 => integrate_array::<4>(model, start, limits),
-        5..=8 => integrate_array::<8>(model, start, limits),
-        9..=16 => integrate_array::<16>(model, start, limits),
-        17..=40 => integrate_array::<40>(model, start, limits),
-        41..=128 => integrate_array::<128>(model, start, limits),
-        _ => Err(Error::new(Reason::Unsupported("compliant contact of so large a robot".into()))
-            .hint("hold joints that matter little")),
-    }
+pub(super) fn integrate(
+    model: &dyn StiffEquations,
+    start: &[f64],
+    tolerances: [f64; 2],
+    horizon: f64,
+) -> Result<RunEnd> {
+    let integrate = match start.len() {
+        0..=4 => integrate_array::<4>,
+        5..=8 => integrate_array::<8>,
+        9..=16 => integrate_array::<16>,
+        17..=40 => integrate_array::<40>,
+        41..=128 => integrate_array::<128>,
+        _ => {
+            let reason = Reason::Unsupported("compliant contact of so large a robot".into());
+            return Err(Error::new(reason).hint("hold joints that matter little"));
+        }
+    };
+    integrate(model, start, tolerances, horizon)
 }
 
-fn integrate_array<const N: usize>(model: &dyn StiffEquations, start: &[f64], limits: Limits) -> Result<RunEnd> {
-    let Limits { relative, absolute, horizon } = limits;
+fn integrate_array<const N: usize>(
+    model: &dyn StiffEquations,
+    start: &[f64],
+    [relative, absolute]: [f64; 2],
+    horizon: f64,
+) -> Result<RunEnd> {
     // Tolerances are given per entry: version 0.7 applies the power 2/3 to a single tolerance once per entry.
     let mut method =
         ImplicitRungeKutta::radau5().rtol([relative; N]).atol([absolute; N]).h0(FIRST_STEP).max_steps(MOST_STEPS);

@@ -10,11 +10,12 @@
 //! frozen model falls with 1 / sqrt(k_n).
 
 use super::ground::{SoftGround, Suspension, mean_mobility};
-use super::integrate::{Limits, StiffEquations, integrate};
+use super::integrate::{StiffEquations, integrate};
 use crate::Result;
 use crate::contact::Placement;
-use crate::law::Friction;
+use crate::impact::ContactProblem;
 use crate::pipeline::assembly::{Assembly, Elimination, Loads};
+use crate::pipeline::exact::ExactState;
 use crate::planar::{Pair, Vector};
 use crate::robot::Robot;
 use crate::state::Scene;
@@ -27,44 +28,55 @@ const HORIZON: f64 = 1e2;
 /// Forces and speeds below this part of those at which contacts close count as zero.
 const NOTHING: f64 = 1e-8;
 
-/// A robot just before it strikes, ready to be integrated.
-#[derive(Debug)]
-pub(super) struct Moving<'a> {
-    pub robot: &'a Robot,
-    /// The robot's dynamics, with the closed contacts and the factorized M.
-    pub assembly: &'a Assembly,
-    /// q \[m, rad\].
-    pub position: &'a [f64],
-    /// v \[m/s, rad/s\].
-    pub velocity: &'a [f64],
-    /// Friction of each contact.
-    pub friction: &'a [Friction],
-}
+/// Finer than the difference that remains at a stiffness of 1e12 N/m.
+const TOLERANCE: f64 = 1e-9;
 
-impl Moving<'_> {
-    /// Returns v when all contacts have opened, or after the longest run, on a ground of `stiffness` k_n \[N/m\].
-    ///
-    /// # Errors
-    /// Returns [`Reason::Unsupported`](crate::Reason::Unsupported) if the integrator gives up, or if twice the number
-    /// of coordinates plus the number of contacts exceeds 128.
-    pub fn run(&self, ground: SoftGround, stiffness: f64, tolerance: f64) -> Result<Vec<f64>> {
-        let dofs = self.position.len();
-        let model = Equation::new(self, ground, stiffness);
-        let mut start = vec![0.0; 2 * dofs + self.friction.len()];
-        for (entry, rate) in start[dofs..].iter_mut().zip(self.velocity) {
-            *entry = rate / model.speed;
-        }
-        let horizon = HORIZON * (1.0 + ground.damping_ratio);
-        let end = integrate(&model, &start, Limits { relative: tolerance, absolute: tolerance, horizon })?;
-        Ok(end.state[dofs..2 * dofs].iter().map(|rate| rate * model.speed).collect())
-    }
+/// Returns v \[m/s, rad/s\] when all contacts have opened, or after the longest run, on a ground of `stiffness` k_n
+/// \[N/m\]. `assembly` holds the closed contacts, and `velocity` is v just before they strike.
+///
+/// # Errors
+/// Returns [`Reason::Unsupported`](crate::Reason::Unsupported) if the integrator gives up, or if twice the number of
+/// coordinates plus the number of contacts exceeds 128.
+pub(super) fn run(
+    state: &ExactState,
+    (assembly, velocity): (&Assembly, &[f64]),
+    problem: &ContactProblem,
+    ground: SoftGround,
+    stiffness: f64,
+) -> Result<Vec<f64>> {
+    let mut assembly = assembly.clone();
+    move_to(&mut assembly, state.position, velocity);
+    assembly.delassus();
+    let contacts = assembly.points.len();
+    let mobility = |row: usize, column: usize| assembly.workspace.delassus[row * 2 * contacts + column];
+    let mean_mobility = mean_mobility(mobility, contacts);
+    let damping = 2.0 * ground.damping_ratio * (stiffness / mean_mobility).sqrt();
+    let speed = velocity.iter().fold(f64::MIN_POSITIVE, |speed: f64, rate| speed.max(rate.abs()));
+    let model = Equation {
+        robot: state.robot,
+        position: state.position,
+        suspension: Suspension::new(ground, stiffness, damping, problem.friction()),
+        start: places(&assembly, Vector::zero()),
+        mean_mobility,
+        period: (1.0 / (stiffness * mean_mobility)).sqrt(),
+        speed,
+        closing: assembly.workspace.contact_velocity.iter().fold(0.0, |most: f64, c| most.max(-c[1])),
+        assembly: RefCell::new(assembly),
+    };
+    let dofs = velocity.len();
+    let mut start = vec![0.0; 2 * dofs + contacts];
+    start[dofs..].iter_mut().zip(velocity).for_each(|(entry, rate)| *entry = rate / speed);
+    let end = integrate(&model, &start, [TOLERANCE; 2], HORIZON * (1.0 + ground.damping_ratio))?;
+    Ok(end.state[dofs..2 * dofs].iter().map(|rate| rate * speed).collect())
 }
 
 /// The equation of motion. A state holds the change of q since the start, then v, then the stretches of the tangential
 /// springs, in units of `period` and `speed`, in which all of them are of order one.
 #[derive(Debug)]
 struct Equation<'a> {
-    moving: &'a Moving<'a>,
+    robot: &'a Robot,
+    /// q at the start \[m, rad\].
+    position: &'a [f64],
     suspension: Suspension,
     /// The contact points at the start.
     start: Vec<Vector<f64>>,
@@ -95,40 +107,19 @@ fn places(assembly: &Assembly, base: Vector<f64>) -> Vec<Vector<f64>> {
     assembly.points.iter().map(|point| place(point.body) + point.arm(&assembly.workspace)).collect()
 }
 
-impl<'a> Equation<'a> {
-    fn new(moving: &'a Moving<'a>, ground: SoftGround, stiffness: f64) -> Self {
-        let mut assembly = moving.assembly.clone();
-        move_to(&mut assembly, moving.position, moving.velocity);
-        assembly.delassus();
-        let contacts = assembly.points.len();
-        let mobility = |row: usize, column: usize| assembly.workspace.delassus[row * 2 * contacts + column];
-        let mean_mobility = mean_mobility(mobility, contacts);
-        let damping = 2.0 * ground.damping_ratio * (stiffness / mean_mobility).sqrt();
-        Self {
-            suspension: Suspension::new(ground, stiffness, damping, moving.friction.iter().copied()),
-            start: places(&assembly, Vector::zero()),
-            mean_mobility,
-            period: (1.0 / (stiffness * mean_mobility)).sqrt(),
-            speed: moving.velocity.iter().fold(f64::MIN_POSITIVE, |speed: f64, rate| speed.max(rate.abs())),
-            closing: assembly.workspace.contact_velocity.iter().fold(0.0, |most: f64, c| most.max(-c[1])),
-            assembly: RefCell::new(assembly),
-            moving,
-        }
-    }
-
+impl Equation<'_> {
     /// Returns the rates of the state, and for each contact its normal force and normal velocity.
     fn evaluate(&self, state: &[f64]) -> (Vec<f64>, Vec<Pair<f64>>) {
-        let Moving { robot, position, .. } = *self.moving;
-        let dofs = position.len();
+        let dofs = self.position.len();
         let length = self.speed * self.period;
         let moved: Vec<f64> = state[..dofs].iter().map(|entry| entry * length).collect();
         let velocity: Vec<f64> = state[dofs..2 * dofs].iter().map(|entry| entry * self.speed).collect();
         let assembly = &mut *self.assembly.borrow_mut();
-        let position: Vec<f64> = position.iter().zip(&moved).map(|(q, moved)| q + moved).collect();
+        let position: Vec<f64> = self.position.iter().zip(&moved).map(|(q, moved)| q + moved).collect();
         move_to(assembly, &position, &velocity);
 
         let scene = Scene { gravity: Some(0.0), ..Scene::default() };
-        let loads = Loads { robot, scene: &scene, position: &position, steady: &[] };
+        let loads = Loads { robot: self.robot, scene: &scene, position: &position, steady: &[] };
         let (mut accelerations, _) = assembly.acceleration(&velocity, loads);
         let base = if assembly.plan.floating { Vector::new(moved[0], moved[1]) } else { Vector::zero() };
         let mut touching = Vec::with_capacity(self.start.len());

@@ -94,7 +94,7 @@ fn many(out: &mut String, studies: &[CaseStudy], Palette { strong, plain, .. }: 
         values.sort_by(f64::total_cmp);
         values
     };
-    let times = |method: &&Method| span(Spread::of_sorted(&sorted(method, |method| Some(method.time?.median))));
+    let times = |method: &&Method| span(Spread::of(sorted(method, |method| Some(method.time?.median))));
     let errors = |method: &&Method, share: f64| {
         let errors = sorted(method, |method| method.error?.delassus);
         if errors.is_empty() { "-".into() } else { digits(quantile(&errors, share)) }
