@@ -36,38 +36,20 @@ pub struct Trace<'s, 'm> {
     pub segments: Vec<Segment>,
 }
 
-/// A border that enters a cell, met on a counter-clockwise walk around it. Its left side is the one met before.
-#[derive(Debug, Clone)]
-struct BorderEntry {
-    point: [f64; 2],
-    sides: Sides,
-}
-
-impl BorderEntry {
-    /// Returns the segment of the border from here to `to`.
-    fn segment(&self, to: [f64; 2]) -> Segment {
-        Segment { from: self.point, to, sides: self.sides.clone() }
-    }
-}
-
 impl GridCell {
     /// Returns all borders that enter the cell, counter-clockwise from the least corner.
-    fn entries(&self) -> Vec<BorderEntry> {
-        let [[x0, y0], [x1, y1]] = self.corners;
-        let corners = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
+    fn entries(&self) -> Vec<Crossing> {
         let [below, right, above, left] = &self.edges;
         let walk = [below.clone(), right.clone(), above.reversed(), left.reversed()];
         let mut entries = Vec::new();
         let mut before = walk[3].last();
-        for (edge, point) in walk.iter().zip(corners) {
+        for edge in &walk {
             // A border may pass through the corner itself; the two edges then disagree about the corner.
             if *before != edge.first {
                 let sides = Sides { left: Arc::clone(before), right: Arc::clone(&edge.first), transition: None };
-                entries.push(BorderEntry { point, sides });
+                entries.push(Crossing { point: edge.line.point(edge.from), sides });
             }
-            for Crossing { at, sides } in &edge.crossings {
-                entries.push(BorderEntry { point: edge.line.point(*at), sides: sides.clone() });
-            }
+            entries.extend(edge.crossings.iter().cloned());
             before = edge.last();
         }
         entries
@@ -89,9 +71,10 @@ impl<'s, 'm> Trace<'s, 'm> {
         }
         let alike = |a: &Sides, b: &Sides| a.transition.is_some() && a.is_same_as(&b.reversed());
         let pairs = pairs(&entries, alike).or_else(|| pairs(&entries, |_, _| true));
+        let segment = |Crossing { point, sides }: &Crossing, to| Segment { from: *point, to, sides: sides.clone() };
         if let Some(pairs) = pairs {
             for [a, b] in pairs {
-                self.bend(entries[a].segment(entries[b].point), &cell.corners, BENDS);
+                self.bend(segment(&entries[a], entries[b].point), &cell.corners, BENDS);
             }
         } else if quarterings < QUARTERINGS && self.cells < MOST_CELLS {
             for quarter in self.quarters(&cell) {
@@ -99,7 +82,7 @@ impl<'s, 'm> Trace<'s, 'm> {
             }
         } else {
             let middle = cell.middle();
-            self.segments.extend(entries.iter().map(|entry| entry.segment(middle)));
+            self.segments.extend(entries.iter().map(|entry| segment(entry, middle)));
         }
     }
 
@@ -146,22 +129,19 @@ impl<'s, 'm> Trace<'s, 'm> {
         loop {
             let places = [-reach.min(rooms[0]), reach.min(rooms[1])];
             let [below, above] = places.map(|at| Probe { at, regime: line.regime(at) });
-            if reach == STRAIGHT && below.regime == *right && above.regime == *left {
+            let has_both = below.regime == *right && above.regime == *left;
+            if reach == STRAIGHT && has_both {
                 return None;
             }
-            let mut found = Vec::new();
-            bisect(&mut line, &below, &above, FOUND, &mut found);
+            let found = bisect(&mut line, &below, &above, FOUND);
             // Only borders between these two regimes count: others may be near.
             let own = found.iter().filter(|border| border.below.regime == *right && border.above.regime == *left);
             let off = own.map(Bracket::at).min_by(|a, b| a.abs().total_cmp(&b.abs()));
             if let Some(off) = off {
                 return (off.abs() > STRAIGHT).then(|| off_middle(off));
             }
-            // Both sides were found without a common border: a third region lies between them.
-            if below.regime == *right && above.regime == *left {
-                return None;
-            }
-            if reach >= rooms[0].max(rooms[1]) {
+            // If both sides were found without a common border, a third region lies between them.
+            if has_both || reach >= rooms[0].max(rooms[1]) {
                 return None;
             }
             reach *= 4.0;
@@ -194,10 +174,10 @@ impl<'s, 'm> Trace<'s, 'm> {
 
 /// Pairs each entry with the one that has the same regimes in reverse and is `alike`. `None` if an entry has no partner
 /// or several, or if the segments between partners would cross.
-fn pairs(entries: &[BorderEntry], alike: impl Fn(&Sides, &Sides) -> bool) -> Option<Vec<[usize; 2]>> {
+fn pairs(entries: &[Crossing], alike: impl Fn(&Sides, &Sides) -> bool) -> Option<Vec<[usize; 2]>> {
     let mut pairs = Vec::new();
-    for (at, BorderEntry { sides, .. }) in entries.iter().enumerate() {
-        let fits = |BorderEntry { sides: other, .. }: &BorderEntry| {
+    for (at, Crossing { sides, .. }) in entries.iter().enumerate() {
+        let fits = |Crossing { sides: other, .. }: &Crossing| {
             other.left == sides.right && other.right == sides.left && alike(sides, other)
         };
         let mut partners = (0..entries.len()).filter(|&other| other != at && fits(&entries[other]));

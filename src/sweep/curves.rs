@@ -63,14 +63,13 @@ impl RegionCurves {
             place.iter().for_each(|place| place.widen(&mut scales[*region]));
         }
         let more = workers.map(all.len(), begin, |solver, k| {
-            let mut found = Vec::new();
-            if let (Some(a), Some(Some(b))) = (&places[k], places.get(k + 1))
-                && all[k].0 == all[k + 1].0
-            {
-                let region = all[k].0;
-                between(solver, (a, b), &survey.regions[region].regime, &scales[region], HALVINGS, &mut found);
+            let region = all[k].0;
+            match (&places[k], places.get(k + 1)) {
+                (Some(a), Some(Some(b))) if region == all[k + 1].0 => {
+                    between(solver, (a, b), &survey.regions[region].regime, &scales[region], HALVINGS)
+                }
+                _ => Vec::new(),
             }
-            found
         });
         let mut courses = vec![Self::default(); survey.regions.len()];
         for (((region, _), place), more) in all.iter().zip(places).zip(more) {
@@ -95,25 +94,25 @@ fn even(region: &Region, range: f64) -> Vec<f64> {
     (0..=count as usize).map(|k| from + (to - from) * (k as f64 / count)).collect()
 }
 
-/// Adds the points between two neighbors that straight lines need.
+/// Returns the points between two neighbors that straight lines need.
 fn between(
     solver: &mut Solver,
     (a, b): (&CurvePoint, &CurvePoint),
     regime: &Regime,
     scales: &Scales,
     halvings: usize,
-    found: &mut Vec<CurvePoint>,
-) {
+) -> Vec<CurvePoint> {
     let at = 0.5 * (a.at + b.at);
-    let Some(halvings) = halvings.checked_sub(1).filter(|_| a.at < at && at < b.at) else { return };
-    let Some(middle) = CurvePoint::of(solver, at, regime) else { return };
-    if middle.is_on_line(a, b, scales) {
-        return;
-    }
-    between(solver, (a, &middle), regime, scales, halvings, found);
-    let right = middle.clone();
+    let halvings = halvings.checked_sub(1).filter(|_| a.at < at && at < b.at);
+    let middle = halvings.and_then(|_| CurvePoint::of(solver, at, regime));
+    let (Some(halvings), Some(middle)) = (halvings, middle.filter(|own| !own.is_on_line(a, b, scales))) else {
+        return Vec::new();
+    };
+    let mut found = between(solver, (a, &middle), regime, scales, halvings);
+    let right = between(solver, (&middle, b), regime, scales, halvings);
     found.push(middle);
-    between(solver, (&right, b), regime, scales, halvings, found);
+    found.extend(right);
+    found
 }
 
 impl CurvePoint {

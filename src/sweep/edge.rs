@@ -45,14 +45,14 @@ impl Sides {
     }
 }
 
-/// A border that crosses an edge. Its left side has the smaller values.
+/// A border that crosses an edge or passes through its end. Its left side comes before it in the edge's direction.
 #[derive(Debug, Clone)]
 pub struct Crossing {
-    pub at: f64,
+    pub point: [f64; 2],
     pub sides: Sides,
 }
 
-/// An edge of a cell, from its least to its greatest place.
+/// An edge of a cell, from its least to its greatest place or back.
 #[derive(Debug, Clone)]
 pub struct Edge {
     pub line: GridLine,
@@ -60,7 +60,7 @@ pub struct Edge {
     pub to: f64,
     /// The regime at `from`.
     pub first: Arc<Regime>,
-    /// All crossings, in ascending order.
+    /// All crossings, in the order from `from` to `to`.
     pub crossings: Vec<Crossing>,
 }
 
@@ -82,10 +82,10 @@ impl Edge {
         let crossing = |bracket: &Bracket| {
             let [left, right] = [&bracket.below, &bracket.above].map(|probe| Arc::clone(&probe.regime));
             let transition = Some(Arc::new(Transition::at(solver, bracket, place)));
-            Crossing { at: bracket.at(), sides: Sides { left, right, transition } }
+            Crossing { point: line.point(bracket.at()), sides: Sides { left, right, transition } }
         };
         let crossings = borders.iter().map(crossing).collect();
-        let first = stretches.first().map_or(a.regime, |stretch| Arc::clone(&stretch.regime));
+        let first = stretches.first().map_or(a.regime, |[first, _]| Arc::clone(&first.regime));
         Self { line, from, to, first, crossings }
     }
 
@@ -94,15 +94,11 @@ impl Edge {
     }
 
     pub fn part(&self, from: f64, to: f64) -> Self {
-        let before = self.crossings.iter().rfind(|crossing| crossing.at <= from);
-        let inside = |crossing: &&Crossing| from < crossing.at && crossing.at <= to;
-        Self {
-            line: self.line,
-            from,
-            to,
-            first: Arc::clone(before.map_or(&self.first, |crossing| &crossing.sides.right)),
-            crossings: self.crossings.iter().filter(inside).cloned().collect(),
-        }
+        let end = |end: f64| self.crossings.partition_point(|crossing| crossing.point[self.line.axis] <= end);
+        let (begin, end) = (end(from), end(to));
+        let before = self.crossings[..begin].last();
+        let first = Arc::clone(before.map_or(&self.first, |crossing| &crossing.sides.right));
+        Self { line: self.line, from, to, first, crossings: self.crossings[begin..end].to_vec() }
     }
 
     pub fn at(&self, at: f64) -> Arc<Regime> {
@@ -111,7 +107,7 @@ impl Edge {
 
     /// Returns the same edge in the opposite direction.
     pub fn reversed(&self) -> Self {
-        let reversed = |crossing: &Crossing| Crossing { at: crossing.at, sides: crossing.sides.reversed() };
+        let reversed = |crossing: &Crossing| Crossing { sides: crossing.sides.reversed(), ..*crossing };
         let crossings = self.crossings.iter().rev().map(reversed).collect();
         Self { line: self.line, from: self.to, to: self.from, first: Arc::clone(self.last()), crossings }
     }
@@ -119,13 +115,12 @@ impl Edge {
     /// Returns its pieces, each with the regime of the edge there as its left side.
     pub fn pieces(&self) -> Vec<Segment> {
         let mut pieces = Vec::new();
-        let (mut at, mut regime) = (self.from, &self.first);
-        let ends = self.crossings.iter().map(|crossing| (crossing.at, &crossing.sides.right));
-        for (end, next) in ends.chain([(self.to, self.last())]) {
-            let [from, to] = [at, end].map(|at| self.line.point(at));
+        let (mut from, mut regime) = (self.line.point(self.from), &self.first);
+        let ends = self.crossings.iter().map(|crossing| (crossing.point, &crossing.sides.right));
+        for (to, next) in ends.chain([(self.line.point(self.to), self.last())]) {
             let sides = Sides { left: Arc::clone(regime), right: Arc::clone(regime), transition: None };
             pieces.push(Segment { from, to, sides });
-            (at, regime) = (end, next);
+            (from, regime) = (to, next);
         }
         pieces
     }

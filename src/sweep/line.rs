@@ -69,16 +69,8 @@ impl Bracket {
     }
 }
 
-/// A stretch of positive width with one regime.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Stretch {
-    /// The least place of the stretch.
-    pub from: f64,
-    /// The greatest place of the stretch.
-    pub to: f64,
-    /// The regime of all its places.
-    pub regime: Arc<Regime>,
-}
+/// The first and the last place of a stretch of positive width with one regime.
+pub type Stretch = [Probe; 2];
 
 /// Returns the brackets of all borders between two places, ascending, to the accuracy `resolution`.
 ///
@@ -87,8 +79,7 @@ pub struct Stretch {
 /// `border_search`). In the end every neighboring pair of asked places agrees or brackets a border. Nothing is found
 /// once a budget is spent.
 pub fn brackets(line: &mut impl Landscape, a: &Probe, b: &Probe, resolution: f64) -> Vec<Bracket> {
-    let mut found = Vec::new();
-    bisect(line, a, b, resolution, &mut found);
+    let found = bisect(line, a, b, resolution);
     search_between(line, a, b, found, resolution, SEARCHES)
 }
 
@@ -116,10 +107,10 @@ fn search_between(
 }
 
 /// Bisects where the regimes of two places differ. The first places asked are next to the deciding quantity's zero.
-pub(super) fn bisect(line: &mut impl Landscape, a: &Probe, b: &Probe, resolution: f64, found: &mut Vec<Bracket>) {
+pub(super) fn bisect(line: &mut impl Landscape, a: &Probe, b: &Probe, resolution: f64) -> Vec<Bracket> {
     let (mut below, mut above) = (a.clone(), b.clone());
     if below.regime == above.regime || is_spent() {
-        return;
+        return Vec::new();
     }
     let zero = decisive_zero(&mut |x| line.watched(x), a.at, b.at, resolution).unwrap_or(f64::NAN);
     // Numbers far from zero may be farther apart than the resolution.
@@ -140,12 +131,12 @@ pub(super) fn bisect(line: &mut impl Landscape, a: &Probe, b: &Probe, resolution
         } else if middle.regime == above.regime {
             above = middle;
         } else {
-            bisect(line, &below, &middle, resolution, found);
-            bisect(line, &middle, &above, resolution, found);
-            return;
+            let mut found = bisect(line, &below, &middle, resolution);
+            found.extend(bisect(line, &middle, &above, resolution));
+            return found;
         }
     }
-    found.push(Bracket { below, above });
+    vec![Bracket { below, above }]
 }
 
 /// Returns the borders between two places of the same regime.
@@ -157,10 +148,10 @@ fn hidden(line: &mut impl Landscape, a: &Probe, b: &Probe, resolution: f64) -> V
     let mut before = a.clone();
     for at in suspects(&mut |x| line.watched(x), a.at, b.at, resolution) {
         let point = Probe { at, regime: line.regime(at) };
-        bisect(line, &before, &point, resolution, &mut found);
+        found.extend(bisect(line, &before, &point, resolution));
         before = point;
     }
-    bisect(line, &before, b, resolution, &mut found);
+    found.extend(bisect(line, &before, b, resolution));
     found
 }
 
@@ -168,24 +159,19 @@ fn hidden(line: &mut impl Landscape, a: &Probe, b: &Probe, resolution: f64) -> V
 /// stretch that is not wider than `resolution` is part of a border; two stretches of one regime around it are one
 /// stretch.
 pub fn stretches(first: Probe, last: Probe, brackets: &[Bracket], resolution: f64) -> (Vec<Stretch>, Vec<Bracket>) {
-    let (from, to) = (first.at, last.at);
     let begins = std::iter::once(first).chain(brackets.iter().map(|bracket| bracket.above.clone()));
     let ends = brackets.iter().map(|bracket| bracket.below.clone()).chain([last]);
-    let mut pieces: Vec<Bracket> = Vec::new();
-    for (below, above) in begins.zip(ends) {
-        match pieces.last_mut() {
-            _ if above.at - below.at <= resolution => {}
-            Some(piece) if piece.above.regime == below.regime => piece.above = above,
-            _ => pieces.push(Bracket { below, above }),
+    let mut stretches: Vec<Stretch> = Vec::new();
+    for (from, to) in begins.zip(ends) {
+        match stretches.last_mut() {
+            _ if to.at - from.at <= resolution => {}
+            Some([_, end]) if end.regime == from.regime => *end = to,
+            _ => stretches.push([from, to]),
         }
     }
-    let border = |pair: &[Bracket]| Bracket { below: pair[0].above.clone(), above: pair[1].below.clone() };
-    let borders: Vec<Bracket> = pieces.windows(2).map(border).collect();
-    let begins = std::iter::once(from).chain(borders.iter().map(Bracket::at));
-    let ends = borders.iter().map(Bracket::at).chain([to]);
-    let stretch =
-        |(piece, (from, to)): (&Bracket, (f64, f64))| Stretch { from, to, regime: piece.below.regime.clone() };
-    (pieces.iter().zip(begins.zip(ends)).map(stretch).collect(), borders)
+    let border = |pair: &[Stretch]| Bracket { below: pair[0][1].clone(), above: pair[1][0].clone() };
+    let borders = stretches.windows(2).map(border).collect();
+    (stretches, borders)
 }
 
 #[cfg(test)]
@@ -226,8 +212,8 @@ mod tests {
             all.extend(brackets(&mut line, &pair[0], &pair[1], RESOLUTION));
         }
         let (list, borders) = stretches(points[0].clone(), points[10].clone(), &all, RESOLUTION);
-        assert_eq!((list[0].from, list[list.len() - 1].to), (0.0, 1.0));
-        assert!(list.windows(2).all(|pair| pair[0].to == pair[1].from && pair[0].regime != pair[1].regime));
+        assert!(list[0][0].at <= RESOLUTION && list[list.len() - 1][1].at == 1.0);
+        assert!(list.windows(2).all(|pair| pair[0][1].regime != pair[1][0].regime));
         assert_eq!(list.len(), borders.len() + 1);
         near(&borders, expected);
     }

@@ -13,13 +13,13 @@
 use super::cell::{GridCell, Trace};
 use super::edge::{Edge, GridLine, Segment};
 use super::interior::{deepest_nodes, distance};
-use super::letter;
 use super::line::{Probe, RESOLUTION};
 use super::model::{RobotStudy, Solver};
 use super::parallel::Workers;
 use super::polyline::{loops, polylines};
 use super::regime::Regime;
 use super::transition::Transition;
+use super::{Findings, letter};
 use crate::impact::Verdict;
 use crate::read::{Parameter, Study};
 use crate::{Error, Reason};
@@ -150,10 +150,8 @@ impl<'p> Grid<'p> {
             &self.rows[(row + 1) * (nx - 1) + column],
             &self.columns[column * (ny - 1) + row],
         ];
-        GridCell {
-            corners: [[self.xs[column], self.ys[row]], [self.xs[column + 1], self.ys[row + 1]]],
-            edges: edges.map(Edge::clone),
-        }
+        let corners = [[self.xs[column], self.ys[row]], [self.xs[column + 1], self.ys[row + 1]]];
+        GridCell { corners, edges: edges.map(Edge::clone) }
     }
 
     /// Returns the frame, counter-clockwise, in pieces of one regime each.
@@ -183,20 +181,27 @@ impl<'p> Grid<'p> {
         [snapped(x, &self.xs, self.parameters[0]), snapped(y, &self.ys, self.parameters[1])]
     }
 
+    /// Returns the place of a node.
+    fn node(&self, k: usize) -> [f64; 2] {
+        [self.xs[k % self.xs.len()], self.ys[k / self.xs.len()]]
+    }
+
     /// Finds, for each connected part of each area, the node farthest from the area's borders and this distance.
     /// Connection is that of the nodes.
     fn find_middles(&self, areas: &mut [Area]) {
-        let (xs, ys) = (&self.xs, &self.ys);
-        let nx = xs.len();
-        let ranges = [xs[nx - 1] - xs[0], ys[ys.len() - 1] - ys[0]];
-        let index = |regime: &Arc<Regime>| areas.iter().position(|area| area.regime == *regime);
-        let kinds: Vec<Option<usize>> = self.nodes.iter().map(index).collect();
-        for (area, nodes) in deepest_nodes(&kinds, nx) {
-            let room = nodes.into_iter().map(|k| [xs[k % nx], ys[k / nx]]);
+        let ranges = [&self.xs, &self.ys].map(|lines| lines[lines.len() - 1] - lines[0]);
+        let kinds: Vec<Option<usize>> = self.nodes.iter().map(|regime| index(areas, regime)).collect();
+        for (area, nodes) in deepest_nodes(&kinds, self.xs.len()) {
+            let room = nodes.into_iter().map(|k| self.node(k));
             let room = room.map(|at| (at, distance(at, &areas[area].loops, ranges)));
             areas[area].middles.extend(room.max_by(|a, b| a.1.total_cmp(&b.1)));
         }
     }
+}
+
+/// Returns the index of the area of a regime.
+fn index(areas: &[Area], regime: &Arc<Regime>) -> Option<usize> {
+    areas.iter().position(|area| area.regime == *regime)
 }
 
 impl Map {
@@ -211,8 +216,7 @@ impl Map {
             trace.cell(grid.cell(k), 0);
             trace.segments
         };
-        let segments = workers.map(cells, || Solver::new(model), trace);
-        let segments: Vec<Segment> = segments.into_iter().flatten().collect();
+        let segments = workers.map(cells, || Solver::new(model), trace).concat();
         let frame = grid.frame();
         let mut regimes: Vec<Arc<Regime>> = Vec::new();
         let met = grid.nodes.iter().chain(frame.iter().map(|piece| &piece.sides.left));
@@ -234,21 +238,19 @@ impl Map {
         for area in &mut areas {
             let Some((middle, _)) = area.middles.first() else { continue };
             let inside = (0..grid.nodes.len()).filter(|&node| grid.nodes[node] == area.regime);
-            let place = |node: usize| vec![grid.xs[node % grid.xs.len()], grid.ys[node / grid.xs.len()]];
-            let inner = solver.inner(middle, inside.map(place));
+            let inner = solver.inner(middle, inside.map(|node| grid.node(node).to_vec()));
             (area.verdict, area.refused) = (inner.verdict, inner.refused);
             dependent |= inner.dependent;
         }
-        let index = |regime: &Arc<Regime>| areas.iter().position(|area| area.regime == *regime);
         let curve = |(segment, points): (&Segment, Vec<[f64; 2]>)| {
-            let sides = [index(&segment.sides.left)?, index(&segment.sides.right)?];
+            let sides = [index(&areas, &segment.sides.left)?, index(&areas, &segment.sides.right)?];
             let points = points.into_iter().map(|point| grid.outward(point)).collect();
             let transition = segment.sides.transition.as_deref().cloned().unwrap_or_default();
             Some(BorderCurve { sides, points, transition })
         };
         let curves: Vec<BorderCurve> = polylines(&segments).into_iter().filter_map(curve).collect();
         for BorderCurve { sides, transition, .. } in &curves {
-            for (side, refused) in sides.iter().zip([&transition.refused_below, &transition.refused_above]) {
+            for (side, refused) in sides.iter().zip(&transition.refused) {
                 let area = &mut areas[*side];
                 if area.regime.outcomes().is_none() && area.refused.is_none() {
                     area.refused.clone_from(refused);
@@ -258,8 +260,20 @@ impl Map {
         Self { curves, areas, dependent, oddities: model.oddities() }
     }
 
-    /// Refuses a study whose grid needs more memory than a map may take.
-    pub(super) fn check_memory(study: &Study) -> crate::Result<()> {
+    /// Returns the number of pieces of work for a map of `model`.
+    pub fn work(model: &RobotStudy) -> usize {
+        let [first, second] = model.study.parameters() else { return 0 };
+        let [nx, ny] = [first, second].map(lines);
+        2 * ny + nx + (nx - 1) * (ny - 1)
+    }
+}
+
+impl Findings {
+    /// Refuses a study whose map needs too much memory.
+    ///
+    /// # Errors
+    /// Returns [`Reason::TooLarge`], with the number of samples as its place.
+    pub fn check_memory(study: &Study) -> crate::Result<()> {
         let [first, second] = study.parameters() else { return Ok(()) };
         let nodes = lines(first) * lines(second);
         // Each list exists twice while the results of the threads are joined.
@@ -269,17 +283,8 @@ impl Map {
             return Ok(());
         }
         let most = usize::from(second.steps > first.steps);
-        let hint = format!(
-            "take fewer samples: a map of {nodes} points is traced here, of at most {}",
-            (MEMORY << 20) / bytes
-        );
+        let limit = (MEMORY << 20) / bytes;
+        let hint = format!("take fewer samples: a map of {nodes} points is traced here, of at most {limit}");
         Err(study.refuse_steps(most, Reason::TooLarge { needed, limit: MEMORY }).hint(hint))
-    }
-
-    /// Returns the number of pieces of work for a map of `model`.
-    pub fn work(model: &RobotStudy) -> usize {
-        let [first, second] = model.study.parameters() else { return 0 };
-        let [nx, ny] = [first, second].map(lines);
-        2 * ny + nx + (nx - 1) * (ny - 1)
     }
 }

@@ -26,9 +26,9 @@ mod map;
 
 pub use crate::read::{Parameter, Study};
 pub use curves::{CurvePoint, RegionCurves};
-pub use line::{Bracket, Landscape, Probe, RESOLUTION, Stretch, brackets, stretches};
+pub use line::RESOLUTION;
 pub use map::{Area, BorderCurve, CELLS, Map};
-pub use model::{RobotStudy, Solver, WATCHED_CONTACTS, Watched};
+pub use model::{RobotStudy, Solver, WATCHED_CONTACTS};
 pub use parallel::Workers;
 pub use regime::Regime;
 pub use survey::{Region, RegionBorder, Survey};
@@ -55,14 +55,6 @@ impl Findings {
         }
     }
 
-    /// Refuses a study whose findings need too much memory.
-    ///
-    /// # Errors
-    /// Returns [`Reason::TooLarge`](crate::Reason::TooLarge), with the number of samples as its place.
-    pub fn check_memory(study: &Study) -> crate::Result<()> {
-        Map::check_memory(study)
-    }
-
     /// Returns the number of pieces of work for the findings of `model`.
     pub fn work(model: &RobotStudy) -> usize {
         match model.study.parameters().len() {
@@ -78,8 +70,7 @@ impl Findings {
                 survey.regions.iter().map(|region| (&region.regime, region.kind, region.refused.as_ref())).collect()
             }
             Self::Map(map) => {
-                let areas = map.areas.iter().enumerate();
-                areas.map(|(kind, area)| (&area.regime, kind, area.refused.as_ref())).collect()
+                map.areas.iter().enumerate().map(|(kind, area)| (&area.regime, kind, area.refused.as_ref())).collect()
             }
         }
     }

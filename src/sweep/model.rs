@@ -34,7 +34,7 @@ pub struct RobotStudy<'a> {
 /// Answers points of one study, in reused memory.
 #[derive(Debug)]
 pub struct Solver<'a> {
-    model: &'a RobotStudy<'a>,
+    pub(super) model: &'a RobotStudy<'a>,
     /// The pipeline for the robot of the file; `None` if the study varies the robot.
     pipeline: Option<Pipeline<'a>>,
     scratch: InequalityScratch,
@@ -88,14 +88,11 @@ impl RobotStudy<'_> {
     /// Describes oddities of the states in the middle and at the ends of the ranges. Sentences that differ only in
     /// their numbers are listed once.
     pub(super) fn oddities(&self) -> Vec<String> {
-        let parameters = self.study.parameters();
         let mut solver = Solver::new(self);
         let mut found: Vec<String> = Vec::new();
         // Three places along each parameter.
-        for at in 0..3_usize.pow(parameters.len() as u32) {
-            let place = |index: u32| 0.5 * (at / 3_usize.pow(index) % 3) as f64;
-            let along = parameters.iter().zip(0..).map(|(parameter, index)| (parameter, place(index)));
-            let point: Vec<f64> = along.map(|(own, part)| own.from + part * own.range()).collect();
+        for at in 0..3_usize.pow(self.study.parameters().len() as u32) {
+            let point = self.point(|index| 0.5 * (at / 3_usize.pow(index as u32) % 3) as f64);
             let odd = solver.at(&point, |robot, state, _| {
                 let mut odd = state.oddities(robot);
                 odd.extend(state.uncertainty.is_some().then(|| BOXES.to_owned()));
@@ -126,8 +123,7 @@ impl RobotStudy<'_> {
         let mut solver = Solver::new(self);
         // The spacing is uneven, so that no long period fits it.
         let mut seen = [0.0, 0.271, 0.618, 1.0].map(|part| {
-            let at = [parameter.from + part * parameter.range()];
-            let seen = solver.at(&at, |_, state, pipeline| {
+            let seen = solver.at(&self.point(|_| part), |_, state, pipeline| {
                 let Unsolved { contacts, problem, .. } = pipeline.unsolved(&state)?;
                 let names: Vec<_> = contacts.into_iter().map(|contact| contact.name).collect();
                 let Scene { rotor_inertia, impulses, .. } = state.scene;
@@ -138,6 +134,12 @@ impl RobotStudy<'_> {
         let first = seen[0].take()?;
         let is_idle = seen[1..].iter().all(|other| other.as_ref() == Some(&first));
         is_idle.then(|| format!("nothing was found that depends on {}: has it an effect on an impact?", parameter.name))
+    }
+
+    /// Returns the point at a part of the range of each parameter, from 0 to 1.
+    pub(super) fn point(&self, part: impl Fn(usize) -> f64) -> Vec<f64> {
+        let parameters = self.study.parameters().iter().enumerate();
+        parameters.map(|(index, parameter)| parameter.from + part(index) * parameter.range()).collect()
     }
 
     /// Returns the options for the question of the study.
@@ -159,12 +161,8 @@ impl RobotStudy<'_> {
     }
 
     fn readable(&self, holds: impl Fn(State) -> bool) -> Result<bool> {
-        let parameters = self.study.parameters();
         let mut solver = Solver::new(self);
-        let mut read = |part: f64| {
-            let point = parameters.iter().map(|parameter| parameter.from + part * parameter.range());
-            solver.at(&point.collect::<Vec<_>>(), |_, state, _| Ok(holds(state)))
-        };
+        let mut read = |part: f64| solver.at(&self.point(|_| part), |_, state, _| Ok(holds(state)));
         read(0.0).or_else(|first| read(0.5).or_else(|_| read(1.0)).map_err(|_| first))
     }
 }
@@ -175,11 +173,6 @@ impl<'a> Solver<'a> {
         let pipeline = (!model.study.varies_the_robot()).then(|| Pipeline::new(model.robot, model.asked()));
         let scratch = InequalityScratch::default();
         Self { model, pipeline, scratch, known: Vec::new(), recent: VecDeque::new() }
-    }
-
-    /// Returns the question of the study.
-    pub fn aspect(&self) -> Aspect {
-        self.model.study.question()
     }
 
     /// Asks about the state at a point. The robot or the state may be refused; every state is once a budget is spent.
@@ -221,22 +214,21 @@ impl<'a> Solver<'a> {
         if inner.verdict != Some(Verdict::NoImpact) {
             return inner;
         }
-        let verdict = |state: State, pipeline: &mut Pipeline| Ok(pipeline.outcomes(&state)?.analyzed()?.verdict);
-        let mut strikes = |point: &Vec<f64>| {
-            let found = self.at(point, |_, state, pipeline| verdict(state, pipeline));
+        let strikes = |point: &Vec<f64>| {
+            let found = self.at(point, |_, state, pipeline| Ok(pipeline.outcomes(&state)?.analyzed()?.verdict));
             found.is_ok_and(|verdict| verdict != Verdict::NoImpact)
         };
-        let other = others.find(|point| strikes(point));
-        other.map_or(inner, |point| self.inner_at(&point))
+        others.find(strikes).map_or(inner, |point| self.inner_at(&point))
     }
 
     fn inner_at(&mut self, point: &[f64]) -> Inner {
-        let found = self.explained(point, &[]);
-        let dependent = |(contacts, analysis): &(Vec<String>, Analysis)| {
-            analysis.rank.is_some_and(|rank| rank < 2 * contacts.len())
-        };
-        let verdict = found.as_ref().ok().map(|(_, analysis)| analysis.verdict);
-        Inner { dependent: found.as_ref().is_ok_and(dependent), verdict, refused: found.err() }
+        match self.explained(point, &[]) {
+            Ok((contacts, Analysis { rank, verdict, .. })) => {
+                let dependent = rank.is_some_and(|rank| rank < 2 * contacts.len());
+                Inner { dependent, verdict: Some(verdict), refused: None }
+            }
+            Err(refused) => Inner { dependent: false, verdict: None, refused: Some(refused) },
+        }
     }
 
     /// Returns the regime of a point.

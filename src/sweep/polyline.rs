@@ -50,22 +50,18 @@ pub fn polylines(segments: &[Segment]) -> Vec<(&Segment, Vec<[f64; 2]>)> {
 }
 
 /// Returns the closed loops, of borders and of the frame, that have `regime` on their left.
-pub fn loops(segments: &[Segment], frame: &[Segment], regime: &Arc<Regime>) -> Vec<Vec<[f64; 2]>> {
+pub fn loops<'s>(segments: &'s [Segment], frame: &'s [Segment], regime: &Arc<Regime>) -> Vec<Vec<[f64; 2]>> {
     let mut next: HashMap<PointKey, Vec<[f64; 2]>> = HashMap::new();
     let mut order = Vec::new();
-    let mut add = |from: [f64; 2], to: [f64; 2]| {
-        next.entry(key(from)).or_default().push(to);
-        order.push(from);
-    };
-    for segment in segments {
-        if segment.sides.left == *regime {
-            add(segment.from, segment.to);
-        }
-        if segment.sides.right == *regime {
-            add(segment.to, segment.from);
+    let onward = |Segment { from, to, sides }: &'s Segment| (&sides.left, *from, *to);
+    let back = |Segment { from, to, sides }: &'s Segment| (&sides.right, *to, *from);
+    let ways = segments.iter().flat_map(|segment| [onward(segment), back(segment)]);
+    for (left, from, to) in ways.chain(frame.iter().map(onward)) {
+        if left == regime {
+            next.entry(key(from)).or_default().push(to);
+            order.push(from);
         }
     }
-    frame.iter().filter(|piece| piece.sides.left == *regime).for_each(|piece| add(piece.from, piece.to));
     let mut loops = Vec::new();
     for start in order {
         let mut points = Vec::new();

@@ -69,20 +69,21 @@ impl Survey {
         let between = |solver: &mut Solver, index: usize| {
             brackets(&mut Along { solver, place: |at| vec![at] }, &samples[index], &samples[index + 1], resolution)
         };
-        let found: Vec<Bracket> = workers.map(parameter.steps - 1, begin, between).into_iter().flatten().collect();
+        let found = workers.map(parameter.steps - 1, begin, between).concat();
         let (first, last) = (samples[0].clone(), samples[parameter.steps - 1].clone());
         let (stretches, brackets) = stretches(first, last, &found, resolution);
 
         let mut solver = begin();
         let mut kinds: Vec<Arc<Regime>> = Vec::new();
         let mut dependent = false;
-        let mut region = |(index, Stretch { from, to, regime }): (usize, Stretch)| {
+        let mut region = |(index, [Probe { at: begin, regime }, _]): (usize, Stretch)| {
+            let from = index.checked_sub(1).map_or(parameter.from, |before| brackets[before].at());
+            let to = brackets.get(index).map_or(parameter.to, Bracket::at);
             let kind = kinds.iter().position(|known| *known == regime).unwrap_or_else(|| {
                 kinds.push(Arc::clone(&regime));
                 kinds.len() - 1
             });
             // The middle may lie in a thinner region that was not found; the beginning was asked before.
-            let begin = index.checked_sub(1).map_or(parameter.from, |border| brackets[border].above.at);
             let middle = 0.5 * (from + to);
             let at = if solver.regime(&[middle]) == regime { middle } else { begin };
             let inside = samples.iter().filter(|own| own.regime == regime && from <= own.at && own.at <= to);
@@ -92,7 +93,7 @@ impl Survey {
         };
         let regions: Vec<Region> = stretches.into_iter().enumerate().map(&mut region).collect();
         let border = |solver: &mut Solver, index: usize| {
-            let bracket: &Bracket = &brackets[index];
+            let bracket = &brackets[index];
             RegionBorder { at: bracket.at(), transition: Transition::at(solver, bracket, |at| vec![at]) }
         };
         let quiet = Workers { done: &|| (), ..workers };

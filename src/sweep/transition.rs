@@ -53,12 +53,9 @@ pub struct Transition {
     /// Contacts that are open below it and closed above it.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub closing: Vec<String>,
-    /// Why states are refused below it, if they are.
+    /// Why states are refused below it and above it, if they are.
     #[serde(skip)]
-    pub refused_below: Option<Error>,
-    /// Why states are refused above it, if they are.
-    #[serde(skip)]
-    pub refused_above: Option<Error>,
+    pub refused: [Option<Error>; 2],
 }
 
 impl Transition {
@@ -69,9 +66,7 @@ impl Transition {
         let above = solver.explained(&place(bracket.above.at), &outcomes(&bracket.below.regime));
         let (below, above) = match (below, above) {
             (Ok(below), Ok(above)) => (below, above),
-            (below, above) => {
-                return Self { refused_below: below.err(), refused_above: above.err(), ..Self::default() };
-            }
+            (below, above) => return Self { refused: [below.err(), above.err()], ..Self::default() },
         };
         if below.0 != above.0 {
             let missing = |from: &[String], other: &[String]| -> Vec<String> {
@@ -81,7 +76,7 @@ impl Transition {
             return Self { opening, closing, ..Self::default() };
         }
         let names = &below.0;
-        let aspect = solver.aspect();
+        let aspect = solver.model.study.question();
         let mut ended = ending(aspect, names, [&below.1, &above.1], Side::Below);
         ended.extend(ending(aspect, names, [&above.1, &below.1], Side::Above));
         Self { ended, ..Self::default() }
@@ -93,12 +88,12 @@ impl Transition {
             let side = if cause.side == Side::Below { Side::Above } else { Side::Below };
             EndedOutcome { side, ..cause.clone() }
         };
+        let [below, above] = self.refused.clone();
         Self {
             ended: self.ended.iter().map(reversed).collect(),
             opening: self.closing.clone(),
             closing: self.opening.clone(),
-            refused_below: self.refused_above.clone(),
-            refused_above: self.refused_below.clone(),
+            refused: [above, below],
         }
     }
 
@@ -108,8 +103,7 @@ impl Transition {
         all(self, other)
             && all(other, self)
             && (&self.opening, &self.closing) == (&other.opening, &other.closing)
-            && (self.refused_below.is_some(), self.refused_above.is_some())
-                == (other.refused_below.is_some(), other.refused_above.is_some())
+            && self.refused.each_ref().map(Option::is_some) == other.refused.each_ref().map(Option::is_some)
     }
 }
 

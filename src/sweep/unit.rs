@@ -48,10 +48,7 @@ impl RobotStudy<'_> {
     /// Returns all numbers of robot and state for the parameter at this part of its range; other parameters are in the
     /// middle.
     fn measured(&self, parameter: usize, part: f64) -> Option<Vec<Measured>> {
-        let place = |(index, other): (usize, &super::Parameter)| {
-            other.from + if index == parameter { part } else { 0.5 } * other.range()
-        };
-        let point: Vec<f64> = self.study.parameters().iter().enumerate().map(place).collect();
+        let point = self.point(|index| if index == parameter { part } else { 0.5 });
         let description = self.study.describe(&self.study.names(&point), self.description).ok()?;
         let mut all = of_robot(&description);
         all.extend(Solver::new(self).at(&point, |robot, state, _| Ok(of_state(robot, &state))).ok()?);

@@ -119,11 +119,11 @@ impl Happening<'_> {
 impl Transition {
     /// Describes what changes between these regions, as a sentence without its period.
     pub(crate) fn in_words(&self, [below, above]: [RegionSide<'_>; 2]) -> String {
-        match (&self.refused_below, &self.refused_above) {
-            (Some(_), None) => return format!("from {} on states are answered", above.letter),
-            (None, Some(_)) => return format!("from {} on states are refused", above.letter),
-            (Some(_), Some(_)) => return "states are refused for another reason".to_owned(),
-            (None, None) => {}
+        match self.refused {
+            [Some(_), None] => return format!("from {} on states are answered", above.letter),
+            [None, Some(_)] => return format!("from {} on states are refused", above.letter),
+            [Some(_), Some(_)] => return "states are refused for another reason".to_owned(),
+            [None, None] => {}
         }
         let ends = |EndedOutcome { contact, inequality, modes, side }: &EndedOutcome| {
             let RegionSide { letter, happening } = if *side == Side::Below { below } else { above };
