@@ -25,8 +25,8 @@ impl Forward {
         }
     }
 
-    fn modes(lists: &mut [Vec<Mode>]) {
-        lists.iter_mut().flatten().for_each(|mode| *mode = mode.mirrored());
+    fn modes(modes: &mut [Mode]) {
+        modes.iter_mut().for_each(|mode| *mode = mode.mirrored());
     }
 
     fn pairs(pairs: &mut [Pair<f64>]) {
@@ -39,7 +39,7 @@ impl Forward {
 
     pub(super) fn outcomes(self, outcomes: &mut [Outcome]) {
         for outcome in outcomes.iter_mut().filter(|_| self == Self::Against) {
-            outcome.modes.iter_mut().for_each(|mode| *mode = mode.mirrored());
+            Self::modes(&mut outcome.modes);
             Self::pairs(&mut outcome.impulse);
             Self::pairs(&mut outcome.velocity_after);
         }
@@ -52,11 +52,11 @@ impl Forward {
         }
         let regime = |regime: &mut Arc<Regime>| {
             if let Regime::Answered { outcomes, undecided, .. } = Arc::make_mut(regime) {
-                [outcomes, undecided].into_iter().for_each(|lists| Self::modes(lists));
+                outcomes.iter_mut().chain(undecided).for_each(|modes| Self::modes(modes));
             }
         };
         let transition = |transition: &mut Transition| {
-            transition.ended.iter_mut().for_each(|ended| Self::modes(std::slice::from_mut(&mut ended.modes)));
+            transition.ended.iter_mut().for_each(|ended| Self::modes(&mut ended.modes));
         };
         match &mut found {
             Findings::Along(survey) => {
@@ -74,8 +74,9 @@ impl Forward {
     pub(super) fn curves(self, curves: &mut [RegionCurves]) {
         for place in curves.iter_mut().flat_map(|curve| &mut curve.places).filter(|_| self == Self::Against) {
             for (modes, motion) in &mut place.outcomes {
-                Self::modes(std::slice::from_mut(modes));
-                [&mut motion.impulse, &mut motion.velocity_after].into_iter().for_each(|pairs| Self::pairs(pairs));
+                Self::modes(modes);
+                Self::pairs(&mut motion.impulse);
+                Self::pairs(&mut motion.velocity_after);
             }
             if let Some(Explanation { beta, gamma, .. }) = &mut place.explanation {
                 beta.iter_mut().for_each(|beta| *beta = -*beta);

@@ -134,7 +134,7 @@ impl Picture {
         }
 
         let legend = Legend::new(&self.legend, width, scale);
-        let (legend_width, height) = if self.legend.is_empty() { (0.0, 0.0) } else { legend.size() };
+        let (legend_width, height) = legend.size();
         let indent = if legend_width + columns[0].before <= width { columns[0].before } else { 0.0 };
         legend.draw((EDGE + indent, top), &mut layer);
         let size = ((width.max(legend_width) + 2.0 * EDGE).ceil(), (top + height + EDGE).ceil());

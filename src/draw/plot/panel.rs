@@ -90,12 +90,12 @@ impl Panel {
         Self { title, x, y, size: (540.0, 420.0), framed: true, equal: false, bands, shapes }
     }
 
-    /// Returns the title in lines no wider than the panel, each with whether it is part of the first, larger line.
-    fn title_lines(&self) -> Vec<(String, bool)> {
+    /// Returns the title in lines no wider than the panel, each with its font size and color.
+    fn title_lines(&self) -> Vec<(String, u32, Color)> {
         let (first, rest) = self.title.split_once('\n').unwrap_or((&self.title, ""));
-        let lines = |text, size| font::lines(text, size, self.size.0);
-        let first = lines(first, LABEL).into_iter().map(|line| (line, true));
-        first.chain(lines(rest, NUMBER).into_iter().map(|line| (line, false))).collect()
+        let lines =
+            |text, size, color| font::lines(text, size, self.size.0).into_iter().map(move |line| (line, size, color));
+        lines(first, LABEL, Color::Black).chain(lines(rest, NUMBER, Color::Gray)).collect()
     }
 }
 
@@ -151,11 +151,10 @@ impl<'p> PlacedPanel<'p> {
     pub fn draw(&self, corner: Pixel, left: f64, out: &mut PlotLayer) {
         let panel = self.panel;
         let title = panel.title_lines();
-        for (line, (content, is_first)) in title.iter().enumerate() {
-            let (size, color) = if *is_first { (LABEL, Color::Black) } else { (NUMBER, Color::Gray) };
+        for (line, (content, size, color)) in title.iter().enumerate() {
             let baseline = corner.1 - 8.0 - LINE * (title.len() - 1 - line) as f64;
             let at = (corner.0 + 0.5 * panel.size.0, baseline);
-            out.text(TextLine { color, ..TextLine::new(at, content, size, Anchor::Middle) });
+            out.text(TextLine { color: *color, ..TextLine::new(at, content, *size, Anchor::Middle) });
         }
         let mut inside = PlotLayer::default();
         if panel.bands.is_empty() {

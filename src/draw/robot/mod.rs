@@ -184,8 +184,9 @@ impl Drawing {
 
     /// Returns the magnitude of the greatest impulse: of the ground, in a loop, or applied by the state \[N s\].
     pub fn greatest_impulse(&self) -> f64 {
-        let applied = self.applied.iter().map(|applied| &applied.vector);
-        greatest(self.outcomes.iter().flat_map(DrawnOutcome::impulses).chain(applied))
+        let impulses = self.outcomes.iter().flat_map(|outcome| &outcome.impulse);
+        let in_loops = self.outcomes.iter().flat_map(|outcome| &outcome.loop_impulse).map(|(_, impulse)| impulse);
+        greatest(impulses.chain(in_loops).chain(self.applied.iter().map(|applied| &applied.vector)))
     }
 
     /// Returns the greatest velocities of contacts before and after the impact. For an impact, both are the greatest
@@ -194,13 +195,6 @@ impl Drawing {
         let before = greatest(self.contacts.iter().map(|contact| &contact.velocity_before));
         let after = greatest(self.outcomes.iter().flat_map(|outcome| &outcome.velocity_after));
         if self.aspect.is_impact() { [before.max(after); 2] } else { [before, after] }
-    }
-}
-
-impl DrawnOutcome {
-    /// Returns the impulses of the ground and those in loops.
-    fn impulses(&self) -> impl Iterator<Item = &Vector<f64>> {
-        self.impulse.iter().chain(self.loop_impulse.iter().map(|(_, impulse)| impulse))
     }
 }
 

@@ -462,22 +462,17 @@ impl Drawing {
         if forward == Forward::Along {
             return;
         }
-        for body in &mut self.bodies {
-            Forward::vector(&mut body.origin);
+        for DrawnBody { origin, x_axis, shapes, com, bones, .. } in &mut self.bodies {
             // The frame turns the other way, and the points in it are mirrored.
-            body.x_axis.z = -body.x_axis.z;
-            for shape in &mut body.shapes {
-                match shape {
-                    DrawnShape::Disc { center, .. } => Forward::vector(center),
-                    DrawnShape::Polygon(corners) => corners.iter_mut().for_each(Forward::vector),
-                }
-            }
-            body.com.iter_mut().chain(&mut body.bones).for_each(Forward::vector);
+            x_axis.z = -x_axis.z;
+            let corners = shapes.iter_mut().flat_map(|shape| match shape {
+                DrawnShape::Disc { center, .. } => std::slice::from_mut(center),
+                DrawnShape::Polygon(corners) => corners,
+            });
+            iter::once(origin).chain(corners).chain(com).chain(bones).for_each(Forward::vector);
         }
-        for contact in &mut self.contacts {
-            [&mut contact.point, &mut contact.normal, &mut contact.velocity_before]
-                .into_iter()
-                .for_each(Forward::vector);
+        for DrawnContact { point, normal, velocity_before, .. } in &mut self.contacts {
+            [point, normal, velocity_before].into_iter().for_each(Forward::vector);
         }
         for Arrow { point, vector } in &mut self.applied {
             [point, vector].into_iter().for_each(Forward::vector);
