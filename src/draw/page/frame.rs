@@ -105,29 +105,18 @@ pub(super) struct PageScale {
 /// The view is fixed along an axis if all states lie within this multiple of the largest size of the robot.
 const FIXED: f64 = 1.5;
 
-/// The weights of values when the usual value is chosen: the share [`Weight::share`] of all weights does not exceed it.
+/// The weights of values when the usual value is chosen: the `share` of all weights does not exceed it.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Weight {
-    /// Each value has its size as weight. Many values near zero, such as those of feet at rest, have little effect.
-    Size,
-    /// All values have the same weight. A few values next to a pole, where they are unbounded, have little effect.
-    Alike,
+pub(super) struct Weight {
+    share: f64,
+    of: fn(f64) -> f64,
 }
 
 impl Weight {
-    fn share(self) -> f64 {
-        match self {
-            Self::Size => 0.9,
-            Self::Alike => 0.75,
-        }
-    }
-
-    fn of(self, value: f64) -> f64 {
-        match self {
-            Self::Size => value,
-            Self::Alike => 1.0,
-        }
-    }
+    /// Each value has its size as weight. Many values near zero, such as those of feet at rest, have little effect.
+    pub const SIZE: Self = Self { share: 0.9, of: |value| value };
+    /// All values have the same weight. A few values next to a pole, where they are unbounded, have little effect.
+    pub const ALIKE: Self = Self { share: 0.75, of: |_| 1.0 };
 }
 
 impl PageScale {
@@ -158,16 +147,16 @@ impl PageScale {
 }
 
 /// Returns the value that most of the positive values, by weight, do not exceed; 0 if no value is positive.
-fn usual(values: impl Iterator<Item = f64>, weight: Weight) -> f64 {
+fn usual(values: impl Iterator<Item = f64>, Weight { share, of }: Weight) -> f64 {
     let mut values: Vec<f64> = values.filter(|value| *value > 0.0).collect();
     values.sort_unstable_by(f64::total_cmp);
-    let share = weight.share() * values.iter().map(|&value| weight.of(value)).sum::<f64>();
+    let share = share * values.iter().copied().map(of).sum::<f64>();
     let mut sum = 0.0;
-    let usual = values.iter().find(|value| {
-        sum += weight.of(**value);
+    let usual = values.into_iter().find(|&value| {
+        sum += of(value);
         sum >= share
     });
-    significant(usual.copied().unwrap_or(0.0), 5)
+    significant(usual.unwrap_or(0.0), 5)
 }
 
 impl PageFrame {
@@ -292,11 +281,11 @@ mod tests {
     #[test]
     fn few_or_tiny_values_do_not_set_the_scale() {
         let feet_at_rest = std::iter::repeat_n(5e-7, 600);
-        assert_eq!(usual(feet_at_rest.chain([4.0, 4.4, 4.2]), Weight::Size), 4.4);
+        assert_eq!(usual(feet_at_rest.chain([4.0, 4.4, 4.2]), Weight::SIZE), 4.4);
         // A single value that is far greater than many others does not set it, either.
-        assert_eq!(usual(std::iter::repeat_n(2.0, 600).chain([40.0]), Weight::Size), 2.0);
+        assert_eq!(usual(std::iter::repeat_n(2.0, 600).chain([40.0]), Weight::SIZE), 2.0);
         // Values next to the poles of a study do not set it.
-        assert_eq!(usual(std::iter::repeat_n(17.4, 50).chain([8e11, 3e9]), Weight::Alike), 17.4);
+        assert_eq!(usual(std::iter::repeat_n(17.4, 50).chain([8e11, 3e9]), Weight::ALIKE), 17.4);
     }
 
     #[test]

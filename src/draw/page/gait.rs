@@ -104,8 +104,7 @@ impl Gait {
             let more = panels[0].title.replace('\n', ", ");
             panels[0].title = format!("\ncontacts of one state stand side by side{more}");
         }
-        let looks =
-            LOOKS.iter().filter(|look| self.states.iter().any(|state| StateLook::of(state).answer == look.answer));
+        let looks = LOOKS.into_iter().filter(|own| self.states.iter().any(|state| look(state) == *own));
         let entry = |name: &str, key| LegendEntry::new(name, key);
         let feet = feet.iter().enumerate();
         let legend = feet.map(|(foot, name)| entry(name, LegendKey::Mark(Mark::Circle, FEET[foot % FEET.len()])));
@@ -117,7 +116,7 @@ impl Gait {
         Picture {
             title: format!("{robot}: {count} of {all} states have {given}s{remark}"),
             rows: panels.into_iter().map(|panel| vec![panel]).collect(),
-            legend: legend.chain(looks.map(|look| entry(look.words, LegendKey::Fill(look.fill)))).collect(),
+            legend: legend.chain(looks.map(|(_, words, fill)| entry(words, LegendKey::Fill(fill)))).collect(),
         }
     }
 
@@ -166,8 +165,8 @@ impl Gait {
     pub fn page(&self, robot: &str, rendered: Rendered) -> Page {
         let (name, order) = self.order();
         let region = |run: &[ListedKeyframe]| {
-            let StateLook { words, fill, .. } = StateLook::of(&run[0]);
-            PageRegion { name: (*words).into(), fill: fill.hex(), borders: Vec::new() }
+            let (_, words, fill) = look(&run[0]);
+            PageRegion { name: words.into(), fill: fill.hex(), borders: Vec::new() }
         };
         let numbers = self.runs().enumerate().flat_map(|(number, run)| vec![number; run.len()]);
         let page_state = |(state, region): (&ListedKeyframe, usize)| {
@@ -181,7 +180,7 @@ impl Gait {
         let notes = (self.halvings > 0).then(thinned).into_iter().collect();
         let axes = vec![PageAxis { name: name.into(), values: order.clone() }];
         let title = format!("{}, state by state", visible(robot));
-        Page { title, axes, regions, notes, ..Page::of(&states, Weight::Size, rendered) }
+        Page { title, axes, regions, notes, ..Page::of(&states, Weight::SIZE, rendered) }
     }
 }
 
@@ -195,7 +194,7 @@ const ALONE: f64 = 0.5;
 fn bands(states: &[ListedKeyframe], order: &[f64], reach: f64) -> Vec<Band> {
     let mut bands: Vec<Band> = Vec::new();
     let mut last = None;
-    for (number, (look, &at)) in states.iter().map(StateLook::of).zip(order).enumerate() {
+    for (number, ((answer, _, fill), &at)) in states.iter().map(look).zip(order).enumerate() {
         let half = |other: Option<&f64>| other.map(|other| 0.5 * (other - at).abs());
         let before = number.checked_sub(1).and_then(|before| order.get(before));
         let [before, after] = [before, order.get(number + 1)].map(half);
@@ -203,10 +202,10 @@ fn bands(states: &[ListedKeyframe], order: &[f64], reach: f64) -> Vec<Band> {
         let side = |own: Option<f64>, other: Option<f64>| own.or(other).unwrap_or(ALONE).min(reach);
         let (from, to) = (at - side(before, after), at + side(after, before));
         match bands.last_mut() {
-            Some(band) if last == Some(look.answer) && before.is_some_and(|half| half <= reach) => band.to = to,
-            _ => bands.push(Band { from, to, letter: String::new(), fill: look.fill }),
+            Some(band) if last == Some(answer) && before.is_some_and(|half| half <= reach) => band.to = to,
+            _ => bands.push(Band { from, to, letter: String::new(), fill }),
         }
-        last = Some(look.answer);
+        last = Some(answer);
     }
     if bands.len() > BANDS { Vec::new() } else { bands }
 }
@@ -276,27 +275,21 @@ fn panel(label: &str, x: PlotAxis, marks: &[GaitMark], size: f64, value: MarkVal
     Some(Panel { title, size: (WIDTH, 180.0), shapes, ..Panel::new(x, y) })
 }
 
-struct StateLook {
-    /// The verdict; `None` if there is no answer.
-    answer: Option<Verdict>,
-    words: &'static str,
-    /// The color of bands in the picture and behind the slider.
-    fill: Color,
-}
+/// A verdict, or `None` if there is no answer, its name, and the color of its bands in the picture and behind the
+/// slider.
+type StateLook = (Option<Verdict>, &'static str, Color);
 
-impl StateLook {
-    fn of(state: &ListedKeyframe) -> &'static Self {
-        let answer = state.keyframe.answer.as_ref().ok().map(|answer| answer.verdict);
-        LOOKS.iter().find(|look| look.answer == answer).unwrap_or(&LOOKS[0])
-    }
-}
-
-static LOOKS: [StateLook; 7] = [
-    StateLook { answer: Some(Verdict::Unique), words: "unique", fill: Color::Tint(0) },
-    StateLook { answer: Some(Verdict::Ambiguous), words: "ambiguous", fill: Color::Tint(1) },
-    StateLook { answer: Some(Verdict::None), words: "none", fill: Color::Tint(5) },
-    StateLook { answer: Some(Verdict::Undecided), words: "undecided", fill: Color::Tint(11) },
-    StateLook { answer: Some(Verdict::NoImpact), words: "no impact", fill: Color::Tint(2) },
-    StateLook { answer: Some(Verdict::NoContact), words: "no contact", fill: Color::White },
-    StateLook { answer: None, words: "refused", fill: Color::Pale },
+const LOOKS: [StateLook; 7] = [
+    (Some(Verdict::Unique), "unique", Color::Tint(0)),
+    (Some(Verdict::Ambiguous), "ambiguous", Color::Tint(1)),
+    (Some(Verdict::None), "none", Color::Tint(5)),
+    (Some(Verdict::Undecided), "undecided", Color::Tint(11)),
+    (Some(Verdict::NoImpact), "no impact", Color::Tint(2)),
+    (Some(Verdict::NoContact), "no contact", Color::White),
+    (None, "refused", Color::Pale),
 ];
+
+fn look(state: &ListedKeyframe) -> StateLook {
+    let answer = state.keyframe.answer.as_ref().ok().map(|answer| answer.verdict);
+    LOOKS.into_iter().find(|look| look.0 == answer).unwrap_or(LOOKS[0])
+}

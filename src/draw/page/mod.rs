@@ -117,7 +117,7 @@ impl Page {
     /// Creates a page of one state. The live page draws its data.
     pub fn of_state(title: String, keyframe: Keyframe) -> Self {
         let state = PageState { keyframe, region: None, name: None };
-        Self { title, ..Self::of(&[state], Weight::Size, Rendered::default()) }
+        Self { title, ..Self::of(&[state], Weight::SIZE, Rendered::default()) }
     }
 
     /// Returns the plots as SVG; empty without plots.

@@ -6,11 +6,13 @@
 
 use super::{MOST, Page, PageAxis, PageRegion, PageState, Weight};
 use crate::draw::plot::{Color, Rendered, significant};
-use crate::draw::sweep::{fills_along, fills_of_map};
+use crate::draw::sweep::{different, fills_along, fills_of_map};
 use crate::draw::{Forward, Keyframe};
 use crate::error::visible;
 use crate::state::State;
-use crate::sweep::{Findings, Map, Parameter, RESOLUTION, Regime, Region, RobotStudy, Solver, Survey, Workers};
+use crate::sweep::{
+    BorderCurve, Findings, Map, Parameter, RESOLUTION, Regime, Region, RobotStudy, Solver, Survey, Workers,
+};
 use crate::write::sweep::{MapRegion, MapSweep, RegionRecord, Sweep};
 
 /// The distance of the sides of a region from its borders, as a share of the parameter's range.
@@ -115,7 +117,7 @@ impl Page {
         let axis = |(name, values): (&str, &Vec<f64>)| PageAxis { name: name.to_owned(), values: values.clone() };
         let axes = names.into_iter().zip(&stops.values).map(axis).collect();
         let notes = stops.note(parameters).into_iter().chain(notes).collect();
-        Self { title, axes, regions, notes, ..Self::of(&states, Weight::Alike, rendered) }
+        Self { title, axes, regions, notes, ..Self::of(&states, Weight::ALIKE, rendered) }
     }
 }
 
@@ -123,13 +125,8 @@ impl Page {
 fn look(model: &RobotStudy, solver: &mut Solver, point: &[f64]) -> (Keyframe, Regime) {
     let seen = solver.at(point, |robot, state, pipeline| {
         let state = State { uncertainty: None, ..state };
-        let impact = pipeline.answer(&state);
-        let regime = Regime::of(&impact);
-        let keyframe = match impact {
-            Ok(impact) => Keyframe::of_impact(robot, &model.options.feet, &state, &impact),
-            Err(error) => Keyframe::refused(error),
-        };
-        Ok((keyframe, regime))
+        let impact = pipeline.answer(&state)?;
+        Ok((Keyframe::of_impact(robot, &model.options.feet, &state, &impact), Regime::of(&Ok(impact))))
     });
     seen.unwrap_or_else(|error| (Keyframe::refused(error.clone()), Regime::of(&Err(error))))
 }
@@ -152,19 +149,16 @@ fn along(sweep: Sweep, survey: &Survey) -> (Vec<PageRegion>, Vec<String>) {
 
 fn areas(sweep: MapSweep, map: &Map) -> (Vec<PageRegion>, Vec<String>) {
     let region = |(region, fill): (&MapRegion, Color)| {
-        let mut borders: Vec<[String; 2]> = Vec::new();
-        for border in sweep.borders {
+        let border = |border: &BorderCurve| {
             let [left, right] = border.sides.map(|at| sweep.regions[at].side());
             let beyond = match (left.letter == region.letter, right.letter == region.letter) {
                 (true, _) => right,
                 (_, true) => left,
-                _ => continue,
+                _ => return None,
             };
-            let entry = [format!("toward {}", beyond.letter), border.transition.in_words([left, right])];
-            if !borders.contains(&entry) {
-                borders.push(entry);
-            }
-        }
+            Some([format!("toward {}", beyond.letter), border.transition.in_words([left, right])])
+        };
+        let borders = different(sweep.borders.iter().filter_map(border));
         PageRegion { name: region.letter.clone(), fill: fill.hex(), borders }
     };
     (sweep.regions.iter().zip(fills_of_map(map)).map(region).collect(), sweep.notes)

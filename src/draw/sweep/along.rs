@@ -10,7 +10,7 @@ use crate::law::Mode;
 use crate::pipeline::Aspect;
 use crate::sweep::{CurvePoint, Region, RegionCurves, Survey, letter};
 use crate::write::sweep::Happening;
-use crate::write::words::{self, DrawnNames, Wording};
+use crate::write::words::{self, DrawnNames, Wording, grouped};
 
 struct PlottedQuantity {
     name: (&'static str, &'static str),
@@ -50,34 +50,33 @@ pub fn picture<'s>(x: PlotAxis, aspect: Aspect, survey: &'s Survey, courses: &[R
         PlottedQuantity { name: given, of: |motion| &motion.impulse },
     ];
     let whole = Curves { survey, courses, styles: &styles, quantities };
-    let mut panels: Vec<Panel> = whole.contacts().iter().flat_map(|contact| whole.of_contact(contact)).collect();
+    let seen = survey.regions.iter().filter(|region| is_seen(region, survey));
+    let contacts = different(seen.flat_map(|region| region.regime.contacts()));
+    let mut panels: Vec<Panel> = contacts.into_iter().flat_map(|contact| whole.of_contact(contact)).collect();
     if panels.is_empty() {
         let nothing = PlotAxis { bare: true, ..PlotAxis::default() };
         panels.push(Panel { size: (WIDTH, STRIP), ..Panel::new(PlotAxis::default(), nothing) });
     }
-    let bands = |look: fn(&KindLook) -> (String, Color)| -> Vec<Band> {
-        let looks = survey.regions.iter().map(|region| (region, look(&kinds[region.kind])));
-        looks.map(|(region, (letter, fill))| Band { from: region.from, to: region.to, letter, fill }).collect()
-    };
-    panels.iter_mut().for_each(|panel| panel.bands = bands(|kind| (String::new(), kind.color)));
-    let mut explained = angles::panels(survey, courses);
-    let angles = !explained.is_empty();
-    // Panels of angles show regions of their own, so their bands have neither letters nor colors.
-    explained.iter_mut().for_each(|panel| panel.bands = bands(|_| (String::new(), Color::White)));
-    let lettered = panels.len();
-    panels.extend(explained);
+    let colored = panels.len();
+    panels.extend(angles::panels(survey, courses));
+    let angles = panels.len() > colored;
     let (count, columns) = (panels.len(), panels.len().div_ceil(COLUMN));
     let rows = count.div_ceil(columns);
     for (index, panel) in panels.iter_mut().enumerate() {
+        // Panels of angles show regions of their own, so their bands have neither letters nor colors.
+        let is_colored = index < colored;
+        let band = |&Region { from, to, kind, .. }: &Region| {
+            let KindLook { letter, color, .. } = &kinds[kind];
+            let letter = if is_colored && index % rows == 0 { letter.clone() } else { String::new() };
+            Band { from, to, letter, fill: if is_colored { *color } else { Color::White } }
+        };
+        panel.bands = survey.regions.iter().map(band).collect();
         panel.x = PlotAxis { bare: (index + 1) % rows > 0 && index + 1 < count, ..x.clone() };
-        if index < lettered {
+        if is_colored {
             panel.size.1 = panel.size.1.min(PAGE / rows as f64);
         }
         if !angles {
             panel.size.0 = WIDTHS[(columns - 1).min(2)];
-        }
-        if index < lettered && index % rows == 0 {
-            panel.bands = bands(|kind| (kind.letter.clone(), kind.color));
         }
     }
     let legend = styles.legend(&kinds, angles);
@@ -92,13 +91,7 @@ struct Curves<'a> {
     quantities: [PlottedQuantity; 2],
 }
 
-impl<'a> Curves<'a> {
-    /// Returns the names of all contacts in visible regions.
-    fn contacts(&self) -> Vec<&'a str> {
-        let seen = self.survey.regions.iter().filter(|region| is_seen(region, self.survey));
-        different(seen.flat_map(|region| region.regime.contacts()))
-    }
-
+impl Curves<'_> {
     /// Returns the panels of a contact, without quantities that are zero in all visible regions. The title names these.
     fn of_contact(&self, contact: &str) -> Vec<Panel> {
         let (drawn, zero): (Vec<_>, Vec<_>) =
@@ -196,28 +189,19 @@ impl<'a> OutcomeStyles<'a> {
     /// Assigns styles. If some visible region is ambiguous, each visible outcome has its own dashes in all regions. If
     /// there are more visible outcomes than dashes, only those of ambiguous regions have dashes.
     fn of(survey: &'a Survey, kinds: &[KindLook]) -> Self {
-        let mut styles: Vec<OutcomeStyle> = Vec::new();
-        for region in &survey.regions {
-            let contacts = region.regime.contacts();
-            let KindLook { letter, color, .. } = &kinds[region.kind];
-            let outcomes = region.regime.outcomes().unwrap_or_default();
-            let seen = is_seen(region, survey);
-            for modes in outcomes.iter().filter(|modes| !modes.is_empty()) {
-                let known = styles.iter().position(|style| (style.contacts, style.modes) == (contacts, modes));
-                let at = known.unwrap_or(styles.len());
-                if known.is_none() {
-                    let (letters, colors, ambiguous, seen) = (Vec::new(), Vec::new(), false, false);
-                    styles.push(OutcomeStyle { contacts, modes, dash: None, letters, colors, ambiguous, seen });
-                }
-                let style = &mut styles[at];
-                style.ambiguous |= outcomes.len() > 1 && seen;
-                style.seen |= seen;
-                if !style.letters.contains(letter) {
-                    style.letters.push(letter.clone());
-                    style.colors.push(*color);
-                }
-            }
-        }
+        let outcomes = |region: &'a Region| region.regime.outcomes().unwrap_or_default();
+        let valid = survey.regions.iter().flat_map(|region| {
+            let outcomes = outcomes(region).iter().filter(|modes| !modes.is_empty());
+            outcomes.map(move |modes| ((region.regime.contacts(), &modes[..]), region))
+        });
+        let style = |((contacts, modes), regions): ((&'a [String], &'a [Mode]), Vec<&'a Region>)| {
+            let seen = || regions.iter().filter(|region| is_seen(region, survey));
+            let (ambiguous, seen) = (seen().any(|region| outcomes(region).len() > 1), seen().next().is_some());
+            let looks = different(regions.iter().map(|region| region.kind)).into_iter().map(|kind| &kinds[kind]);
+            let (letters, colors) = looks.map(|look| (look.letter.clone(), look.color)).unzip();
+            OutcomeStyle { contacts, modes, dash: None, letters, colors, ambiguous, seen }
+        };
+        let mut styles: Vec<OutcomeStyle> = grouped(valid).into_iter().map(style).collect();
         let seen = styles.iter().filter(|style| style.seen).count();
         let all = seen <= Dash::ALL.len() && styles.iter().any(|style| style.ambiguous);
         let dashed = styles.iter_mut().filter(|style| style.ambiguous || all && style.seen);

@@ -13,7 +13,7 @@ use super::place::clear_of;
 use crate::draw::plot::{Color, LegendEntry, LegendKey, Panel, Pixel, PlotAxis, PlotPoint, PlotShape, Stroke, TextBox};
 use crate::error::visible;
 use crate::impact::{Explanation, ImpulseRegion};
-use crate::sweep::{RegionCurves, Survey};
+use crate::sweep::{CurvePoint, RegionCurves, Survey};
 use std::f64::consts::PI;
 
 const BETA: Stroke = Stroke::solid(Color::Black, 1.0);
@@ -59,25 +59,18 @@ struct Angles {
 
 /// Returns the runs of successive points at which a contact has angles.
 fn runs(name: &str, survey: &Survey, courses: &[RegionCurves]) -> Vec<Vec<Angles>> {
-    let mut runs: Vec<Vec<Angles>> = vec![Vec::new()];
-    for (region, course) in survey.regions.iter().zip(courses) {
+    let places = survey.regions.iter().zip(courses).flat_map(|(region, course)| {
         let contact = region.regime.contacts().iter().position(|known| known == name);
-        for place in &course.places {
-            let angles = |explanation: &Explanation| {
-                let (beta, gamma) = (*explanation.beta.get(contact?)?, *explanation.gamma.get(contact?)?);
-                Some(Angles { at: place.at, beta, gamma })
-            };
-            match (place.explanation.as_ref().and_then(angles), runs.last_mut()) {
-                (Some(angles), Some(run)) => run.push(angles),
-                _ => runs.push(Vec::new()),
-            }
-        }
-        if course.places.is_empty() {
-            runs.push(Vec::new());
-        }
-    }
-    runs.retain(|run| !run.is_empty());
-    runs
+        let angles = move |place: &CurvePoint| {
+            let Explanation { beta, gamma, .. } = place.explanation.as_ref()?;
+            Some(Angles { at: place.at, beta: *beta.get(contact?)?, gamma: *gamma.get(contact?)? })
+        };
+        // A region without points interrupts a run, too.
+        course.places.iter().map(angles).chain(course.places.is_empty().then_some(None))
+    });
+    let places: Vec<Option<Angles>> = places.collect();
+    let runs = places.split(Option::is_none).map(|run| run.iter().flatten().copied().collect());
+    runs.filter(|run: &Vec<Angles>| !run.is_empty()).collect()
 }
 
 fn panel(name: &str, runs: &[Vec<Angles>], (from, to): (f64, f64), borders: &[f64]) -> Panel {

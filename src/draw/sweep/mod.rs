@@ -16,6 +16,7 @@ use crate::draw::plot::{Color, Picture, PlotAxis};
 use crate::sweep::{Findings, Map, Regime, Region, RegionCurves, RobotStudy, Survey, Workers};
 use crate::write::sweep::Happening;
 use crate::write::words::grouped;
+use std::hash::Hash;
 
 /// The width of panels along a parameter, inside their axes \[px\].
 const WIDTH: f64 = 540.0;
@@ -69,9 +70,9 @@ struct KindLook<'a> {
     happening: Happening<'a>,
 }
 
-/// Returns each name once, in the order of first occurrence.
-fn different<'n>(names: impl Iterator<Item = &'n String>) -> Vec<&'n str> {
-    grouped(names.map(|name| (name.as_str(), ()))).into_iter().map(|(name, _)| name).collect()
+/// Returns each thing once, in the order of first occurrence.
+pub(in crate::draw) fn different<T: Clone + Eq + Hash>(things: impl Iterator<Item = T>) -> Vec<T> {
+    grouped(things.map(|thing| (thing, ()))).into_iter().map(|(thing, _)| thing).collect()
 }
 
 /// Returns whether a region is at least a pixel wide in a panel of full width, so that lines in it are visible.
