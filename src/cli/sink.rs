@@ -7,6 +7,7 @@ use crate::batch::{Block, RefusedRecord, Summary};
 use crate::draw::page::Gait;
 #[cfg(feature = "columnar")]
 use crate::write::ColumnWriter;
+use crate::write::words::counted;
 use indicatif::ProgressBar;
 use memchr::memchr_iter;
 use std::collections::HashMap;
@@ -73,10 +74,7 @@ impl<'a> OutputSink<'a> {
 
     fn ended(&self, error: io::Error) -> io::Error {
         let Some(lines) = self.lines.filter(|_| error.kind() != ErrorKind::InvalidData) else { return error };
-        io::Error::new(
-            error.kind(),
-            format!("{error}; it ends after {lines} whole line{}", if lines == 1 { "" } else { "s" }),
-        )
+        io::Error::new(error.kind(), format!("{error}; it ends after {}", counted(lines, "whole line")))
     }
 
     fn report(&mut self, RefusedRecord { error, excerpt }: RefusedRecord) {

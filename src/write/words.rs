@@ -22,6 +22,11 @@ pub(crate) fn id(id: &Value) -> Cow<'_, str> {
     id.as_str().map_or_else(|| id.to_string().into(), Cow::Borrowed)
 }
 
+/// Returns the number of things of a kind, as in `1 shape` and `2 shapes`.
+pub(crate) fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}
+
 /// Returns `margin 0.0130, index +1`, or the part that is known.
 pub(crate) fn grades(margin: Option<f64>, index: Option<i8>) -> String {
     let margin = margin.map(|margin| format!("margin {}", number(margin)));
@@ -32,7 +37,7 @@ pub(crate) fn grades(margin: Option<f64>, index: Option<i8>) -> String {
 /// Returns a clause per contact, as in `left_foot lifts off, right_foot sticks`.
 pub(crate) fn modes(names: impl IntoIterator<Item: AsRef<str>>, modes: &[Mode]) -> String {
     let clauses =
-        names.into_iter().zip(modes).map(|(name, mode)| format!("{} {}", visible(name.as_ref()), verb(*mode)));
+        names.into_iter().zip(modes).map(|(name, mode)| format!("{} {}", visible(name.as_ref()), verb(*mode)[0]));
     clauses.collect::<Vec<_>>().join(", ")
 }
 
@@ -110,6 +115,8 @@ const FORCES: Wording = Wording {
     },
 };
 
+const UNSETTLED: &str = "some sign was settled by no precision";
+
 /// The verdict `none` of sustained contact.
 pub(crate) const NO_FORCES: &str = "No forces are consistent: velocities jump";
 
@@ -124,19 +131,12 @@ impl Wording {
     /// Returns the verdict as a sentence; `open` counts the open combinations, if there are any.
     pub fn verdict(&self, verdict: Verdict, outcomes: &[Outcome], open: Option<&OpenCombinations>) -> String {
         if let Some(&OpenCombinations { combinations, undecided, beyond_budget }) = open {
-            let listed = outcomes.iter().filter(|outcome| !outcome.decided).count();
-            let listed =
-                if listed as u64 == undecided { String::new() } else { format!(", of which {listed} are listed") };
-            if beyond_budget {
+            let listed = outcomes.iter().filter(|outcome| !outcome.decided).count() as u64;
+            let listed = if listed == undecided { String::new() } else { format!(", of which {listed} are listed") };
+            if beyond_budget || !listed.is_empty() {
+                let why = if beyond_budget { "the budget of work ended (`budget`)" } else { UNSETTLED };
                 return format!(
-                    "Undecided: the budget of work ended (`budget`), and {undecided} of {combinations} combinations of \
-                     modes are open{listed}."
-                );
-            }
-            if !listed.is_empty() {
-                return format!(
-                    "Undecided: some sign was settled by no precision, and {undecided} of {combinations} combinations \
-                     of modes are open{listed}."
+                    "Undecided: {why}, and {undecided} of {combinations} combinations of modes are open{listed}."
                 );
             }
         }
@@ -145,11 +145,9 @@ impl Wording {
             Verdict::Ambiguous => {
                 let count = outcomes.len();
                 let count = NUMBERS.get(count).map_or(count.to_string(), |word| (*word).to_owned());
-                let families = outcomes.iter().any(|outcome| outcome.family);
-                let families = match families {
-                    true => format!(", and so are the families of {} between them", self.rates),
-                    false => String::new(),
-                };
+                let corner = outcomes.iter().find(|outcome| outcome.family);
+                let families = corner.map(|_| format!(", and so are the families of {} between them", self.rates));
+                let families = families.unwrap_or_default();
                 return format!("{count} outcomes are equally valid{families}.");
             }
             Verdict::None if self.drawn.given == FORCES.drawn.given => NO_FORCES,
@@ -158,7 +156,7 @@ impl Wording {
                 "No outcome is consistent: contacts that depend on each other are asked for rebounds, or are held to the \
                  ground, as no impulses can do together; lower `restitution`, or name fewer `contacts`."
             }
-            Verdict::Undecided => "Undecided: some sign was settled by no precision; what it leaves open is listed.",
+            Verdict::Undecided => return format!("Undecided: {UNSETTLED}; what it leaves open is listed."),
             Verdict::NoImpact => "No impact: the only outcome needs no impulse from the ground.",
             Verdict::NoContact => return format!("No contact: the ground gives no {}.", self.drawn.given.0),
         };
@@ -166,22 +164,13 @@ impl Wording {
     }
 }
 
-fn verb(mode: Mode) -> &'static str {
+/// Returns the mode as in `lifts off` and as in `lifting off`.
+pub(crate) fn verb(mode: Mode) -> [&'static str; 2] {
     match mode {
-        Mode::Separate => "lifts off",
-        Mode::Stick => "sticks",
-        Mode::SlidePlus => "slides forward",
-        Mode::SlideMinus => "slides backward",
-    }
-}
-
-/// Returns the mode as in `lifting off`.
-pub(crate) fn gerund(mode: Mode) -> &'static str {
-    match mode {
-        Mode::Separate => "lifting off",
-        Mode::Stick => "sticking",
-        Mode::SlidePlus => "sliding forward",
-        Mode::SlideMinus => "sliding backward",
+        Mode::Separate => ["lifts off", "lifting off"],
+        Mode::Stick => ["sticks", "sticking"],
+        Mode::SlidePlus => ["slides forward", "sliding forward"],
+        Mode::SlideMinus => ["slides backward", "sliding backward"],
     }
 }
 

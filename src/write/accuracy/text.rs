@@ -5,7 +5,7 @@ use crate::accuracy::compliant::{GREATEST_FRICTION, NEAR};
 use crate::accuracy::{CaseStudy, Factorization, Method, MethodErrors, Spread, Work, quantile};
 use crate::write::Palette;
 use crate::write::table::{Table, number};
-use crate::write::words::grouped;
+use crate::write::words::{counted, grouped};
 use std::fmt::Write;
 
 impl Accuracy {
@@ -122,9 +122,8 @@ fn list_left_out(out: &mut String, studies: &[CaseStudy]) {
 fn ending(study: &CaseStudy) -> String {
     match (&study.answer, &study.refused) {
         (Some(answer), _) => {
-            let (outcomes, s) = (answer.outcomes, if answer.outcomes == 1 { "" } else { "s" });
             let proven = if answer.proven { "proven" } else { "not proven" };
-            format!("{}, {outcomes} outcome{s}, {proven}.", answer.verdict)
+            format!("{}, {}, {proven}.", answer.verdict, counted(answer.outcomes, "outcome"))
         }
         (None, Some(error)) => format!("refused: {error}."),
         (None, None) => "no answer.".to_owned(),

@@ -2,6 +2,7 @@
 
 use crate::contact::Merged;
 use crate::pipeline::{Impact, LeftOut};
+use crate::write::words::counted;
 use crate::{Robot, description};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -20,20 +21,17 @@ pub struct LeftOutRecord<'a> {
 impl<'a> LeftOutRecord<'a> {
     /// Returns what the analysis of an impact leaves out: parts of `robot`, and what no impact depends on.
     pub fn all(robot: &'a Robot) -> Vec<Self> {
-        Self::of_robot(robot, ("gravity, Coriolis forces, joint limits", "do not enter an impact"))
+        Self::of_robot(robot, "gravity, Coriolis forces, joint limits", "do not enter an impact").collect()
     }
 
-    fn of_robot(robot: &'a Robot, (what, why): (&'static str, &'static str)) -> Vec<Self> {
-        let never = Self { what: Cow::Borrowed(what), why: Cow::Borrowed(why) };
-        let of_robot =
-            robot.left_out.iter().map(|left| Self { what: Cow::Borrowed(&left.what), why: Cow::Borrowed(&left.why) });
-        of_robot.chain([never]).collect()
+    fn of_robot(robot: &'a Robot, never: &'static str, why: &'static str) -> impl Iterator<Item = Self> {
+        let parts = robot.left_out.iter().map(|left| (&*left.what, &*left.why));
+        parts.chain([(never, why)]).map(|(what, why)| Self { what: what.into(), why: why.into() })
     }
 
     /// Returns what the analysis of `impact` leaves out: first parts of the scene, then those of its `robot`.
     pub fn of_impact(robot: &'a Robot, impact: &Impact) -> Vec<Self> {
         let contacts = |of: &[usize]| of.iter().map(|&at| &*impact.contacts[at].name).collect::<Vec<_>>().join(", ");
-        let shapes = |count: usize| if count == 1 { "1 shape".to_owned() } else { format!("{count} shapes") };
         let of_scene = impact.left_out.iter().map(|left| {
             let (what, why) = match left {
                 LeftOut::Column(joint) => (
@@ -41,14 +39,13 @@ impl<'a> LeftOutRecord<'a> {
                     "braked: it keeps its rate and has no column".into(),
                 ),
                 LeftOut::OutOfReach(count) => {
-                    (format!("{} out of reach", shapes(*count)), "too high to reach the ground".into())
+                    (counted(*count, "shape") + " out of reach", "too high to reach the ground".into())
                 }
                 LeftOut::NotAsked(count) => {
-                    (format!("{} of the file", shapes(*count)), "contacts are named by hand".into())
+                    (counted(*count, "shape") + " of the file", "contacts are named by hand".into())
                 }
                 LeftOut::Merged(Merged { inner, outer, off, .. }) => {
-                    let points =
-                        if *inner == 1 { "1 contact point".to_owned() } else { format!("{inner} contact points") };
+                    let points = counted(*inner, "contact point");
                     let off = if *off > 0.0 { format!(", at most {off:.1e} m off their line") } else { String::new() };
                     let why = format!("the outer points of the same body on straight ground act for them{off}");
                     (format!("{points} next to {}", contacts(outer)), why.into())
@@ -58,10 +55,9 @@ impl<'a> LeftOutRecord<'a> {
             };
             Self { what: Cow::Owned(what), why }
         });
-        let of_robot = match impact.sustained {
-            None => Self::all(robot),
-            Some(_) => Self::of_robot(robot, ("joint limits", "do not enter the forces")),
-        };
-        of_scene.chain(of_robot).collect()
+        match impact.sustained {
+            None => of_scene.chain(Self::all(robot)).collect(),
+            Some(_) => of_scene.chain(Self::of_robot(robot, "joint limits", "do not enter the forces")).collect(),
+        }
     }
 }

@@ -194,10 +194,7 @@ impl<'w> Writer<'w> {
         match self.report.sustained.and_then(|(own, _)| own.shock.as_deref()) {
             None => format!("{sentence} whose outcomes are not decided."),
             Some([]) => format!("{sentence}, for which there is none with an impulse, either."),
-            Some(shock) => {
-                let shock: Vec<String> = shock.iter().map(|own| self.in_words(&own.modes)).collect();
-                format!("{sentence}: {}.", shock.join("; or "))
-            }
+            Some(shock) => format!("{sentence}: {}.", self.alternatives(shock.iter().map(|own| &own.modes))),
         }
     }
 
@@ -206,8 +203,7 @@ impl<'w> Writer<'w> {
         let answer = match (holds, &self.report.counterexample) {
             (Some(true), _) => "yes".to_owned(),
             (Some(false), Some(other)) => {
-                let outcomes: Vec<String> = other.outcomes.iter().map(|modes| self.in_words(modes)).collect();
-                format!("no; a state in it (`format: json`) has: {}", outcomes.join("; or "))
+                format!("no; a state in it (`format: json`) has: {}", self.alternatives(other.outcomes.iter()))
             }
             (Some(false), None) => "no".to_owned(),
             (None, _) => "unknown".to_owned(),
@@ -303,6 +299,10 @@ impl<'w> Writer<'w> {
 
     fn in_words(&self, modes: &[Mode]) -> String {
         words::modes(self.names(), modes)
+    }
+
+    fn alternatives<'m>(&self, all: impl Iterator<Item = &'m Vec<Mode>>) -> String {
+        all.map(|modes| self.in_words(modes)).collect::<Vec<_>>().join("; or ")
     }
 }
 

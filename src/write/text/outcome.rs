@@ -60,8 +60,7 @@ impl Writer<'_> {
             (Verdict::Undecided, all) => format!("undecided; {}", all.join("; or ")),
             (_, all) => all.join("; or "),
         };
-        let grade = if *proven { "" } else { " (not proven)" };
-        writeln!(self.out, "  just after: {words}{grade}")
+        writeln!(self.out, "  just after: {words}{}", if *proven { "" } else { " (not proven)" })
     }
 
     /// Writes one line per family: its modes and the numbers of the outcomes at its corners.
@@ -82,9 +81,10 @@ impl Writer<'_> {
     fn border(&mut self, outcome: &Outcome) -> std::fmt::Result {
         let Some(border) = &outcome.border else { return Ok(()) };
         write!(self.out, "  exactly on a border: {}", words::at_zero(border))?;
-        let beyond: Vec<String> = border.neighbours.iter().map(|modes| self.in_words(modes)).collect();
-        let beyond = if beyond.is_empty() { String::new() } else { format!("; beyond it {}", beyond.join("; or ")) };
-        writeln!(self.out, "{beyond}")
+        if !border.neighbours.is_empty() {
+            write!(self.out, "; beyond it {}", self.alternatives(border.neighbours.iter()))?;
+        }
+        writeln!(self.out)
     }
 
     fn loops(&mut self, outcome: &Outcome) {
