@@ -11,6 +11,7 @@ use crate::{Error, Mode, Outcome, Reason, Result, Robot};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::HashSet;
+use std::ops::Range;
 
 /// The columns between those that name the state and those of the contacts.
 const FIRST: [&str; 4] = ["verdict", "outcome", "margin", "proven"];
@@ -47,11 +48,12 @@ pub struct Columns {
     names: Vec<String>,
     kinds: Vec<Kind>,
     /// The number of columns that identify the state.
-    pub(super) named: usize,
+    named: usize,
     /// The contacts that have columns, in the order of the columns.
     contacts: Vec<String>,
-    pub(super) coordinates: usize,
-    carried: usize,
+    /// The indices of the columns of velocities, of which a brief table has none.
+    velocities: Range<usize>,
+    carried: Range<usize>,
     pub(super) layout: Layout,
     /// The Arrow schema of the carried columns, if they have types.
     #[cfg(feature = "columnar")]
@@ -139,8 +141,7 @@ impl Columns {
     #[cfg(feature = "columnar")]
     fn with_types(mut self, input: Option<&Header>) -> Self {
         let Some((carried, integers)) = input.and_then(|header| header.types.clone()) else { return self };
-        let places = self.last() - self.carried..self.last();
-        places.zip(0..).for_each(|(at, which)| self.kinds[at] = Kind::Carried(which));
+        self.carried.clone().zip(0..).for_each(|(at, which)| self.kinds[at] = Kind::Carried(which));
         if integers {
             self.kinds[0] = Kind::Integer;
         }
@@ -190,14 +191,18 @@ impl Columns {
         // Each column with whether a brief table keeps it.
         let columns = named.iter().copied().chain(first).map(|(name, kind)| (name.to_owned(), kind, true));
         let mut columns: Vec<(String, Kind, bool)> = columns.collect();
+        let is_shown = |&(.., in_brief): &(String, Kind, bool)| in_brief || !brief;
+        let count = |columns: &[_]| columns.iter().filter(|column| is_shown(column)).count();
         for contact in &contacts {
             columns.push((format!("mode_{contact}"), Text, true));
             columns.extend(["t", "n"].map(|entry| (format!("{given}_{contact}_{entry}"), Number, false)));
         }
-        let coordinates = |part: &'static str, is_brief| {
-            in_columns(robot).map(move |name| (format!("{part}_{name}"), Number, is_brief))
+        let coordinates = |part: &'static str, in_brief| {
+            in_columns(robot).map(move |name| (format!("{part}_{name}"), Number, in_brief))
         };
+        let start = count(&columns);
         columns.extend(coordinates(taken, false));
+        let velocities = start..count(&columns);
         if touchdowns {
             let kinds = [Integer, Number, Text, Number, Text, Text];
             let own = TOUCHDOWN.into_iter().zip(kinds);
@@ -207,6 +212,7 @@ impl Columns {
         let own: HashSet<String> =
             columns.iter().map(|(name, ..)| name.clone()).chain(LAST.map(str::to_owned)).collect();
         let taken: HashSet<&str> = through.iter().map(|(name, _)| *name).collect();
+        let start = count(&columns);
         for &(column, kind) in through {
             let mut name = column.to_owned();
             while own.contains(&name) || (name != column && taken.contains(name.as_str())) {
@@ -215,16 +221,15 @@ impl Columns {
             columns.push((name, kind, true));
         }
         let last = LAST.into_iter().zip([Text, Boolean, Text, Text, Text]).zip([false, true, true, true, false]);
-        columns.extend(last.map(|((name, kind), is_brief)| (name.to_owned(), kind, is_brief)));
-        let shown = columns.into_iter().filter(|&(.., is_brief)| is_brief || !brief);
-        let (names, kinds) = shown.map(|(name, kind, _)| (name, kind)).unzip();
+        columns.extend(last.map(|((name, kind), in_brief)| (name.to_owned(), kind, in_brief)));
+        let (names, kinds) = columns.into_iter().filter(is_shown).map(|(name, kind, _)| (name, kind)).unzip();
         Self {
             names,
             kinds,
             named: named.len(),
             contacts,
-            coordinates: if brief { 0 } else { robot.dofs() },
-            carried: through.len(),
+            velocities,
+            carried: start..start + through.len(),
             layout,
             #[cfg(feature = "columnar")]
             types: None,
@@ -327,8 +332,8 @@ impl Columns {
             row.set(1, Cell::Integer(line as i64));
         }
         if let Some(carried) = carried {
-            let places = self.last() - self.carried..self.last();
-            places.zip(0..carried.len()).for_each(|(at, which)| row.set(at, Cell::Carried(carried, which)));
+            let places = self.carried.clone().zip(0..carried.len());
+            places.for_each(|(at, which)| row.set(at, Cell::Carried(carried, which)));
         }
     }
 
@@ -343,15 +348,12 @@ impl Columns {
         self.name_state((id, line, carried), row);
         row.set(self.named, Cell::Text(analysis.verdict.name()));
         if let Some(touchdown) = touchdown.filter(|_| self.layout.touchdowns) {
-            let start = self.velocities() + self.coordinates;
-            row.set(start, Cell::Integer(touchdown.row as i64));
-            row.set(start + 1, Cell::Number(touchdown.time));
-            row.set(start + 2, Cell::Text(&touchdown.striking));
-            row.set(start + 3, Cell::Number(touchdown.shift_z));
-            row.set(start + 4, Cell::Text(&touchdown.at));
-            row.set(start + 5, Cell::Text(&touchdown.touching));
-            let coordinates = (start + TOUCHDOWN.len()..).zip(&touchdown.coordinates);
-            coordinates.for_each(|(at, &number)| row.set(at, Cell::Number(number)));
+            let Touchdown { row: line, time, striking, shift_z, at, touching, coordinates, .. } = touchdown;
+            let (line, time, shift) = (Cell::Integer(*line as i64), Cell::Number(*time), Cell::Number(*shift_z));
+            let found = [line, time, Cell::Text(striking), shift, Cell::Text(at), Cell::Text(touching)];
+            let coordinates = coordinates.iter().map(|&number| Cell::Number(number));
+            let cells = (self.velocities.end..).zip(found.into_iter().chain(coordinates));
+            cells.for_each(|(at, cell)| row.set(at, cell));
         }
         if !self.layout.brief {
             row.set(self.family() + 3, Cell::Text(&notes(impact)));
@@ -376,44 +378,25 @@ impl Columns {
             row.set(self.named + FIRST.len() + 1, Cell::Text(&modes.collect::<Vec<_>>().join("; ")));
         }
         if outcome.decided {
-            let velocities = outcome.velocity().take(self.coordinates);
-            velocities.zip(self.velocities()..).for_each(|(velocity, at)| row.set(at, Cell::Number(velocity)));
+            let velocities = self.velocities.clone().zip(outcome.velocity());
+            velocities.for_each(|(at, velocity)| row.set(at, Cell::Number(velocity)));
         }
         if !self.layout.brief {
-            row.set(self.last(), Cell::Text(&border(outcome)));
+            row.set(self.carried.end, Cell::Text(&border(outcome)));
         }
         row.set(self.family(), Cell::Boolean(outcome.family));
     }
 
-    /// The index of the first of the last columns.
-    pub(super) fn last(&self) -> usize {
-        self.names.len() - LAST.len() + if self.layout.brief { 2 } else { 0 }
-    }
-
     /// The index of the column `family`, which is one of the last columns.
-    pub(super) fn family(&self) -> usize {
-        self.last() + usize::from(!self.layout.brief)
-    }
-
-    /// The index of the first velocity column.
-    pub(super) fn velocities(&self) -> usize {
-        self.contacts_start() + self.of_contact() * self.contacts.len()
-    }
-
-    /// The index of the first column of contacts.
-    pub(super) fn contacts_start(&self) -> usize {
-        self.named + FIRST.len() + if self.layout.next { NEXT.len() } else { 0 }
-    }
-
-    /// The number of columns per contact.
-    pub(super) fn of_contact(&self) -> usize {
-        if self.layout.brief { 1 } else { 3 }
+    fn family(&self) -> usize {
+        self.carried.end + usize::from(!self.layout.brief)
     }
 
     /// The index of the first column of `contact`.
     fn place(&self, contact: &str) -> Result<usize> {
         let at = self.contacts.iter().position(|known| known == contact).ok_or_else(|| no_column(contact))?;
-        Ok(self.contacts_start() + self.of_contact() * at)
+        let of_contact = if self.layout.brief { 1 } else { 3 };
+        Ok(self.velocities.start - of_contact * (self.contacts.len() - at))
     }
 }
 
