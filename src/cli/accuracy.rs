@@ -14,7 +14,7 @@ use crate::accuracy::{Budget, Case, CaseStudy, CaseSubject, cases, of_state, stu
 use crate::pipeline::Options;
 use crate::state::{Defaults, State};
 use crate::write::{Accuracy, Compliant, titled};
-use crate::{Error, Reason, Robot};
+use crate::{Reason, Robot};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -119,9 +119,8 @@ const WALKER: &str = "friction infinite, biped";
 fn suite(part: &str, no_proof: bool, budget: Budget) -> Result<Accuracy, Failure> {
     let chosen: Vec<Case> = cases()?.into_iter().filter(|case| case.name.contains(part)).collect();
     if chosen.is_empty() {
-        let reason = Reason::Inconsistent(format!("no case has \"{part}\" in its name"));
         let hint = "`heelstrike accuracy --list` shows the names of all cases";
-        return Err(Failure::Usage(Error::new(reason).at("--case").hint(hint)));
+        return Err(Failure::usage("--case", format!("no case has \"{part}\" in its name"), hint));
     }
     let options = Options { no_proof, ..Options::default() };
     let studies = chosen.iter().map(|case| study(&case.name, &case.subject, &options, budget)).collect();

@@ -22,7 +22,7 @@ use crate::pipeline::{Aspect, Options, beyond_size};
 #[cfg(feature = "columnar")]
 use crate::read::table::Parts;
 use crate::read::table::{Form, Header, Rates};
-use crate::state::{Defaults, NamedContact};
+use crate::state::Defaults;
 #[cfg(feature = "columnar")]
 use crate::write::ColumnWriter;
 use crate::write::{self, Columns, Layout, notes};
@@ -132,8 +132,9 @@ pub(super) fn run(args: &Args) -> Completion {
     // This refuses a robot without feet before any file is replaced.
     let thresholds = args.recording.thresholds(&robot, &feet);
     let thresholds = thresholds.map_err(|error| error.in_file(input::name(&args.robot.robot)))?;
+    let aspect = if args.forces { Aspect::Forces } else { Aspect::Impact };
     let layout = Layout {
-        aspect: args.aspect(),
+        aspect,
         touchdowns: args.recording.touchdowns,
         next: args.next.next,
         brief: args.detail.brief,
@@ -142,7 +143,20 @@ pub(super) fn run(args: &Args) -> Completion {
     };
     let columns = (format != Form::Ndjson).then(|| Columns::new(&robot, &feet, header.as_ref(), layout));
     let size = Feet::new(&robot, &feet).size();
-    let question = args.question(&robot, feet, header.as_ref(), columns.as_ref())?;
+    // The summary, if it is shown, and the picture need this.
+    let friction_needed = args.summary.is_some() || args.plot.path().is_some() || !is_quiet();
+    let (budget, contacts) = (args.budget.budget(), &args.scene.contacts);
+    let options = pipeline_options(contacts, feet, args.detail, &args.robot.reductions, budget);
+    let question = Question {
+        robot: &robot,
+        options: Options { aspect, next: args.next.next, friction_needed, ..options },
+        defaults: args.scene.defaults(&robot)?,
+        detail: args.detail.detail(),
+        total: args.budget.of_many(args.budget_total),
+        header: header.as_ref(),
+        columns: columns.as_ref(),
+        keyframes: args.plot.path().is_some(),
+    };
     // Results that are not brief contain this note themselves.
     let tolerance = question.options.contact_tolerance.filter(|_| args.detail.brief);
     let lengths = args.recording.lengths().chain([("a contact tolerance", tolerance)]);
@@ -192,10 +206,6 @@ pub(super) fn run(args: &Args) -> Completion {
 }
 
 impl Args {
-    fn aspect(&self) -> Aspect {
-        if self.forces { Aspect::Forces } else { Aspect::Impact }
-    }
-
     /// Returns the formats of input and output. Refuses options that these formats do not support.
     fn formats(&self) -> Result<[Form; 2], Failure> {
         let input = format::form((Some(&self.states), false), self.input_format, "--input-format")?;
@@ -204,15 +214,12 @@ impl Args {
         if output != Form::Ndjson {
             self.detail.check_table("--output-format")?;
         }
-        let refuse = |reason: &str, hint: &str| {
-            Err(Failure::Usage(Error::new(Reason::Inconsistent(reason.to_owned())).hint(hint)))
-        };
         if self.resume && !(input.is_text() && output.is_text()) {
-            return refuse("--resume continues text, and not Parquet or Arrow", "leave it out");
+            return Err(Failure::usage("", "--resume continues text, and not Parquet or Arrow", "leave it out"));
         }
         if input == Form::Parquet && self.states == Path::new("-") {
             let reason = "Parquet is read from its end, and standard input has none";
-            return refuse(reason, "name the file, or give an Arrow stream: --input-format arrows");
+            return Err(Failure::usage("", reason, "name the file, or give an Arrow stream: --input-format arrows"));
         }
         Ok([input, output])
     }
@@ -256,43 +263,10 @@ impl Args {
         spare(Some(summary), &inputs)?;
         if summary == Path::new("-") {
             let reason = "standard output holds the results alone, and standard error has the summary for people";
-            let error = Error::new(Reason::Inconsistent(reason.to_owned())).at("--summary");
-            return Err(Failure::Usage(error.hint("name a file")));
+            return Err(Failure::usage("--summary", reason, "name a file"));
         }
         apart([("results", output), ("summary", Some(summary))], "--summary")?;
         apart([("summary", Some(summary)), ("picture", self.plot.path())], "--plot")
-    }
-
-    /// Returns the question to each state.
-    fn question<'a>(
-        &self,
-        robot: &'a Robot,
-        feet: Vec<NamedContact>,
-        header: Option<&'a Header>,
-        columns: Option<&'a Columns>,
-    ) -> Result<Question<'a>, Failure> {
-        Ok(Question {
-            robot,
-            options: Options {
-                aspect: self.aspect(),
-                next: self.next.next,
-                // The summary, if it is shown, and the picture need it.
-                friction_needed: self.summary.is_some() || self.plot.path().is_some() || !is_quiet(),
-                ..pipeline_options(
-                    &self.scene.contacts,
-                    feet,
-                    self.detail,
-                    &self.robot.reductions,
-                    self.budget.budget(),
-                )
-            },
-            defaults: self.scene.defaults(robot)?,
-            detail: self.detail.detail(),
-            total: self.budget.of_many(self.budget_total),
-            header,
-            columns,
-            keyframes: self.plot.path().is_some(),
-        })
     }
 
     /// Opens the output for answers, which begin with the header `head` of a table.
@@ -303,7 +277,14 @@ impl Args {
         head: &[u8],
         origin: Origin,
     ) -> io::Result<BatchOutput> {
-        let asked = self.asked(question, format);
+        // The address of a budget's clock differs in each run. Needed friction is only for summary and picture.
+        let options = Options { budget: None, friction_needed: false, ..question.options.clone() };
+        let Question { robot, defaults, detail, header, .. } = question;
+        // All that the answers depend on, except the input.
+        let asked = Asked::new(
+            robot,
+            &(options, self.budget, self.budget_total, defaults, detail, header, &self.recording, self.csv, format),
+        );
         match self.output.as_deref().filter(|path| self.resume && *path != Path::new("-")) {
             // Summaries and pictures need the answers to all states.
             Some(path) => BatchOutput::resume(path, head, self.summary.is_some() || question.keyframes, origin, asked),
@@ -312,17 +293,6 @@ impl Args {
                 BatchOutput::create(self.output.as_deref(), origin, continued.then_some(asked))
             }
         }
-    }
-
-    /// Returns a digest of everything that the answers depend on, except the input.
-    fn asked(&self, question: &Question<'_>, format: Form) -> Asked {
-        // The address of a budget's clock differs in each run. Needed friction is only for summary and picture.
-        let options = Options { budget: None, friction_needed: false, ..question.options.clone() };
-        let Question { robot, defaults, detail, header, .. } = question;
-        Asked::new(
-            robot,
-            &(options, self.budget, self.budget_total, defaults, detail, header, &self.recording, self.csv, format),
-        )
     }
 
     /// Answers all states except the first `answered`.
@@ -416,16 +386,15 @@ impl Args {
         // Only for JSON: an input in a table format without a header has no states at all.
         if header.is_none() && format == Form::Ndjson && (in_order || !self.foreign.is_empty()) {
             let what = if in_order { "touchdowns and velocities over time need" } else { "--foreign needs" };
-            let error = Error::new(Reason::Inconsistent(format!("{what} a table")));
             let hint = "give CSV with a header (--input-format csv), or a flat object on each line: `jq -c '.[]'` takes a \
                         list apart";
-            return Err(Failure::Usage(error.hint(hint)));
+            return Err(Failure::usage("", format!("{what} a table"), hint));
         }
-        let header = match (header, self.recording.touchdowns) {
-            (Some(header), true) => header.with_base().map(Some),
-            (Some(header), false) if self.forces => header.without_torques(robot).map(Some),
-            (header, _) => Ok(header),
+        let checked = |header: Header| match self.forces {
+            _ if self.recording.touchdowns => header.with_base(),
+            true => header.without_torques(robot),
+            false => Ok(header),
         };
-        Ok(header.map_err(|error| error.in_file(input::name(&self.states)))?)
+        Ok(header.map(checked).transpose().map_err(|error| error.in_file(input::name(&self.states)))?)
     }
 }

@@ -11,7 +11,6 @@ use crate::draw::robot::picture;
 use crate::pipeline::{Aspect, Pipeline};
 use crate::state::State;
 use crate::write::{Report, Subject, notes};
-use crate::{Error, Reason};
 use std::path::PathBuf;
 
 /// Find every outcome of one state
@@ -74,8 +73,8 @@ impl StateArgs {
         (options.aspect, options.next) = (aspect, next);
         let defaults = self.scene.defaults(&robot)?;
         let plotted = self.plot.path().is_some();
-        let several = Reason::Inconsistent("a picture is drawn of one state, and several are given".into());
-        let several = Failure::Usage(Error::new(several).at("--plot").hint("give the states one by one"));
+        let several = "a picture is drawn of one state, and several are given";
+        let several = Failure::usage("--plot", several, "give the states one by one");
         let several = if plotted { Err(several) } else { Ok(()) };
         let (mut pipeline, mut drawn) = (Pipeline::new(&robot, options), None);
         let (mut own_friction, mut own_contacts) = (0, 0);

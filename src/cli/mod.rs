@@ -36,6 +36,7 @@ pub use robot::{BASES, PLANES};
 use crate::error::excerpt::Excerpt;
 use crate::error::visible;
 use crate::pipeline::Aspect;
+use crate::{Error, Reason};
 use anstream::{AutoStream, ColorChoice};
 use clap::error::{ContextKind, ContextValue};
 use clap::{Parser, Subcommand};
@@ -95,15 +96,22 @@ Examples:
 /// The reason why a command ended early.
 enum Failure {
     /// An input that the command needs was refused, such as the robot's file; with an excerpt of the line in question.
-    Refused(crate::Error, Option<Excerpt>),
+    Refused(Error, Option<Excerpt>),
     /// The value of an option is wrong or does not fit the robot.
-    Usage(crate::Error),
+    Usage(Error),
     /// The output could not be written.
     Output(io::Error),
 }
 
-impl From<crate::Error> for Failure {
-    fn from(error: crate::Error) -> Self {
+impl Failure {
+    /// Creates the failure for a wrong use of `option`; it is empty if several do not fit together.
+    fn usage(option: &str, reason: impl Into<String>, hint: impl Into<String>) -> Self {
+        Self::Usage(Error::new(Reason::Inconsistent(reason.into())).at(option).hint(hint))
+    }
+}
+
+impl From<Error> for Failure {
+    fn from(error: Error) -> Self {
         Self::Refused(error, None)
     }
 }
@@ -204,7 +212,7 @@ fn status(failure: Failure) -> u8 {
         // The reader closed the pipe, as `| head` does.
         Failure::Output(error) if error.kind() == io::ErrorKind::BrokenPipe => return 0,
         Failure::Output(error) => {
-            report(&crate::Reason::Io(format!("the output cannot be written: {error}")).into());
+            report(&Reason::Io(format!("the output cannot be written: {error}")).into());
         }
         Failure::Refused(error, excerpt) => report_with(&error, excerpt.as_ref()),
         Failure::Usage(error) => {

@@ -9,8 +9,8 @@ use crate::pipeline;
 use crate::read::loops_from_json;
 use crate::reductions::Reductions;
 use crate::robot::Base;
-use crate::state::{Defaults, NamedContact, NamedLoop, PLACED_BY_JOINTS};
-use crate::{Budget, Detail, Error, Reason, Robot};
+use crate::state::{Defaults, NamedContact, PLACED_BY_JOINTS};
+use crate::{Budget, Detail, Robot};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use std::path::PathBuf;
 use std::thread::available_parallelism;
@@ -47,14 +47,12 @@ pub(super) struct SceneOptions {
 impl SceneOptions {
     /// Returns the defaults for states of `robot`.
     pub fn defaults(&self, robot: &Robot) -> Result<Defaults, Failure> {
-        let (loops, place_lowest) = (self.read_loops(robot)?, self.contacts.place_lowest(robot)?);
-        Ok(Defaults { loops, place_lowest, ..self.friction.defaults() })
-    }
-
-    fn read_loops(&self, robot: &Robot) -> Result<Vec<NamedLoop>, Failure> {
-        let Some(path) = &self.loops else { return Ok(Vec::new()) };
-        let input = InputFile::read(path, InputFile::SMALL)?;
-        input.text().and_then(|text| loops_from_json(text, robot)).map_err(|error| input.refuse(error))
+        let read = |path| {
+            let input = InputFile::read(path, InputFile::SMALL)?;
+            input.text().and_then(|text| loops_from_json(text, robot)).map_err(|error| input.refuse(error))
+        };
+        let loops = self.loops.as_deref().map(read).transpose()?.unwrap_or_default();
+        Ok(Defaults { loops, place_lowest: self.contacts.place_lowest(robot)?, ..self.friction.defaults() })
     }
 }
 
@@ -92,9 +90,8 @@ impl ContactOptions {
     /// Returns an error if it is, but the base is fixed.
     pub fn place_lowest(&self, robot: &Robot) -> Result<bool, Failure> {
         if self.place && robot.base == Base::Fixed {
-            let bolted = Reason::Inconsistent("the robot is bolted to the world, it cannot be placed".into());
-            let error = Error::new(bolted).at("--place").hint(PLACED_BY_JOINTS);
-            return Err(Failure::Usage(error));
+            let bolted = "the robot is bolted to the world, it cannot be placed";
+            return Err(Failure::usage("--place", bolted, PLACED_BY_JOINTS));
         }
         Ok(self.place)
     }
@@ -118,10 +115,8 @@ impl CsvOptions {
         if !self.csv_safe || is_csv {
             return Ok(());
         }
-        let reason = Reason::Inconsistent("it is for CSV, and the output is something else".into());
-        Err(Failure::Usage(
-            Error::new(reason).at("--csv-safe").hint("write to a file that ends in .csv, or leave it out"),
-        ))
+        let hint = "write to a file that ends in .csv, or leave it out";
+        Err(Failure::usage("--csv-safe", "it is for CSV, and the output is something else", hint))
     }
 }
 
@@ -154,8 +149,7 @@ impl DetailOptions {
             return Ok(());
         }
         let reason = "a table has a row per outcome and no room for --explain or --matrices";
-        let hint = format!("write JSON: {option} ndjson, or -o with that ending");
-        Err(Failure::Usage(Error::new(Reason::Inconsistent(reason.into())).hint(hint)))
+        Err(Failure::usage("", reason, format!("write JSON: {option} ndjson, or -o with that ending")))
     }
 
     /// Refuses details that a text of regions does not show. `explain` is allowed if a picture is `plotted`.
@@ -165,7 +159,7 @@ impl DetailOptions {
         }
         let reason = "text lists regions, and --brief, --explain and --matrices are for the results at samples";
         let hint = "write JSON: --format json, or -o with that ending; --explain is also for --plot";
-        Err(Failure::Usage(Error::new(Reason::Inconsistent(reason.into())).hint(hint)))
+        Err(Failure::usage("", reason, hint))
     }
 }
 
@@ -198,12 +192,11 @@ const REDUCTIONS: Choices<fn(&mut Reductions)> = &[
 
 impl ReductionOptions {
     pub fn reductions(&self) -> Reductions {
-        let parts = match self.no_reduction.as_deref() {
-            Some([]) => return Reductions::NONE,
-            parts => parts.unwrap_or_default(),
-        };
         let mut reductions = Reductions::ALL;
-        parts.iter().for_each(|skip| skip(&mut reductions));
+        match self.no_reduction.as_deref() {
+            Some([]) => return Reductions::NONE,
+            parts => parts.into_iter().flatten().for_each(|skip| skip(&mut reductions)),
+        }
         reductions
     }
 }
@@ -250,10 +243,7 @@ const MOST_THREADS: i64 = 1024;
 
 /// Returns the number of threads: `count`, but at most 1,024, or one per core for 0.
 pub fn threads(count: usize) -> usize {
-    match count {
-        0 => available_parallelism().map_or(1, usize::from),
-        count => count.min(MOST_THREADS as usize),
-    }
+    if count == 0 { available_parallelism().map_or(1, usize::from) } else { count.min(MOST_THREADS as usize) }
 }
 
 /// How much time the work may take: per state or problem, or a whole `STUDY`.
@@ -277,36 +267,34 @@ pub type Seconds = Option<Duration>;
 /// # Errors
 /// Returns a text about the expected values if `text` is none of them.
 pub fn seconds(text: &str) -> Result<Seconds, String> {
-    if text == "infinite" {
-        return Ok(None);
-    }
-    let seconds = text.parse().ok().and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
-    seconds.map(Some).ok_or_else(|| "expected a number of seconds from 0 on, or \"infinite\"".to_owned())
+    let seconds = |text: &str| Duration::try_from_secs_f64(text.parse().ok()?).ok().map(Some);
+    let seconds = if text == "infinite" { Some(None) } else { seconds(text) };
+    seconds.ok_or_else(|| "expected a number of seconds from 0 on, or \"infinite\"".to_owned())
 }
 
 impl<const STUDY: bool> BudgetOptions<STUDY> {
     /// Returns the budget in processor time; `None` if it is infinite.
     pub fn budget(self) -> Option<Budget> {
-        self.budget.map(|time| Budget { time, clock: work_time })
+        self.budget.map(of_work)
     }
+}
+
+fn of_work(time: Duration) -> Budget {
+    Budget { time, clock: work_time }
 }
 
 impl BudgetOptions<false> {
     /// Returns the budget of many states. Beyond their own budgets they may take `total` together. `None` if infinite.
     pub fn of_many(self, total: Option<Seconds>) -> Option<TotalBudget> {
-        let budget = self.budget().or_else(|| total.flatten().map(|time| Budget { time, clock: work_time }))?;
-        match total {
-            Some(None) => None,
-            total => Some(TotalBudget::new(budget, total.flatten())),
-        }
+        let budget = self.budget().or(total.flatten().map(of_work))?;
+        (total != Some(None)).then(|| TotalBudget::new(budget, total.flatten()))
     }
 }
 
 impl BudgetOptions<true> {
     /// Returns the budget that all threads of a study share.
     pub fn shared(self) -> SharedBudget {
-        let endless = Budget { time: Duration::MAX, clock: work_time };
-        SharedBudget::new(self.budget().unwrap_or(endless))
+        SharedBudget::new(of_work(self.budget.unwrap_or(Duration::MAX)))
     }
 }
 
@@ -337,8 +325,6 @@ pub(super) fn pipeline_options(
 /// # Errors
 /// Returns a text about the expected values if `text` is none of them.
 pub fn from_zero(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(number) if f64::is_finite(number) && number >= 0.0 => Ok(number),
-        _ => Err("expected a number from 0 on".to_owned()),
-    }
+    let number = text.parse().ok().filter(|number| (0.0..f64::INFINITY).contains(number));
+    number.ok_or_else(|| "expected a number from 0 on".to_owned())
 }

@@ -125,8 +125,8 @@ pub(super) fn apart(
     if !same_name && !same_file {
         return Ok(());
     }
-    let reason = Reason::Inconsistent(format!("{what} and {other_what} would be written to the same file"));
-    Err(Failure::Usage(Error::new(reason).at(option).hint("name two files")))
+    let reason = format!("{what} and {other_what} would be written to the same file");
+    Err(Failure::usage(option, reason, "name two files"))
 }
 
 /// Checks that a file can be written, and leaves it unchanged. Pipes and devices are not checked.

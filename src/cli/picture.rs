@@ -41,24 +41,21 @@ impl<const PAGES: bool> PlotOptions<PAGES> {
     /// picture whose file has an unknown ending, is that of the results, or cannot be written.
     pub fn claim(&self, inputs: &[Option<&PathBuf>], results: Option<&Path>) -> Result<(), Failure> {
         spare(results, inputs)?;
+        let refuse = |reason, hint| Err(Failure::usage("--plot", reason, hint));
         let picture = "a picture is written as .svg or .png";
-        let refused = match (self.ending().as_deref(), PAGES) {
-            (Some("svg" | "png"), _) | (Some("html"), true) => None,
-            _ if self.plot.is_none() => None,
-            (Some("html"), false) => {
-                let hint =
-                    "name a file that ends in .svg or .png; interactive pages are written by `sweep` and `batch`";
-                Some((picture, hint))
-            }
-            (_, false) => Some((picture, "name a file that ends in .svg or .png")),
-            (_, true) => Some((
+        match (self.ending().as_deref(), PAGES) {
+            (Some("svg" | "png"), _) | (Some("html"), true) => Ok(()),
+            _ if self.plot.is_none() => Ok(()),
+            (Some("html"), false) => refuse(
+                picture,
+                "name a file that ends in .svg or .png; interactive pages are written by `sweep` and `batch`",
+            ),
+            (_, false) => refuse(picture, "name a file that ends in .svg or .png"),
+            (_, true) => refuse(
                 "a picture is written as .svg or .png, an interactive page as .html",
                 "name a file that ends in .svg, .png or .html",
-            )),
-        };
-        if let Some((reason, hint)) = refused {
-            return Err(Failure::Usage(Error::new(Reason::Unsupported(reason.into())).at("--plot").hint(hint)));
-        }
+            ),
+        }?;
         spare(self.path(), inputs)?;
         apart([("results", results), ("picture", self.path())], "--plot")?;
         Ok(writable(self.path())?)
@@ -81,12 +78,11 @@ impl<const PAGES: bool> PlotOptions<PAGES> {
     /// Writes the picture if one is requested. Refuses a picture without anything to draw, or without a finite scale;
     /// `why_empty` explains it.
     pub fn draw(&self, picture: &Picture, why_empty: &'static str) -> Result<(), Failure> {
-        let bytes = match self.ending().as_deref() {
-            None => return Ok(()),
-            Some("png") => picture.png()?,
-            Some(_) => picture.svg().map(Into::into),
-        };
-        self.write(bytes, why_empty)
+        match self.ending().as_deref() {
+            None => Ok(()),
+            Some("png") => self.write(picture.png()?, why_empty),
+            Some(_) => self.write(picture.svg().map(Into::into), why_empty),
+        }
     }
 
     /// Writes the picture, or the page that `page` creates with it, if either is requested.
@@ -96,20 +92,17 @@ impl<const PAGES: bool> PlotOptions<PAGES> {
         why_empty: &'static str,
         page: impl FnOnce(Rendered) -> Result<Page, Failure>,
     ) -> Result<(), Failure> {
-        match self.is_page() {
-            true => {
-                let page = picture.render().map(page).transpose()?;
-                self.write(page.map(|page| page.html().into_bytes()), why_empty)
-            }
-            false => self.draw(picture, why_empty),
+        if !self.is_page() {
+            return self.draw(picture, why_empty);
         }
+        let page = picture.render().map(page).transpose()?;
+        self.write(page.map(|page| page.html().into_bytes()), why_empty)
     }
 
     fn write(&self, bytes: Option<Vec<u8>>, why_empty: &'static str) -> Result<(), Failure> {
         let Some(path) = self.path() else { return Ok(()) };
-        let nothing =
-            || Error::new(Reason::Unsupported("there is nothing to draw, or not to scale".into())).at("--plot");
-        let bytes = bytes.ok_or_else(|| nothing().hint(why_empty))?;
+        let nothing = || Reason::Unsupported("there is nothing to draw, or not to scale".into());
+        let bytes = bytes.ok_or_else(|| Error::new(nothing()).at("--plot").hint(why_empty))?;
         Ok(NewFile::write(path, &bytes)?)
     }
 }
