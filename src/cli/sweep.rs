@@ -23,6 +23,7 @@ use crate::write::{Layout, notes};
 use crate::{Error, Reason};
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Find all regions of equal outcomes against one or two parameters, and the borders between them
 ///
@@ -83,9 +84,9 @@ fn format(args: &Args) -> Result<SweepFormat, Failure> {
         Some(_) => args.output.as_deref().and_then(format::records).map(Some),
     };
     let format = args.format.or(by_ending).ok_or_else(|| {
-        let reason = Reason::Unsupported("a study is written as .json, .csv, .tsv, .parquet, .arrow or .txt".into());
+        let reason = "a study is written as .json, .csv, .tsv, .parquet, .arrow or .txt";
         let hint = "name a file with one of these endings, or say --format; pictures and pages go to --plot";
-        Failure::Usage(Error::new(reason).at("--output").hint(hint))
+        Failure::usage("--output", reason, hint)
     })?;
     format::form((args.output.as_deref(), true), format.or(Some(Form::Ndjson)), "--format")?;
     Ok(format)
@@ -117,14 +118,13 @@ pub(super) fn run(args: &Args) -> Completion {
         description: &description,
         reduction: &reduction,
         robot: &robot,
-        options: pipeline_options(&args.scene.contacts, feet.clone(), args.detail, &args.robot.reductions, None),
+        options: pipeline_options(&args.scene.contacts, feet, args.detail, &args.robot.reductions, None),
         defaults: args.scene.defaults(&robot)?,
     };
     note_all(notes::own_friction(model.has_own_friction().map_err(refuse)?.into(), "study"));
     note_all(notes::own_contacts(model.has_own_contacts().map_err(refuse)?.into(), "study"));
     note_all(notes::unused(&study));
-    let pieces = Findings::work(&model) + SampleRecord::count(&model);
-    let progress = progress::of(pieces);
+    let progress = progress::of(Findings::work(&model) + SampleRecord::count(&model));
     let done = || progress.inc(1);
     let workers = Workers { threads: args.threads.count(), done: &done };
     let budget = StudyBudget { shared: args.budget.shared(), study: &study, input: &input };
@@ -142,11 +142,11 @@ pub(super) fn run(args: &Args) -> Completion {
         args.plot.draw_or_page(&picture, "no region was found", page)?;
     }
     let mut output = Output::open(args.output.as_deref())?;
-    let writer = &mut output.writer;
+    let (writer, work) = (&mut output.writer, (workers, &budget));
     let refused = match format {
         None => {
             writer.write_all(regions.text(&robot.name, &output.palette).as_bytes())?;
-            samples(&model, (workers, &budget), || (), |solver, sample, ()| sample.is_answered(solver), |()| Ok(()))?
+            samples(&model, work, || (), |solver, sample, ()| sample.is_answered(solver), |()| Ok(()))?
         }
         Some(Form::Ndjson) => {
             let mut head = Vec::new();
@@ -156,44 +156,13 @@ pub(super) fn run(args: &Args) -> Completion {
                 out.extend(if sample.index == 0 { "" } else { "," }.bytes());
                 sample.append_json(solver, args.detail.detail(), out)
             };
-            let refused = samples(&model, (workers, &budget), Vec::new, append, |out| Ok(writer.write_all(&out)?))?;
+            let refused = samples(&model, work, Vec::new, append, |out| Ok(writer.write_all(&out)?))?;
             writer.write_all(b"]}\n")?;
             refused
         }
-        Some(table) => {
-            let contacts = regimes.iter().flat_map(|(regime, ..)| regime.contacts()).map(String::as_str);
-            let Args { csv, detail, .. } = args;
-            let layout = Layout { brief: detail.brief, guarded: csv.csv_safe, form: table, ..Layout::default() };
-            let columns = columns(&model, &feet, contacts, layout);
-            let kind = |regime: &Regime| regimes.iter().find(|(known, ..)| ***known == *regime);
-            let letter = |regime: &Regime| kind(regime).map_or_else(String::new, |(_, kind, _)| letter(*kind));
-            let as_text = |writer: &mut dyn Write| {
-                let mut head = Vec::new();
-                columns.append_header(&mut head);
-                writer.write_all(&head)?;
-                let append = |solver: &mut Solver, sample: &SampleRecord, out: &mut Vec<u8>| {
-                    sample.append_rows(solver, &columns, letter, out)
-                };
-                samples(&model, (workers, &budget), Vec::new, append, |out| Ok(writer.write_all(&out)?))
-            };
-            #[cfg(feature = "columnar")]
-            let refused = match table.is_text() {
-                true => as_text(writer)?,
-                false => {
-                    let mut typed = ColumnWriter::new(&columns, table)?;
-                    let append = |solver: &mut Solver, sample: &SampleRecord, out: &mut ColumnBlock| {
-                        sample.append_rows(solver, &columns, letter, out)
-                    };
-                    let write = |out| Ok(writer.write_all(&typed.write(out)?)?);
-                    let block = || ColumnBlock::new(&columns, 1);
-                    let refused = samples(&model, (workers, &budget), block, append, write)?;
-                    writer.write_all(&typed.finish()?)?;
-                    refused
-                }
-            };
-            #[cfg(not(feature = "columnar"))]
-            let refused = as_text(writer)?;
-            refused
+        Some(form) => {
+            let (brief, guarded) = (args.detail.brief, args.csv.csv_safe);
+            table(&model, work, &regimes, Layout { brief, guarded, form, ..Layout::default() }, writer)?
         }
     };
     output.close(true)?;
@@ -210,6 +179,38 @@ pub(super) fn run(args: &Args) -> Completion {
         report(&Error::new(reason).in_file(&input.name).hint(hint));
     }
     Ok(if refused == 0 && refusals.is_empty() { Answered::All } else { Answered::NotAll })
+}
+
+/// Writes all samples as a table and returns the number of refused ones.
+fn table(
+    model: &RobotStudy,
+    work: (Workers, &StudyBudget),
+    regimes: &[(&Arc<Regime>, usize, Option<&Error>)],
+    layout: Layout,
+    writer: &mut impl Write,
+) -> Result<usize, Failure> {
+    let contacts = regimes.iter().flat_map(|(regime, ..)| regime.contacts()).map(String::as_str);
+    let columns = columns(model, &model.options.feet, contacts, layout);
+    let kind = |regime: &Regime| regimes.iter().find(|(known, ..)| ***known == *regime);
+    let letter = |regime: &Regime| kind(regime).map_or_else(String::new, |(_, kind, _)| letter(*kind));
+    #[cfg(feature = "columnar")]
+    if !layout.form.is_text() {
+        let mut typed = ColumnWriter::new(&columns, layout.form)?;
+        let append = |solver: &mut Solver, sample: &SampleRecord, out: &mut ColumnBlock| {
+            sample.append_rows(solver, &columns, letter, out)
+        };
+        let write = |out| Ok(writer.write_all(&typed.write(out)?)?);
+        let refused = samples(model, work, || ColumnBlock::new(&columns, 1), append, write)?;
+        writer.write_all(&typed.finish()?)?;
+        return Ok(refused);
+    }
+    let mut head = Vec::new();
+    columns.append_header(&mut head);
+    writer.write_all(&head)?;
+    let append = |solver: &mut Solver, sample: &SampleRecord, out: &mut Vec<u8>| {
+        sample.append_rows(solver, &columns, letter, out)
+    };
+    samples(model, work, Vec::new, append, |out| Ok(writer.write_all(&out)?))
 }
 
 /// The budget for all work on a study.
