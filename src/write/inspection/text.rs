@@ -33,21 +33,28 @@ impl Inspection<'_> {
         let bodies = written(|out| self.bodies(palette, out));
         let joints = written(|out| self.joints(palette, out));
         let left_out = written(|out| self.left_out(palette, out));
-        let mut sections = [bodies, joints, left_out]
-            .map(|text| Section { lines: text.lines().map(str::to_owned).collect(), left_out: 0 });
+        let sections = [bodies, joints, left_out];
+        let lengths = sections.each_ref().map(|section| section.lines().count());
+        let mut shown = lengths;
         let above = head.lines().count();
-        let lines = |sections: &[Section]| above + sections.iter().map(Section::height).sum::<usize>();
-        let is_cut = !all && lines(&sections) > SCREEN;
-        while is_cut && lines(&sections) + 1 > SCREEN {
-            let longest = sections.iter_mut().max_by_key(|section| section.lines.len());
-            let Some(longest) = longest.filter(|section| section.lines.len() > LEAST) else { break };
-            longest.lines.pop();
-            longest.left_out += 1;
+        let height = |shown: &[usize]| {
+            let cut = shown.iter().zip(lengths).filter(|(shown, length)| *shown < length).count();
+            above + shown.iter().sum::<usize>() + cut
+        };
+        let is_cut = !all && height(&shown) > SCREEN;
+        while is_cut && height(&shown) + 1 > SCREEN {
+            let Some(longest) = shown.iter_mut().max().filter(|shown| **shown > LEAST) else { break };
+            *longest -= 1;
+        }
+        let mut out = head;
+        for ((section, shown), length) in sections.iter().zip(shown).zip(lengths) {
+            section.lines().take(shown).for_each(|line| out.extend([line, "\n"]));
+            if shown < length {
+                out += &format!("  ... {} more lines\n", length - shown);
+            }
         }
         let Palette { faint, plain, .. } = *palette;
-        let sections: String = sections.iter().map(Section::text).collect();
-        let rest = if is_cut { format!("{faint}The rest: `all`{plain}\n") } else { String::new() };
-        format!("{head}{sections}{rest}")
+        if is_cut { format!("{out}{faint}The rest: `all`{plain}\n") } else { out }
     }
 
     fn head(&self, palette: &Palette, all: bool, out: &mut String) -> std::fmt::Result {
@@ -192,24 +199,6 @@ impl Inspection<'_> {
         };
         let rest = self.left_out.iter().filter(|left| !is_held(&left.what));
         words::grouped(held.chain(rest.map(|left| (left.why.to_string(), left.what.to_string()))))
-    }
-}
-
-/// A part of the text, cut to fit the screen.
-struct Section {
-    lines: Vec<String>,
-    /// The number of lines that are not shown.
-    left_out: usize,
-}
-
-impl Section {
-    fn height(&self) -> usize {
-        self.lines.len() + usize::from(self.left_out > 0)
-    }
-
-    fn text(&self) -> String {
-        let more = (self.left_out > 0).then(|| format!("  ... {} more lines\n", self.left_out));
-        self.lines.iter().map(|line| format!("{line}\n")).chain(more).collect()
     }
 }
 
