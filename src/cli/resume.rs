@@ -23,13 +23,10 @@ const COMPARED: usize = 100;
 
 /// The destination of the answers of a batch.
 pub(super) struct BatchOutput {
-    written: Written,
+    target: Target,
     origin: Origin,
-}
-
-enum Written {
-    New(Target),
-    Continued(Continued),
+    /// Of a file that an earlier run began.
+    continued: Option<Continued>,
 }
 
 impl BatchOutput {
@@ -41,29 +38,26 @@ impl BatchOutput {
         {
             origin.begin(asked, true)?;
         }
-        Ok(Self { written: Written::New(target), origin })
+        Ok(Self { target, origin, continued: None })
     }
 
     /// Continues the output at `path`, or begins it if it does not exist. A table begins with `header`. With `all`,
     /// every state is answered again and compared.
     pub fn resume(path: &Path, header: &[u8], all: bool, origin: Origin, asked: Asked) -> io::Result<Self> {
-        let Some(file) = NewFile::reopen(path)? else { return Self::create(Some(path), origin, Some(asked)) };
+        let Some(mut file) = NewFile::reopen(path)? else { return Self::create(Some(path), origin, Some(asked)) };
         let known = origin.answers(&asked, file.part().is_some()).map_err(|what| unlike(&file, what))?;
-        let continued = Continued::open(file, header, all || !known, asked).map_err(|error| named(path, error))?;
-        Ok(Self { written: Written::Continued(continued), origin })
+        let continued = Continued::open(&mut file, header, all || !known, asked).map_err(|error| named(path, error))?;
+        Ok(Self { target: Target::File(file), origin, continued: Some(continued) })
     }
 
     /// Returns the number of states that are not answered again, and how many of them were refused.
     pub fn kept(&self) -> (usize, u64) {
-        match &self.written {
-            Written::New(_) => (0, 0),
-            Written::Continued(continued) => (continued.answered, continued.refused),
-        }
+        self.continued.as_ref().map_or((0, 0), |continued| continued.kept)
     }
 
     /// Returns the number of lines before the next answer. If it is 0, the header of a table is missing, too.
     pub fn lines(&mut self) -> io::Result<usize> {
-        let Written::Continued(Continued { file: NewFile { file, .. }, .. }) = &mut self.written else { return Ok(0) };
+        let (Target::File(NewFile { file, .. }), Some(_)) = (&mut self.target, &self.continued) else { return Ok(0) };
         let end = file.stream_position()?;
         file.rewind()?;
         Ok(BufReader::new(file.take(end)).split(b'\n').count())
@@ -71,36 +65,29 @@ impl BatchOutput {
 
     /// Returns the file with the answers so far if another run can continue it.
     pub fn part(&self) -> Option<&Path> {
-        match &self.written {
-            Written::New(Target::File(file)) | Written::Continued(Continued { file, .. }) => {
-                file.part().filter(|_| file.keep)
-            }
-            Written::New(Target::Standard(_)) => None,
-        }
+        let Target::File(file) = &self.target else { return None };
+        file.part().filter(|_| file.keep)
     }
 
     /// Removes the written answers if no other run can continue them.
     pub fn discard(&self) {
-        if let Written::New(Target::File(file)) = &self.written {
+        if let Target::File(file) = &self.target {
             file.discard();
         }
     }
 
     /// Finishes the output. An existing file is replaced only if something was `answered`.
     pub fn finish(mut self, answered: bool) -> io::Result<()> {
-        match self.written {
-            Written::New(target) => target.finish(answered)?,
-            Written::Continued(mut continued) => {
-                if self.origin.is_same_input() != Some(true) {
-                    return Err(unlike(&continued.file, OTHER_INPUT));
-                }
-                if continued.known > 0 {
-                    return Err(unlike(&continued.file, OTHER_ANSWERS));
-                }
-                continued.write(&[], &mut self.origin)?;
-                continued.file.finish()?;
+        if let (Target::File(file), Some(continued)) = (&mut self.target, &mut self.continued) {
+            if self.origin.is_same_input() != Some(true) {
+                return Err(unlike(file, OTHER_INPUT));
             }
+            if continued.known > 0 {
+                return Err(unlike(file, OTHER_ANSWERS));
+            }
+            continued.write(&[], file, &mut self.origin)?;
         }
+        self.target.finish(answered || self.continued.is_some())?;
         self.origin.end();
         Ok(())
     }
@@ -108,29 +95,24 @@ impl BatchOutput {
 
 impl Write for BatchOutput {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        match &mut self.written {
-            Written::New(target) => target.write(bytes),
-            Written::Continued(continued) if continued.known > 0 => continued.compare(bytes),
-            Written::Continued(continued) => continued.write(bytes, &mut self.origin),
+        match (&mut self.target, &mut self.continued) {
+            (Target::File(file), Some(continued)) if continued.known > 0 => continued.compare(bytes, file),
+            (Target::File(file), Some(continued)) => continued.write(bytes, file, &mut self.origin),
+            (target, _) => target.write(bytes),
         }
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        match &mut self.written {
-            Written::New(target) => target.flush(),
-            Written::Continued(continued) => continued.file.file.flush(),
-        }
+        self.target.flush()
     }
 }
 
-/// An output that an earlier run began and this run continues.
+/// How this run continues an output that an earlier run began.
 struct Continued {
-    file: NewFile,
     /// The number of bytes that are still to be compared.
     known: u64,
     /// The number of states that are not answered again, and how many of them were refused.
-    answered: usize,
-    refused: u64,
+    kept: (usize, u64),
     /// The robot and options of this run, until the first answer is written.
     asked: Option<Asked>,
     /// Answers that are held back until the input is known to be the same.
@@ -142,53 +124,53 @@ const OTHER_ANSWERS: &str = "with other answers";
 
 impl Continued {
     /// Opens an output; a table begins with `header`. With `all`, every state is answered again and compared.
-    fn open(file: NewFile, header: &[u8], all: bool, asked: Asked) -> io::Result<Self> {
-        let Answers { before, refused, last } = match header.get("id".len()) {
+    fn open(file: &mut NewFile, header: &[u8], all: bool, asked: Asked) -> io::Result<Self> {
+        let Answers { before, last } = match header.get("id".len()) {
             None => lines(&file.file),
             Some(&delimiter) => rows(&file.file, delimiter),
         }?;
         let end = last.back().map_or(0, |&(start, _)| start);
-        let mut continued = Self { file, known: end, answered: 0, refused: 0, asked: Some(asked), waiting: Vec::new() };
-        continued.file.file.rewind()?;
+        let mut continued = Self { known: end, kept: (0, 0), asked: Some(asked), waiting: Vec::new() };
+        file.file.rewind()?;
         if end > 0 {
-            continued.compare(header)?;
+            continued.compare(header, file)?;
         }
         if let (Some(&(start, _)), false) = (last.front(), all) {
-            (continued.answered, continued.refused, continued.known) = (before, refused, end - start);
-            continued.file.file.seek(SeekFrom::Start(start))?;
+            (continued.kept, continued.known) = (before, end - start);
+            file.file.seek(SeekFrom::Start(start))?;
         }
         Ok(continued)
     }
 
     /// Compares the beginning of `bytes` with the file, and returns how many bytes were compared.
-    fn compare(&mut self, bytes: &[u8]) -> io::Result<usize> {
+    fn compare(&mut self, bytes: &[u8], file: &mut NewFile) -> io::Result<usize> {
         let count = usize::try_from(self.known).unwrap_or(usize::MAX).min(bytes.len());
         let mut there = vec![0; count];
-        self.file.file.read_exact(&mut there)?;
+        file.file.read_exact(&mut there)?;
         if there != bytes[..count] {
-            return Err(unlike(&self.file, OTHER_ANSWERS));
+            return Err(unlike(file, OTHER_ANSWERS));
         }
         self.known -= count as u64;
         Ok(count)
     }
 
     /// Writes after the compared answers, once the input is known to be the same.
-    fn write(&mut self, bytes: &[u8], origin: &mut Origin) -> io::Result<usize> {
+    fn write(&mut self, bytes: &[u8], file: &mut NewFile, origin: &mut Origin) -> io::Result<usize> {
         match origin.is_same_input() {
             Some(true) => {}
-            Some(false) => return Err(unlike(&self.file, OTHER_INPUT)),
+            Some(false) => return Err(unlike(file, OTHER_INPUT)),
             None => {
                 self.waiting.extend_from_slice(bytes);
                 return Ok(bytes.len());
             }
         }
         if let Some(asked) = self.asked.take() {
-            let end = self.file.file.stream_position()?;
-            self.file.file.set_len(end)?;
-            origin.begin(asked, self.file.part().is_some())?;
-            self.file.file.write_all(&std::mem::take(&mut self.waiting))?;
+            let end = file.file.stream_position()?;
+            file.file.set_len(end)?;
+            origin.begin(asked, file.part().is_some())?;
+            file.file.write_all(&std::mem::take(&mut self.waiting))?;
         }
-        self.file.file.write(bytes)
+        file.file.write(bytes)
     }
 }
 
@@ -202,8 +184,7 @@ fn unlike(file: &NewFile, what: &str) -> io::Error {
 #[derive(Default)]
 struct Answers {
     /// The number of states before those in `last`, and how many of them are refused.
-    before: usize,
-    refused: u64,
+    before: (usize, u64),
     /// The last states, those to be compared and one more: where their answers begin, and whether they are refused.
     last: VecDeque<(u64, bool)>,
 }
@@ -215,8 +196,8 @@ impl Answers {
         if self.last.len() > COMPARED + 1
             && let Some((_, refused)) = self.last.pop_front()
         {
-            self.before += 1;
-            self.refused += u64::from(refused);
+            self.before.0 += 1;
+            self.before.1 += u64::from(refused);
         }
     }
 }
