@@ -134,17 +134,14 @@ fn suite(part: &str, no_proof: bool, budget: Budget) -> Result<Accuracy, Failure
 
 /// Compares compliant contact with the outcomes of a state; `None` if there is nothing to compare.
 fn compliant(name: &str, robot: &Robot, state: &State, options: &Options) -> Result<Option<Compliant>, Failure> {
-    let comparison = match compare(robot, state, options) {
+    let why = match compare(robot, state, options) {
         Err(error) if *error.reason() == Reason::BeyondBudget => {
-            note("compliant contact is left out: the budget of work ended before all of its runs (`budget`)");
-            None
+            "the budget of work ended before all of its runs (`budget`)".to_owned()
         }
         // The integrator gave up. The errors and times of the state are still valid.
-        Err(error) if matches!(error.reason(), Reason::Unsupported(_)) => {
-            note(&format!("compliant contact is left out: {error}"));
-            None
-        }
-        comparison => comparison?,
+        Err(error) if matches!(error.reason(), Reason::Unsupported(_)) => error.to_string(),
+        comparison => return Ok(comparison?.map(|comparison| Compliant { name: name.to_owned(), comparison })),
     };
-    Ok(comparison.map(|comparison| Compliant { name: name.to_owned(), comparison }))
+    note(&format!("compliant contact is left out: {why}"));
+    Ok(None)
 }

@@ -239,7 +239,6 @@ impl Args {
         Seen::misfit(unwrapped(samples, robot), robot)
     }
 
-    /// Opens the input.
     fn open(&self, format: Form, origin: &Origin, progress: &ProgressBar) -> crate::Result<States> {
         if format.is_text() {
             let states = origin.watch(progress.wrap_read(input::stream(&self.states)?));

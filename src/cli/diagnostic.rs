@@ -74,13 +74,11 @@ pub(super) fn is_quiet() -> bool {
 
 /// Writes `note: ` and the text, unless `--quiet` is given.
 pub(super) fn note(text: &str) {
-    if is_quiet() {
-        return;
+    if !is_quiet() {
+        write(&[Group::with_title(Level::NOTE.primary_title(visible(&with_flags(text))))]);
     }
-    write(&[Group::with_title(Level::NOTE.primary_title(visible(&with_flags(text))))]);
 }
 
-/// Writes each of these notes.
 pub(super) fn note_all(notes: impl IntoIterator<Item = String>) {
     notes.into_iter().for_each(|text| note(&text));
 }

@@ -15,7 +15,6 @@ const MOST_NEIGHBORS: usize = 1000;
 pub(super) struct InputFile {
     /// The name of the file in messages.
     pub name: String,
-    /// The contents of the file.
     pub bytes: Vec<u8>,
 }
 
@@ -58,13 +57,9 @@ pub(super) fn name(path: &Path) -> String {
 
 /// Opens a file, or standard input for `-`.
 pub(super) fn stream(path: &Path) -> Result<Box<dyn Read + Send>> {
-    if path == Path::new("-") {
-        return Ok(Box::new(io::stdin()));
-    }
-    Ok(Box::new(file(path)?))
+    Ok(if path == Path::new("-") { Box::new(io::stdin()) } else { Box::new(file(path)?) })
 }
 
-/// Opens a file.
 pub(super) fn file(path: &Path) -> Result<File> {
     File::open(path).map_err(|error| cannot_read(path, &error))
 }
@@ -73,24 +68,19 @@ fn cannot_read(path: &Path, error: &io::Error) -> Error {
     let refused = Error::new(Reason::Io(format!("cannot be read: {error}"))).in_file(name(path));
     match error.kind() {
         ErrorKind::NotFound => {
-            let wanted = path.file_name().unwrap_or_default().to_string_lossy();
+            let wanted = path.file_name().unwrap_or_default();
+            let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+            let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().take(MOST_NEIGHBORS);
+            // The file itself may be a broken link.
+            let others = entries.map(|entry| entry.file_name()).filter(|name| name != wanted);
+            let others: Vec<String> = others.map(|name| name.display().to_string()).collect();
             let refused = refused.hint("a name begins in the folder where the command runs");
-            refused.did_you_mean(&wanted, neighbors(path).iter().map(String::as_str))
+            refused.did_you_mean(&wanted.to_string_lossy(), others.iter().map(String::as_str))
         }
         ErrorKind::IsADirectory => refused.hint("name a file in it"),
         ErrorKind::PermissionDenied => refused.hint("its permissions do not let you read it"),
         _ => refused,
     }
-}
-
-/// Returns the names of the files next to `path`.
-fn neighbors(path: &Path) -> Vec<String> {
-    let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
-    let listed = std::fs::read_dir(folder);
-    let entries = listed.into_iter().flatten().flatten().take(MOST_NEIGHBORS);
-    // The file itself may be a broken link.
-    let others = entries.filter(|entry| Some(&*entry.file_name()) != path.file_name());
-    others.map(|entry| entry.file_name().display().to_string()).collect()
 }
 
 /// Returns whether the ending of a file means one JSON object per line.

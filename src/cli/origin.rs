@@ -19,9 +19,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Returns the CRC-32 of a value's debug output, which contains numbers with all digits.
 fn digest(value: &impl Debug) -> u32 {
-    let mut hasher = Hasher::new();
-    hasher.update(format!("{value:?}").as_bytes());
-    hasher.finalize()
+    crc32fast::hash(format!("{value:?}").as_bytes())
 }
 
 /// Digests of the robot and the options of a run, as far as answers depend on them.
@@ -114,6 +112,10 @@ impl Reading {
     }
 }
 
+fn locked(reading: &Mutex<Reading>) -> MutexGuard<'_, Reading> {
+    reading.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 /// The record of one output.
 pub(super) struct Origin {
     path: Option<PathBuf>,
@@ -132,10 +134,6 @@ impl Origin {
         Self { path, earlier, reading: Arc::new(Mutex::new(reading)) }
     }
 
-    fn reading(&self) -> MutexGuard<'_, Reading> {
-        self.reading.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
     /// Returns the input as a reader that records its bytes if the output has a record.
     pub fn watch<R: Read>(&self, input: R) -> Watched<R> {
         Watched { input, reading: self.path.is_some().then(|| Arc::clone(&self.reading)) }
@@ -148,7 +146,7 @@ impl Origin {
     /// Returns what was different in the earlier run if they do not belong to it.
     pub fn answers(&self, asked: &Asked, part: bool) -> Result<bool, &'static str> {
         let Some(earlier) = self.earlier.as_ref().filter(|record| record.part == part) else {
-            let mut reading = self.reading();
+            let mut reading = locked(&self.reading);
             (reading.earlier, reading.is_same) = (None, true);
             return Ok(false);
         };
@@ -157,7 +155,7 @@ impl Origin {
 
     /// Returns whether the input begins like that of the earlier run; `None` until as many bytes are read.
     pub fn is_same_input(&self) -> Option<bool> {
-        let reading = self.reading();
+        let reading = locked(&self.reading);
         reading.earlier.is_none().then_some(reading.is_same)
     }
 
@@ -165,7 +163,7 @@ impl Origin {
     pub fn begin(&mut self, asked: Asked, part: bool) -> io::Result<()> {
         let Some(path) = &self.path else { return Ok(()) };
         let file = File::create(path).map_err(|error| named(path, error))?;
-        let mut reading = self.reading();
+        let mut reading = locked(&self.reading);
         let input = reading.beginning();
         reading.kept = Some((file, Record { asked, part, input }));
         reading.keep();
@@ -174,7 +172,7 @@ impl Origin {
 
     /// Removes the record, because the output is whole.
     pub fn end(self) {
-        if let (Some(path), true) = (&self.path, self.reading().kept.take().is_some() || self.earlier.is_some()) {
+        if let (Some(path), true) = (&self.path, locked(&self.reading).kept.take().is_some() || self.earlier.is_some()) {
             // If this fails, a useless file stays; that is not worth an error.
             let _ = std::fs::remove_file(path);
         }
@@ -191,7 +189,7 @@ impl<R: Read> Read for Watched<R> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         let count = self.input.read(into)?;
         if let Some(reading) = &self.reading {
-            let mut reading = reading.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut reading = locked(reading);
             reading.add(&into[..count]);
             reading.keep();
         }

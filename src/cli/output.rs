@@ -199,7 +199,6 @@ impl NewFile {
         Ok(new(file, Some([part, last])))
     }
 
-    /// Creates the file with these bytes.
     pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
         let mut new = Self::create(path)?;
         new.file.write_all(bytes).map_err(|error| named(path, error))?;
@@ -349,7 +348,6 @@ pub(super) struct Output {
 }
 
 impl Output {
-    /// Opens `path`, or standard output.
     pub fn open(path: Option<&Path>) -> io::Result<Self> {
         let target = Target::open(path, false)?;
         let palette = match (&target, AutoStream::choice(&io::stdout())) {

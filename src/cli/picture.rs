@@ -70,7 +70,6 @@ impl<const PAGES: bool> PlotOptions<PAGES> {
         Some(self.path()?.extension()?.to_str()?.to_ascii_lowercase())
     }
 
-    /// Returns whether a page is requested.
     pub fn is_page(&self) -> bool {
         self.ending().as_deref() == Some("html")
     }

@@ -1,7 +1,7 @@
 //! The robot's file and the options that change the robot.
 
 use super::Failure;
-use super::diagnostic::{note, note_all};
+use super::diagnostic::note_all;
 use super::input::InputFile;
 use super::meshes::Meshes;
 use super::options::{Choices, ReductionOptions, choice, from_zero};
@@ -114,7 +114,7 @@ impl RobotOptions {
     /// Reads the robot and notes its cautions.
     pub fn load(&self) -> Result<Robot, Failure> {
         let (_, _, robot) = self.described()?;
-        caution(&robot);
+        note_all(robot.reading.cautions.clone());
         Ok(robot)
     }
 
@@ -146,41 +146,33 @@ impl RobotOptions {
         let refuse = |reason| Error::new(reason).at("--hold");
         let held = |(at, Hold { joint, value }): (usize, &Hold)| {
             if self.hold[..at].iter().any(|before| before.joint == *joint) {
-                return Err(Failure::Usage(refuse(Reason::Duplicate { what: "joint", name: joint.clone() })));
+                return Err(refuse(Reason::Duplicate { what: "joint", name: joint.clone() }));
             }
-            let found = description.joint(joint).ok_or_else(|| {
-                let known = description.joints.iter().map(|joint| joint.name.as_str());
-                let unknown = Reason::UnknownName { what: "joint", name: joint.clone() };
-                Failure::Usage(refuse(unknown).did_you_mean(joint, known))
-            })?;
-            Ok((found, *value))
+            let known = description.joints.iter().map(|joint| joint.name.as_str());
+            let unknown = || refuse(Reason::UnknownName { what: "joint", name: joint.clone() });
+            Ok((description.joint(joint).ok_or_else(|| unknown().did_you_mean(joint, known))?, *value))
         };
-        self.hold.iter().enumerate().map(held).collect()
+        self.hold.iter().enumerate().map(held).collect::<crate::Result<_>>().map_err(Failure::Usage)
     }
 
     /// Returns the feet given by `--contact`.
     pub fn feet(&self, robot: &Robot) -> Result<Vec<NamedContact>, Failure> {
-        let foot = |&AddedFoot { ref link, offset, radius }: &AddedFoot| {
-            let found = robot.link(link).ok_or_else(|| {
-                let known = robot.links.iter().map(|link| link.name.as_str());
-                Failure::Usage(Error::new(robot.no_link(link)).at("--contact").did_you_mean(link, known))
-            })?;
-            let foot = NamedContact { link: found, offset, radius };
-            note_all(foot.out_of_scale(robot));
-            Ok(foot)
-        };
+        let refuse = |reason| Error::new(reason).at("--contact");
         if let Some((_, twice)) = self.contact.iter().enumerate().find(|(at, foot)| self.contact[..*at].contains(foot))
         {
             let name = twice.link.clone();
-            return Err(Failure::Usage(Error::new(Reason::Duplicate { what: "foot on link", name }).at("--contact")));
+            return Err(Failure::Usage(refuse(Reason::Duplicate { what: "foot on link", name })));
         }
+        let foot = |&AddedFoot { ref link, offset, radius }: &AddedFoot| {
+            let known = robot.links.iter().map(|link| link.name.as_str());
+            let unknown = || Failure::Usage(refuse(robot.no_link(link)).did_you_mean(link, known));
+            let link = robot.link(link).ok_or_else(unknown)?;
+            let foot = NamedContact { link, offset, radius };
+            note_all(foot.out_of_scale(robot));
+            Ok(foot)
+        };
         self.contact.iter().map(foot).collect()
     }
-}
-
-/// Writes the cautions about the model as notes.
-pub(super) fn caution(robot: &Robot) {
-    robot.reading.cautions.iter().for_each(|caution| note(caution));
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use super::options::{
 use super::output::{Output, writable};
 use super::picture::{MirrorOptions, PlotOptions};
 use super::progress;
-use super::robot::{RobotOptions, caution};
+use super::robot::RobotOptions;
 use super::{Answered, Completion, Failure};
 use crate::budget::SharedBudget;
 use crate::draw::page::{Page, Stops};
@@ -107,7 +107,7 @@ pub(super) fn run(args: &Args) -> Completion {
         None => args.detail.check_regions(args.plot.path().is_some())?,
     }
     let (description, reduction, robot) = args.robot.described()?;
-    caution(&robot);
+    note_all(robot.reading.cautions.clone());
     let feet = args.robot.feet(&robot)?;
     let input = InputFile::read(&args.study, InputFile::LARGE)?;
     let refuse = |error: Error| input.refuse(error);
