@@ -302,12 +302,8 @@ impl Columns {
         self.append_error((refused.id.as_ref(), Some(refused.line), carried), &error, out);
     }
 
-    /// Appends the row of a state without an id whose outcomes were replaced by an error.
-    pub fn append_unnamed(&self, error: &str, carried: &Carried, out: &mut impl RowSink) {
-        self.append_error((None, None, Some(carried)), error, out);
-    }
-
-    fn append_error(
+    /// Appends the row of a state whose outcomes were replaced by an error, with its id and line if it has them.
+    pub fn append_error(
         &self,
         (id, line, carried): (Option<&Value>, Option<usize>, Option<&Carried>),
         error: &str,

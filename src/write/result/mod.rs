@@ -306,8 +306,8 @@ impl<'a> Report<'a> {
 
     /// Creates the fields that results of states and of contact problems share.
     fn of_analysis(contacts: Vec<ContactRecord<'a>>, known: Option<&'a Analysis>, detail: Detail) -> Self {
-        let explained = known.filter(|_| detail.explain);
-        let rejected = explained.map(|analysis| {
+        let Some(analysis) = known else { return Self { contacts, ..Self::default() } };
+        let rejected = detail.explain.then(|| {
             let names: Vec<String> = contacts.iter().map(|contact| contact.name.to_string()).collect();
             let rejected = |rejection: &'a Rejection| Rejected {
                 modes: Cow::Borrowed(&rejection.modes),
@@ -319,17 +319,17 @@ impl<'a> Report<'a> {
             analysis.rejected.iter().map(rejected).collect()
         });
         Self {
-            verdict: known.map(|analysis| analysis.verdict),
-            proven: known.map(|analysis| analysis.proven),
-            outcomes: known.map(|analysis| Cow::Borrowed(&*analysis.outcomes)),
-            open: known.and_then(|analysis| analysis.open),
-            families: known.map(|analysis| Cow::Borrowed(&*analysis.families)).unwrap_or_default(),
+            verdict: Some(analysis.verdict),
+            proven: Some(analysis.proven),
+            outcomes: Some(Cow::Borrowed(&analysis.outcomes)),
+            open: analysis.open,
+            families: Cow::Borrowed(&analysis.families),
             rejected,
-            no_slip_consistent: known.map(|analysis| analysis.no_slip_consistent),
-            explain: explained.map(|analysis| analysis.explanation.as_ref().map(Cow::Borrowed)),
-            index_sum: known.map(|analysis| analysis.index_sum),
-            condition: known.filter(|analysis| analysis.rank.is_some()).map(|analysis| analysis.condition),
-            rank: known.and_then(|analysis| analysis.rank),
+            no_slip_consistent: Some(analysis.no_slip_consistent),
+            explain: detail.explain.then(|| analysis.explanation.as_ref().map(Cow::Borrowed)),
+            index_sum: Some(analysis.index_sum),
+            condition: analysis.rank.map(|_| analysis.condition),
+            rank: analysis.rank,
             contacts,
             ..Self::default()
         }
@@ -387,27 +387,26 @@ pub(super) enum Id {
 /// Condition number above which the last digits alone decide whether a matrix is regular.
 const ILL_CONDITIONED: f64 = 1e14;
 
-/// Returns notes on the analysis, in whole sentences.
 fn notes(problem: &Problem, analysis: &Analysis) -> Cow<'static, [String]> {
     let keep = "give mass_matrix, contact_jacobian and velocity to keep what rounding loses";
-    let repaired = || {
+    let mut notes = Vec::new();
+    if problem.contact.is_repaired() {
         let rank = analysis.rank.map_or(String::new(), |rank| format!(", of rank {rank},"));
-        format!(
+        notes.push(format!(
             "the Delassus matrix is indefinite by its rounding: the nearest semidefinite one{rank} was taken; {keep}"
-        )
-    };
-    let ill = |condition: f64| {
-        format!("the Delassus matrix has condition {condition:.1e} and may be singular except for rounding: {keep}")
-    };
+        ));
+    } else if problem.contact.is_symmetrized() {
+        let mean = "the mean of it and its transpose was taken, every digit meant";
+        notes.push(format!("the Delassus matrix is not symmetric by its rounding: {mean}"));
+    }
     let is_matrix = problem.contact.is_given() || problem.contact.is_symmetrized();
-    let condition = analysis.condition.filter(|&condition| condition > ILL_CONDITIONED && is_matrix);
-    let symmetrized = || {
-        "the Delassus matrix is not symmetric by its rounding: the mean of it and its transpose was taken, every digit meant"
-            .to_owned()
-    };
-    let of_matrix = problem.contact.is_symmetrized().then(symmetrized);
-    let notes = problem.contact.is_repaired().then(repaired).or(of_matrix).into_iter();
-    notes.chain(condition.map(ill)).chain(analysis.notes(&problem.contact, || 0.0)).collect()
+    if let Some(condition) = analysis.condition.filter(|&condition| condition > ILL_CONDITIONED && is_matrix) {
+        notes.push(format!(
+            "the Delassus matrix has condition {condition:.1e} and may be singular except for rounding: {keep}"
+        ));
+    }
+    notes.extend(analysis.notes(&problem.contact, || 0.0));
+    notes.into()
 }
 
 /// Returns the Delassus matrix G, two rows and columns per contact.

@@ -89,7 +89,7 @@ impl<'a> SampleRecord<'a> {
         });
         let Err(error) = answered else { return true };
         let sentence = ErrorObject::new(&error).to_string();
-        columns.append_unnamed(&sentence, &carried(&Err(error)), out);
+        columns.append_error((None, None, Some(&carried(&Err(error)))), &sentence, out);
         false
     }
 }
