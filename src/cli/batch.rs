@@ -14,7 +14,7 @@ use super::resume::BatchOutput;
 use super::robot::RobotOptions;
 use super::sink::{OutputSink, note_part};
 use super::{Answered, Completion, Failure, input, progress};
-use crate::batch::{self, AHEAD, Batch, Question, RefusedRecord, States, Summary};
+use crate::batch::{self, AHEAD, Batch, Question, States, Summary};
 use crate::contact::Feet;
 use crate::draw::page::Gait;
 use crate::gait::{Dropped, Seen, Thresholds, unwrapped};
@@ -375,13 +375,11 @@ impl Args {
         NewFile::write(path, &line)
     }
 
-    /// Returns the columns of the input if it is a table.
     fn header(&self, robot: &Robot, states: &mut States, format: Form) -> Result<Option<Header>, Failure> {
         let in_order = self.recording.is_in_order();
         let header = states.header(robot, self.recording.rates(), &self.foreign, in_order);
-        let header = header.map_err(|RefusedRecord { error, excerpt }| {
-            Failure::Refused(error.in_file(input::name(&self.states)), excerpt)
-        })?;
+        let in_input = |error: Error| error.in_file(input::name(&self.states));
+        let header = header.map_err(|refused| Failure::Refused(in_input(refused.error), refused.excerpt))?;
         // Only for JSON: an input in a table format without a header has no states at all.
         if header.is_none() && format == Form::Ndjson && (in_order || !self.foreign.is_empty()) {
             let what = if in_order { "touchdowns and velocities over time need" } else { "--foreign needs" };
@@ -394,6 +392,6 @@ impl Args {
             true => header.without_torques(robot),
             false => Ok(header),
         };
-        Ok(header.map(checked).transpose().map_err(|error| error.in_file(input::name(&self.states)))?)
+        Ok(header.map(checked).transpose().map_err(in_input)?)
     }
 }

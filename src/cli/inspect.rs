@@ -56,7 +56,6 @@ pub(super) fn run(args: &Args) -> Completion {
     args.output.write(&inspection, |palette| with_flags(&inspection.text(palette, args.all)))
 }
 
-/// Returns the places of the bodies in the state in this file.
 fn pose(path: &Path, robot: &Robot, feet: &[NamedContact]) -> Result<Placement, Failure> {
     let input = InputFile::read(path, InputFile::LARGE)?;
     let document = only_document(&input)?;

@@ -88,7 +88,6 @@ impl Meshes {
     }
 }
 
-/// Returns the folders that an environment variable lists.
 fn listed(variable: &str) -> Vec<PathBuf> {
     let all = std::env::var_os(variable).unwrap_or_default();
     std::env::split_paths(&all).filter(|folder| !folder.as_os_str().is_empty()).collect()
@@ -115,15 +114,12 @@ fn leaves(name: &str) -> bool {
 
 /// Returns whether `folder` is the package `name`, by its own name or by the name in its package.xml.
 fn is_package(folder: &Path, name: &str) -> bool {
-    if folder.file_name().is_some_and(|own| own == name) {
-        return true;
-    }
-    let manifest = folder.join("package.xml");
-    if !manifest.is_file() {
-        return false;
-    }
-    let Ok(manifest) = InputFile::read(&manifest, InputFile::SMALL) else { return false };
-    let text = String::from_utf8_lossy(&manifest.bytes);
-    let own = text.split_once("<name>").and_then(|(_, rest)| rest.split_once("</name>"));
-    own.is_some_and(|(own, _)| own.trim() == name)
+    let in_manifest = || {
+        let manifest = Some(folder.join("package.xml")).filter(|manifest| manifest.is_file())?;
+        let manifest = InputFile::read(&manifest, InputFile::SMALL).ok()?;
+        let text = String::from_utf8_lossy(&manifest.bytes);
+        let (own, _) = text.split_once("<name>")?.1.split_once("</name>")?;
+        Some(own.trim() == name)
+    };
+    folder.file_name().is_some_and(|own| own == name) || in_manifest() == Some(true)
 }

@@ -145,7 +145,6 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     }
 }
 
-/// Runs the command and returns the exit status.
 fn run(cli: Cli) -> u8 {
     cli.color.write_global();
     diagnostic::set_quiet(cli.quiet);

@@ -298,7 +298,6 @@ impl BudgetOptions<true> {
     }
 }
 
-/// Combines options of the command line into options of the pipeline.
 pub(super) fn pipeline_options(
     contacts: &ContactOptions,
     feet: Vec<NamedContact>,

@@ -172,7 +172,8 @@ impl Origin {
 
     /// Removes the record, because the output is whole.
     pub fn end(self) {
-        if let (Some(path), true) = (&self.path, locked(&self.reading).kept.take().is_some() || self.earlier.is_some()) {
+        let is_kept = locked(&self.reading).kept.take().is_some();
+        if let Some(path) = self.path.filter(|_| is_kept || self.earlier.is_some()) {
             // If this fails, a useless file stays; that is not worth an error.
             let _ = std::fs::remove_file(path);
         }

@@ -80,13 +80,12 @@ pub(super) fn check_ending(
     reason: &'static str,
     option: &str,
 ) -> Result<(), Failure> {
-    let ending = path.and_then(Path::extension).and_then(|ending| ending.to_str()).unwrap_or_default();
-    let ending = ending.to_ascii_lowercase();
+    let Some(path) = path else { return Ok(()) };
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
     if !(FORMATS.contains(&&*ending) || is_written && PACKED.contains(&&*ending)) {
         return Ok(());
     }
-    let error = Error::new(Reason::Unsupported(reason.to_owned()));
-    let error = path.map_or(error.clone(), |path| error.in_file(path.display().to_string()));
+    let error = Error::new(Reason::Unsupported(reason.to_owned())).in_file(path.display().to_string());
     Err(Failure::Usage(error.hint(format!("name a file with one of these endings, or say {option}"))))
 }
 
@@ -219,7 +218,6 @@ impl NewFile {
         Ok(Some(Self { file, path: path.to_owned(), places, keep: true }))
     }
 
-    /// Returns the temporary and the final path of a file.
     fn places(path: &Path) -> [PathBuf; 2] {
         [beside(path, PART), beside(path, "")]
     }

@@ -190,7 +190,6 @@ struct Answers {
 }
 
 impl Answers {
-    /// Adds the answer to the next state.
     fn push(&mut self, start: u64, refused: bool) {
         self.last.push_back((start, refused));
         if self.last.len() > COMPARED + 1

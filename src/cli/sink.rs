@@ -18,7 +18,6 @@ const REPORTED: u64 = 20;
 /// The number of reported refusals with the same place and the same reason, apart from its digits.
 const ALIKE: u64 = 3;
 
-/// Writes the answers in order.
 pub(super) struct OutputSink<'a> {
     pub output: BatchOutput,
     /// The name of the input in messages.

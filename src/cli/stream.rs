@@ -30,7 +30,6 @@ pub(super) fn append(report: &Report, subject: &Subject, detail: Detail, palette
     }
 }
 
-/// Returns the only object of a file.
 pub(super) fn only_document(input: &InputFile) -> crate::Result<Document<'_>> {
     let name = &input.name;
     let text = input.text().map_err(|error| error.in_file(name))?;
