@@ -2,7 +2,7 @@
 
 use crate::read::table::Carried;
 use crate::state::NamedContact;
-use crate::sweep::{Regime, RobotStudy, Solver};
+use crate::sweep::{Parameter, Regime, RobotStudy, Solver};
 use crate::write::text_row::number_text;
 use crate::write::{Columns, Detail, ErrorObject, Kind, Layout, Report, RowSink, append_line};
 use crate::{Impact, Result};
@@ -12,8 +12,8 @@ use serde_json::json;
 /// A sample of a study, given by the values of the parameters.
 #[derive(Debug, Clone)]
 pub struct SampleRecord<'a> {
-    /// The names of the parameters.
-    pub names: Vec<&'a str>,
+    /// The parameters.
+    pub parameters: &'a [Parameter],
     /// The parameters' values.
     pub point: Vec<f64>,
     /// The sample's number, from 0.
@@ -31,14 +31,13 @@ pub(crate) struct RefusedSample {
 impl<'a> SampleRecord<'a> {
     /// Creates sample number `index` of a study; the last parameter changes fastest.
     pub fn new(model: &RobotStudy<'a>, index: usize) -> Self {
-        let mut rest = index;
-        let parameters = model.study.parameters();
+        let (parameters, mut rest) = (model.study.parameters(), index);
         let mut point = vec![0.0; parameters.len()];
         for (parameter, value) in parameters.iter().zip(&mut point).rev() {
             *value = parameter.sample(rest % parameter.steps);
             rest /= parameter.steps;
         }
-        Self { names: parameters.iter().map(|parameter| parameter.name.as_str()).collect(), point, index }
+        Self { parameters, point, index }
     }
 
     /// Returns the number of samples of a study.
@@ -64,8 +63,8 @@ impl<'a> SampleRecord<'a> {
             append_line(&mut result, &RefusedSample { error: ErrorObject::new(error) });
         }
         out.push(b'{');
-        for (name, value) in self.names.iter().zip(&self.point) {
-            out.extend(format!("{}:{},", json!(name), json!(value)).bytes());
+        for (parameter, value) in self.parameters.iter().zip(&self.point) {
+            out.extend(format!("{}:{},", json!(parameter.name), json!(value)).bytes());
         }
         out.extend(b"\"result\":".iter().chain(result.trim_ascii_end()).chain(b"}"));
         refused.is_none()
