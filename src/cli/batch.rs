@@ -224,8 +224,7 @@ impl Args {
         Ok([input, output])
     }
 
-    /// Returns a note if the velocities in the first rows of a table with times do not fit the positions. The rows are
-    /// read separately, which only a regular file permits.
+    /// Returns a note if velocities in the first rows do not fit the positions; only a regular file can be read twice.
     fn misfit(&self, robot: &Robot, header: &Header, format: Form) -> Option<String> {
         let has_all = header.missing().is_empty() && !header.is_spatial();
         let is_stream = self.states == Path::new("-") || self.states.starts_with("/dev") || !self.states.is_file();

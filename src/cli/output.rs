@@ -144,8 +144,7 @@ pub(super) fn writable(path: Option<&Path>) -> io::Result<()> {
 const PART: &str = ".part";
 pub(super) const RUN: &str = ".run";
 
-/// Returns device and inode of the file, or those of `standard` for `-`; `None` for devices and pipes, which are never
-/// replaced.
+/// Returns device and inode of the file, or of `standard` for `-`; `None` for devices and pipes, never replaced.
 #[cfg(unix)]
 fn file_of(path: &Path, standard: impl std::os::fd::AsFd) -> Option<(u64, u64)> {
     use std::os::unix::fs::MetadataExt;

@@ -13,8 +13,7 @@ use crate::{Error, Reason};
 use std::io::Write;
 use std::path::Path;
 
-/// The largest number of contacts for which text sums up the rejected combinations without `--explain`: 4^6 take no
-/// noticeable time.
+/// The most contacts for which text sums up rejections without `--explain`: 4^6 combinations take no noticeable time.
 pub(super) const SUMMED_UP: usize = 6;
 
 /// The number of refusals that are shown with an excerpt of their line.
@@ -50,8 +49,7 @@ fn nothing(what: &str, text: &str) -> Error {
     Error::new(Reason::Missing(format!("a {what}"))).hint(hint)
 }
 
-/// Answers every object of the file at `path`; each object is a `what`. If there is more than one, `several` says
-/// whether that is allowed.
+/// Answers every object of the file at `path`, each a `what`. `several` says whether more than one is allowed.
 ///
 /// `answer` appends the answer to an object, as text if there is a palette, else as a line of JSON, and returns the
 /// error that the answer contains, if any.

@@ -38,8 +38,7 @@ enum Column {
     Number(Float64Builder),
     Integer(Int64Builder),
     Boolean(BooleanBuilder),
-    /// Cells of carried column `which`. For each row, `at` has the array (0 is a null, k is `sources[k - 1]`) and the
-    /// row there.
+    /// Cells of carried column `which`; `at` has each row's array (0 is a null, k `sources[k - 1]`) and the row there.
     Carried {
         which: usize,
         sources: Vec<Arc<RecordBatch>>,
@@ -206,8 +205,7 @@ impl ColumnWriter {
                 for (name, kind) in columns.names().iter().zip(columns.kinds()) {
                     let path = ColumnPath::new(vec![name.clone()]);
                     properties = match kind {
-                        // Minima and maxima of text are of no use, and a dictionary of ids has no use, because they are
-                        // all different.
+                        // Minima and maxima of text are of no use, nor is a dictionary of ids, which all differ.
                         Kind::Text => properties
                             .set_column_dictionary_enabled(path.clone(), name != "id")
                             .set_column_statistics_enabled(path, EnabledStatistics::None),

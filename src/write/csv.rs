@@ -19,12 +19,10 @@ const FIRST: [&str; 4] = ["verdict", "outcome", "margin", "proven"];
 /// Columns that are added by [`Layout::next`].
 const NEXT: [&str; 2] = ["next_verdict", "next_modes"];
 
-/// The columns of a touchdown, without their prefix `touchdown_`. q and v before the impact follow them, named as in a
-/// table of states.
+/// The columns of a touchdown, without their prefix `touchdown_`. q and v before the impact follow them.
 const TOUCHDOWN: [&str; 6] = ["row", "time", "striking", "shift_z", "at", "touching"];
 
-/// The last columns, after the carried columns (those copied from the input). A brief table omits the first and the
-/// last of them.
+/// The last columns, after the carried ones (copied from the input). A brief table omits the first and the last.
 const LAST: [&str; 5] = ["border", "family", "families", "error", "notes"];
 
 /// The columns of a table of results, fixed before its first row.
@@ -433,8 +431,7 @@ pub(super) fn families(families: &[Family], at: usize) -> String {
     of_outcome.map(modes).collect::<Vec<_>>().join("; ")
 }
 
-/// Returns the notes as one cell, with whether the outcomes hold within the state's uncertainty, and whether the budget
-/// ended.
+/// Returns the notes as one cell, with whether the outcomes hold on the state's box, and whether the budget ended.
 pub(super) fn notes(impact: &Impact) -> String {
     let holds = impact.holds.as_ref().map(|holds| match holds {
         Robustness::Everywhere => "holds: true",

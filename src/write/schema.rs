@@ -192,8 +192,7 @@ fn input(document: &str) -> Value {
     schema
 }
 
-/// Closes the objects of a schema, replaces references to shapes by the shapes, and copies every definition that the
-/// schema refers to into `definitions`.
+/// Closes the objects of a schema, replaces references to shapes by these, and copies other references' definitions.
 fn write_out(schema: &mut Value, all: &Value, definitions: &mut Map<String, Value>) {
     match schema {
         Value::Array(entries) => entries.iter_mut().for_each(|entry| write_out(entry, all, definitions)),

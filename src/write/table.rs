@@ -69,8 +69,7 @@ impl Table {
         self
     }
 
-    /// Writes the table. Every line is indented and has no blanks at its end; the line of heads is left out if all are
-    /// empty.
+    /// Writes the table, indented and without blanks at the ends of lines. Heads are left out if all are empty.
     pub(crate) fn write(&self, out: &mut String) {
         let first = usize::from(self.columns.iter().all(|column| column.cells[0].is_empty()));
         let rows = self.columns.iter().map(|column| column.cells.len()).max().unwrap_or(0);

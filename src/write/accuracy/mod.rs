@@ -95,8 +95,7 @@ fn quickest(ways: &[Way]) -> Option<Way> {
     ways.iter().copied().min_by(|a, b| a.time.total_cmp(&b.time))
 }
 
-/// Returns every way to compute G in one kind of number that failed in no case with contacts. A way keeps no more
-/// digits than the numbers have.
+/// Returns every way to compute G that failed in no case with contacts. It keeps no more digits than the numbers have.
 fn ways(studies: &[CaseStudy], number: &str) -> Vec<Way> {
     let most = match number {
         "f32" => f64::from(f32::MANTISSA_DIGITS),

@@ -188,8 +188,7 @@ impl Inspection<'_> {
         if all { groups.join(", ") } else { words::list(&groups, SHAPES) }
     }
 
-    /// Returns what was left out, grouped by reason; joints are listed by name alone, without the body of their child
-    /// link.
+    /// Returns what was left out, grouped by reason; joints by name alone, without the body of their child link.
     fn left_out_by_reason(&self) -> Vec<(String, Vec<String>)> {
         let held = self.held.iter().map(|held| (held.why.clone(), held.name.to_owned()));
         let names: HashSet<&str> = self.held.iter().map(|held| held.name).collect();

@@ -246,8 +246,7 @@ impl<'a> Happening<'a> {
     }
 }
 
-/// Returns notes on what a search of regions with this many contacts may have missed; if contacts are `dependent` on
-/// each other, it may have missed more.
+/// Returns notes on what a search of regions with this many contacts may have missed: more if these are `dependent`.
 fn not_guaranteed(contacts: usize, dependent: bool) -> Vec<String> {
     if contacts == 0 {
         return Vec::new();

@@ -142,8 +142,7 @@ impl<'w> Writer<'w> {
         let contacts = &self.report.contacts;
         let mut table = Table::default().text("contact", self.names());
         let points = || contacts.iter().map(|contact| contact.point.map(Vector::components));
-        // The scale includes the robot's size: a point may lie at the origin, up to rounding and the residue of closed
-        // loops.
+        // With the robot's size: a point may lie at the origin, up to rounding and the residue of closed loops.
         let lengths = scale(points().flatten().flatten()).max(10.0 * self.subject.size);
         if points().all(|point| point.is_some()) {
             table = table.pairs(["x [m]", "z [m]"], lengths, points());

@@ -17,8 +17,7 @@ impl Writer<'_> {
     /// Writes one line: how many other combinations there are, and why they fail.
     pub(super) fn why_nothing_else(&mut self, outcomes: &[Outcome]) -> std::fmt::Result {
         let Some(analysis) = self.subject.analysis.filter(|_| !self.report.contacts.is_empty()) else { return Ok(()) };
-        // Corners of a family may share their modes, and a family may have those of a corner: each list of modes counts
-        // once.
+        // Corners of a family may share their modes, and a family may have those of a corner: each list counts once.
         let families = self.report.families.iter().map(|family| &family.modes);
         let outcomes = outcomes.iter().map(|outcome| &outcome.modes).chain(families).collect::<BTreeSet<_>>().len();
         let others = analysis.effort.combinations().saturating_sub(outcomes as u64);
