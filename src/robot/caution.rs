@@ -1,8 +1,7 @@
 //! Cautions: facts that a user must know before trusting a reduced robot, each with a remedy.
 
 use super::composite::is_physical;
-use super::legs::OBLIQUE;
-use super::plane::Plane;
+use super::plane::{OBLIQUE, Plane};
 use super::reading::{FreezeReason, FrozenJoint};
 use super::reference_pose::ReferencePose;
 use super::role::Role;
@@ -81,68 +80,96 @@ pub(super) fn about_frozen(seen: &Seen, frozen: &[(usize, FrozenJoint)], kept: u
     };
     let nearly: Vec<_> = frozen.iter().filter(tilted).collect();
     let hidden: Vec<_> = with(|reason| matches!(reason, Kind(_))).collect();
-    let names = |joints: &[&(usize, FrozenJoint)]| names(joints.iter().map(|(_, joint)| &joint.name));
+
     let mut cautions = Vec::new();
     if !nearly.is_empty() {
         let mut stays = vec![true; seen.description.joints.len()];
         frozen.iter().for_each(|&(joint, _)| stays[joint] = false);
         nearly.iter().for_each(|&&(joint, _)| stays[joint] = true);
         cautions.push(about_tilted(seen, &nearly, (movable.len() + kept, &stays)));
-    } else if let Some(movable) = names(&movable).filter(|_| kept == 0 && movable.len() > hidden.len()) {
-        cautions.push(format!(
-            "no joint moves in this plane, so the robot is one rigid body ({movable} frozen): choose another plane (`plane`), or \
-             hold joints where the axes of others are in line (`hold: NAME=VALUE`)"
+    } else if kept == 0 && movable.len() > hidden.len() {
+        cautions.extend(naming(
+            movable.iter().map(|(_, joint)| &joint.name),
+            "no joint moves in this plane, so the robot is one rigid body ({} frozen): choose another plane (`plane`), or \
+             hold joints where the axes of others are in line (`hold: NAME=VALUE`)",
         ));
     }
-    if let Some(hidden) = names(&hidden) {
-        cautions.push(format!(
-            "{hidden} could move in the plane and is frozen all the same, having no single axis: replace it by revolute and \
-             prismatic joints"
-        ));
-    }
+    cautions.extend(naming(
+        hidden.iter().map(|(_, joint)| &joint.name),
+        "{} could move in the plane and is frozen all the same, having no single axis: replace it by revolute and \
+         prismatic joints",
+    ));
     cautions
 }
 
-/// Returns the caution about links of the base that could touch the ground. Shapes of the root itself belong to the
-/// ground or the rail, and are ignored.
-pub(super) fn about_outside(description: &Description, outside: &[&UrdfLink]) -> Option<String> {
-    let root = &description.links[description.root].name;
-    let touching = outside.iter().filter(|link| link.name != *root && !link.collisions.is_empty());
-    let touching = names(touching.map(|link| &link.name))?;
-    Some(format!(
-        "{touching} has collision shapes but belongs to the base, so they are left out: if it is a foot, name one on \
-         another link (`feet: LINK:X,Y,Z`)"
-    ))
-}
+/// Returns the cautions about the file, whose joints have these `roles`. The links `outside` belong to the base.
+pub(super) fn about_file(
+    seen: &Seen,
+    roles: &[Role],
+    frozen: &[(usize, FrozenJoint)],
+    outside: &[&UrdfLink],
+) -> Vec<String> {
+    let &Seen { description, pose, plane, .. } = seen;
+    let Description { links, joints, ignored, misspelt, rotors, root, .. } = description;
+    let moves = |joint: usize| matches!(roles[joint], Role::Moves { .. });
+    let followers = pose.mimicked.iter().enumerate().filter_map(|(index, mimicked)| {
+        let followed = mimicked.as_ref()?.joint;
+        let is_off = matches!(roles[index], Role::Frozen(FreezeReason::OffPlane { .. }));
+        (is_off && moves(followed)).then(|| format!("{} follows {}", joints[index].name, joints[followed].name))
+    });
+    // Shapes of the root itself belong to the ground or the rail.
+    let touching = outside.iter().filter(|link| link.name != links[*root].name && !link.collisions.is_empty());
+    let driven = joints.iter().enumerate().filter(|&(index, joint)| moves(index) && rotors.contains(&joint.name));
+    let closing = ignored.iter().filter(|own| closes_loops(own.parent, &own.tag));
+    let without_axis = joints.iter().filter(|joint| joint.kind.has_axis() && !joint.has_axis);
+    let off = joints.iter().zip(&pose.axes).filter(|(joint, axis)| {
+        let angle = plane.off_normal(**axis);
+        joint.kind == JointKind::Planar && joint.has_axis && angle > pose.tolerance && angle <= OBLIQUE
+    });
+    // Multiples of 5 up to 360, at least one of 30 or more.
+    let in_degrees = |limit: &f64| limit.rem_euclid(5.0) == 0.0 && limit.abs() <= 360.0;
+    let limited = joints.iter().filter(|joint| {
+        let limits = joint.limits.filter(|_| joint.kind == JointKind::Revolute);
+        limits.is_some_and(|limits| limits.iter().all(in_degrees) && limits.iter().any(|limit| limit.abs() >= 30.0))
+    });
 
-/// Returns the caution about possibly misspelt names in the file.
-pub(super) fn about_spelling(description: &Description) -> Option<String> {
-    Some(format!("not read, and perhaps misspelt: {}", names(&description.misspelt)?))
-}
-
-/// Returns the caution about rotor inertia in the file, for joints that move.
-pub(super) fn about_rotors(description: &Description, roles: &[Role]) -> Option<String> {
-    let moves = |(joint, role): &(&UrdfJoint, &Role)| {
-        matches!(role, Role::Moves { .. }) && description.rotors.contains(&joint.name)
-    };
-    let joints = names(description.joints.iter().zip(roles).filter(moves).map(|(joint, _)| &joint.name))?;
-    Some(format!(
-        "rotor inertia of the file is not read ({joints}): give it times the gear ratio squared, by `rotor_inertia` in each \
-         state"
-    ))
-}
-
-/// Returns the caution about elements that close loops, which a tree of joints cannot represent.
-pub(super) fn about_loops(description: &Description) -> Option<String> {
-    let closing = description.ignored.iter().filter(|own| closes_loops(own.parent, &own.tag));
-    let closing = names(closing.map(|own| &own.tag))?;
-    Some(format!("what closes loops in the file is left out ({closing}): close them by `loops` in each state"))
-}
-
-/// Returns the caution about joints of another namespace. Without a joint from the world to the root the tree is still
-/// complete, so no error reports it.
-pub(super) fn about_foreign_joints(description: &Description) -> Option<String> {
-    description.has_foreign_joints().then(|| FOREIGN_JOINTS.to_owned())
+    let mut cautions: Vec<String> = about_held(description, frozen).collect();
+    cautions.extend(naming(
+        followers,
+        "frozen at zero although what they follow moves, their axes being off the plane: {}; to keep both where they \
+         belong, hold what is followed (`hold: NAME=VALUE`)",
+    ));
+    cautions.extend(naming(
+        touching.map(|link| &link.name),
+        "{} has collision shapes but belongs to the base, so they are left out: if it is a foot, name one on another \
+         link (`feet: LINK:X,Y,Z`)",
+    ));
+    cautions.extend(about_shapes(description));
+    cautions.extend(naming(misspelt, "not read, and perhaps misspelt: {}"));
+    cautions.extend(naming(
+        driven.map(|(_, joint)| &joint.name),
+        "rotor inertia of the file is not read ({}): give it times the gear ratio squared, by `rotor_inertia` in each \
+         state",
+    ));
+    cautions.extend(naming(
+        closing.map(|own| &own.tag),
+        "what closes loops in the file is left out ({}): close them by `loops` in each state",
+    ));
+    // Without a joint from the world to the root the tree is still complete, so no error reports these.
+    cautions.extend(description.has_foreign_joints().then(|| FOREIGN_JOINTS.to_owned()));
+    cautions.extend(naming(
+        without_axis.map(|joint| format!("{} on line {}", joint.name, joint.location.line)),
+        "without an <axis>, and so about or along x: {}; name the axis, as in <axis xyz=\"0 1 0\"/>",
+    ));
+    cautions.extend(naming(
+        off.map(|(joint, _)| &joint.name),
+        "planar, with an axis off the plane's normal, and taken as in the plane: {}; straighten the axis",
+    ));
+    cautions.extend(about_lengths(description));
+    cautions.extend(about_angles(description));
+    let limited = limited.map(|joint| &joint.name);
+    cautions.extend(naming(limited, "with limits as in degrees: {}; angles are in radians"));
+    cautions
 }
 
 /// Returns whether an element with this tag closes a loop in an extension of URDF.
@@ -150,28 +177,8 @@ pub(super) fn closes_loops(parent: &str, tag: &str) -> bool {
     parent == "robot" && matches!(tag, "loop" | "loop_joint" | "linear_bushing_rpy")
 }
 
-/// Returns the caution about movable joints without an `<axis>` in the file.
-pub(super) fn about_axes(description: &Description) -> Option<String> {
-    let without = description.joints.iter().filter(|joint| joint.kind.has_axis() && !joint.has_axis);
-    let names = names(without.map(|joint| format!("{} on line {}", joint.name, joint.location.line)))?;
-    Some(format!("without an <axis>, and so about or along x: {names}; name the axis, as in <axis xyz=\"0 1 0\"/>"))
-}
-
-/// Returns the caution about planar joints whose axis is off the normal, but close enough to count as parallel.
-pub(super) fn about_planar(description: &Description, pose: &ReferencePose, plane: Plane) -> Option<String> {
-    let off = |(joint, axis): &(&UrdfJoint, &[f64; 3])| {
-        let angle = plane.off_normal(**axis);
-        joint.kind == JointKind::Planar && joint.has_axis && angle > pose.tolerance && angle <= OBLIQUE
-    };
-    let off = description.joints.iter().zip(&pose.axes).filter(off);
-    let names = names(off.map(|(joint, _)| &joint.name))?;
-    Some(format!(
-        "planar, with an axis off the plane's normal, and taken as in the plane: {names}; straighten the axis"
-    ))
-}
-
 /// Returns the cautions about lengths that no legged robot has, for example millimeters taken for meters or vice versa.
-pub(super) fn about_lengths(description: &Description) -> Vec<String> {
+fn about_lengths(description: &Description) -> Vec<String> {
     const SHAPE: &str = "a shape of";
     let span = |points: &[[f64; 3]], at: usize| {
         let along = points.iter().map(|point| point[at]);
@@ -234,7 +241,7 @@ pub(super) fn about_mass(mass: f64, size: f64) -> Option<String> {
 
 /// Returns the cautions about joints held beyond their limits, for example in degrees, or frozen at zero beyond their
 /// limits.
-pub(super) fn about_held(description: &Description, frozen: &[(usize, FrozenJoint)]) -> impl Iterator<Item = String> {
+fn about_held(description: &Description, frozen: &[(usize, FrozenJoint)]) -> impl Iterator<Item = String> {
     let (mut held, mut at_zero) = (Vec::new(), Vec::new());
     for (index, joint) in frozen {
         let UrdfJoint { kind, limits, .. } = &description.joints[*index];
@@ -252,35 +259,16 @@ pub(super) fn about_held(description: &Description, frozen: &[(usize, FrozenJoin
             _ => {}
         }
     }
-    let held = names(held).map(|held| format!("held beyond limits, or in degrees: {held}"));
-    let at_zero = names(at_zero).map(|joints| {
-        format!(
-            "frozen at zero, which is beyond their limits: {joints}; give values (`hold: NAME=VALUE`), which may turn joints \
-             beyond them out of the plane"
-        )
-    });
-    held.into_iter().chain(at_zero)
-}
-
-/// Returns the caution about mimic joints that are frozen because they leave the plane although their mimicked joint
-/// moves.
-pub(super) fn about_followers(description: &Description, pose: &ReferencePose, roles: &[Role]) -> Option<String> {
-    let moves = |joint: usize| matches!(roles[joint], Role::Moves { .. });
-    let followers = pose.mimicked.iter().enumerate().filter_map(|(index, mimicked)| {
-        let followed = mimicked.as_ref()?.joint;
-        let is_off = matches!(roles[index], Role::Frozen(FreezeReason::OffPlane { .. }));
-        let [own, other] = [index, followed].map(|joint| &description.joints[joint].name);
-        (is_off && moves(followed)).then(|| format!("{own} follows {other}"))
-    });
-    let followers = names(followers)?;
-    Some(format!(
-        "frozen at zero although what they follow moves, their axes being off the plane: {followers}; to keep both where \
-         they belong, hold what is followed (`hold: NAME=VALUE`)"
+    let held = naming(held, "held beyond limits, or in degrees: {}");
+    held.into_iter().chain(naming(
+        at_zero,
+        "frozen at zero, which is beyond their limits: {}; give values (`hold: NAME=VALUE`), which may turn joints \
+         beyond them out of the plane",
     ))
 }
 
 /// Returns the caution about rotations by more than a full turn, for example degrees taken for radians.
-pub(super) fn about_angles(description: &Description) -> Option<String> {
+fn about_angles(description: &Description) -> Option<String> {
     let of_links = description.links.iter().flat_map(|link| {
         let inertial = link.inertial.iter().map(|inertial| &inertial.origin);
         let collisions = link.collisions.iter().map(|collision| &collision.origin);
@@ -294,18 +282,6 @@ pub(super) fn about_angles(description: &Description) -> Option<String> {
         "the rpy of {name}, \"{roll} {pitch} {yaw}\", is more than a turn: angles are in radians, and 90 degrees are \
          1.5708"
     ))
-}
-
-/// Returns the caution about limits of revolute joints that look like degrees: multiples of 5 up to 360, at least one
-/// of 30 or more.
-pub(super) fn about_limits(description: &Description) -> Option<String> {
-    let in_degrees = |limit: &f64| limit.rem_euclid(5.0) == 0.0 && limit.abs() <= 360.0;
-    let is_odd = |joint: &&UrdfJoint| {
-        let limits = joint.limits.filter(|_| joint.kind == JointKind::Revolute);
-        limits.is_some_and(|limits| limits.iter().all(in_degrees) && limits.iter().any(|limit| limit.abs() >= 30.0))
-    };
-    let odd = names(description.joints.iter().filter(is_odd).map(|joint| &joint.name))?;
-    Some(format!("with limits as in degrees: {odd}; angles are in radians"))
 }
 
 /// Returns the cautions about incomplete or wrong inertias. Each link has its moment about the plane's normal \[kg
@@ -409,22 +385,20 @@ pub(super) fn about_massless(robot: &Robot) -> Vec<String> {
             None if robot.base == Base::Floating => Some("the base's pitch"),
             _ => None,
         });
-    let massless = names(massless.iter().map(|(_, body)| &body.name)).map(|bodies| {
-        format!(
-            "without mass, although a joint of its own moves it: {bodies}; give it an <inertial>, or name the joint in `held`"
-        )
-    });
-    let unresisted = names(unresisted).map(|joints| {
-        format!(
-            "nothing resists a motion of {joints} in any state: give what it moves a mass off its axis or a moment of \
-             inertia, or name the joint in `held`"
-        )
-    });
+    let massless = naming(
+        massless.iter().map(|(_, body)| &body.name),
+        "without mass, although a joint of its own moves it: {}; give it an <inertial>, or name the joint in `held`",
+    );
+    let unresisted = naming(
+        unresisted,
+        "nothing resists a motion of {} in any state: give what it moves a mass off its axis or a moment of inertia, or \
+         name the joint in `held`",
+    );
     massless.into_iter().chain(unresisted).collect()
 }
 
 /// Returns the cautions about collision meshes that could not be read, and about shapes that URDF does not have.
-pub(super) fn about_shapes(description: &Description) -> impl Iterator<Item = String> {
+fn about_shapes(description: &Description) -> impl Iterator<Item = String> {
     let (mut meshes, mut unknown) = (Vec::new(), Vec::new());
     for link in &description.links {
         for collision in &link.collisions {
@@ -586,14 +560,15 @@ fn angle_into_line(axis: [f64; 3], hinge: [f64; 3], plane: Plane, tolerance: f64
     (plane.off_normal(apply(&turn(hinge, angle), axis)) <= tolerance).then_some(angle)
 }
 
+/// Returns `text` with the [`names`] in place of `{}`; `None` if there are none.
+fn naming<S: AsRef<str>>(listed: impl IntoIterator<Item = S>, text: &str) -> Option<String> {
+    names(listed).map(|names| text.replace("{}", &names))
+}
+
 /// Returns the first [`NAMED`] names and the number of others; `None` if there are none.
 fn names<S: AsRef<str>>(names: impl IntoIterator<Item = S>) -> Option<String> {
     let mut names = names.into_iter();
-    let first: Vec<S> = names.by_ref().take(NAMED).collect();
-    let first: Vec<&str> = first.iter().map(AsRef::as_ref).collect();
-    let more = match names.count() {
-        0 => String::new(),
-        more => format!(", {more} more"),
-    };
-    (!first.is_empty()).then(|| first.join(", ") + &more)
+    let mut first: Vec<String> = names.by_ref().take(NAMED).map(|name| name.as_ref().to_owned()).collect();
+    first.extend(Some(names.count()).filter(|&more| more > 0).map(|more| format!("{more} more")));
+    (!first.is_empty()).then(|| first.join(", "))
 }

@@ -39,7 +39,7 @@ pub(super) fn is_physical(inertia: &Matrix) -> bool {
 pub(super) struct LinkInertia {
     mass: f64,
     com: Vector<f64>,
-    /// Moment of inertia about the normal through the center of mass \[kg m^2\].
+    /// Moment of inertia about the normal through the center of mass \[kg m^2\]; negative by rounding at most.
     pub(super) moment: f64,
 }
 
@@ -76,11 +76,6 @@ impl LinkInertia {
             return Err(Reason::OutOfRange { what, allowed: "at least 0", value: moment });
         }
         Ok(Self { mass, com, moment })
-    }
-
-    /// Replaces a negative moment, which is rounding, by zero and returns it; `None` if the moment is not negative.
-    pub(super) fn without_negative_moment(&mut self) -> Option<f64> {
-        (self.moment < 0.0).then(|| std::mem::replace(&mut self.moment, 0.0))
     }
 }
 

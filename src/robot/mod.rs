@@ -17,7 +17,6 @@
 mod composite;
 mod plane;
 mod reference_pose;
-mod legs;
 mod reading;
 mod role;
 mod caution;
@@ -245,10 +244,7 @@ impl Robot {
 
     /// Returns the number of coordinates of the base: 3 if it floats, else 0.
     pub fn base_dofs(&self) -> usize {
-        match self.base {
-            Base::Floating => 3,
-            Base::Fixed => 0,
-        }
+        if self.base == Base::Floating { 3 } else { 0 }
     }
 
     /// Returns the number of coordinates: those of the base, and one per joint.
@@ -260,10 +256,7 @@ impl Robot {
     pub fn units(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
         const LENGTH: (&str, &str) = ("m", "m/s");
         const ANGLE: (&str, &str) = ("rad", "rad/s");
-        let joints = self.joints.iter().map(|joint| match joint.axis {
-            Axis::Revolute { .. } => ANGLE,
-            Axis::Prismatic { .. } => LENGTH,
-        });
+        let joints = self.joints.iter().map(|joint| if joint.axis.is_revolute() { ANGLE } else { LENGTH });
         [LENGTH, LENGTH, ANGLE].into_iter().take(self.base_dofs()).chain(joints)
     }
 
@@ -293,6 +286,11 @@ impl Robot {
     /// Returns the index in [`Robot::links`] of the link with this name; `None` if there is none.
     pub fn link(&self, name: &str) -> Option<usize> {
         self.links.iter().position(|link| link.name == name)
+    }
+
+    /// Returns the joints with coordinates of their own, then the mimic joints.
+    pub(crate) fn moving_joints(&self) -> impl Iterator<Item = &Joint> {
+        self.joints.iter().chain(self.mimic_joints.iter().map(|mimic| &mimic.joint))
     }
 
     /// Returns the reason why no link has this name.

@@ -14,6 +14,9 @@ pub(super) const PARALLEL: f64 = 1e-3;
 /// Greatest angle between two directions of shapes that count as parallel: many files write pi as 3.14 \[rad\].
 pub(super) const PARALLEL_SHAPE: f64 = 2e-3;
 
+/// A leg's axis that is off the normal by at most this angle rotates more in the plane than out of it \[rad\].
+pub(super) const OBLIQUE: f64 = 0.9;
+
 /// A plane through the root link's origin, named by the axes of the root link that point forward and up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Plane {

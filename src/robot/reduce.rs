@@ -2,14 +2,14 @@
 //! the plane.
 
 use super::composite::{LinkInertia, composites};
-use super::legs::{OBLIQUE, legs};
+use super::left_out::passed_over;
 use super::outline::outline;
-use super::plane::{PARALLEL, PARALLEL_SHAPE, Plane};
+use super::plane::{OBLIQUE, PARALLEL, PARALLEL_SHAPE, Plane};
 use super::reading::{FreezeReason, FrozenJoint, PlaneReason, Reading};
 use super::reference_pose::ReferencePose;
 use super::role::{self, Role, roles};
 use super::tree::{Place, Tree};
-use super::{Base, LeftOutPart, Link, ParentJoint, Robot, base, caution, left_out};
+use super::{Base, LeftOutPart, Link, ParentJoint, Robot, base, caution};
 use crate::description::{self, Description, Inertial, JointKind, UrdfLink, product};
 use crate::error::{Error, Reason, Result, finite};
 use crate::reductions::Reductions;
@@ -73,7 +73,7 @@ impl Robot {
             return Err(Reason::OutOfRange { what, allowed, value: tolerance }.into());
         }
         let mut pose = ReferencePose::new(description, &reduction.hold, tolerance)?;
-        let legs = legs(description, &pose);
+        let legs = pose.legs(description);
         let (plane, plane_because) = find_plane(description, &pose, &legs, reduction.plane);
         let roles_in = |pose: &ReferencePose| roles(description, pose, plane);
         let mut roles = roles_in(&pose);
@@ -85,24 +85,12 @@ impl Robot {
         let tree = Tree::grow(description, (&pose, &roles), found.root, rotation, reduction.reductions);
 
         let frozen = frozen(description, &roles, &tree, &found);
-        let outside = description.links.iter().zip(&tree.places).filter(|(_, place)| place.is_none());
-        let outside: Vec<&UrdfLink> = outside.map(|(link, _)| link).collect();
+        let places = description.links.iter().zip(&tree.places);
+        let outside: Vec<&UrdfLink> = places.filter(|(_, place)| place.is_none()).map(|(link, _)| link).collect();
         let seen = caution::Seen { description, pose: &pose, plane, legs: &legs };
         let mut cautions = caution::about_frozen(&seen, &frozen, tree.joints.len() + tree.mimic_joints.len());
         cautions.extend(found.caution);
-        cautions.extend(caution::about_held(description, &frozen));
-        cautions.extend(caution::about_followers(description, &pose, &roles));
-        cautions.extend(caution::about_outside(description, &outside));
-        cautions.extend(caution::about_shapes(description));
-        cautions.extend(caution::about_spelling(description));
-        cautions.extend(caution::about_rotors(description, &roles));
-        cautions.extend(caution::about_loops(description));
-        cautions.extend(caution::about_foreign_joints(description));
-        cautions.extend(caution::about_axes(description));
-        cautions.extend(caution::about_planar(description, &pose, plane));
-        cautions.extend(caution::about_lengths(description));
-        cautions.extend(caution::about_angles(description));
-        cautions.extend(caution::about_limits(description));
+        cautions.extend(caution::about_file(&seen, &roles, &frozen, &outside));
         let reading = Reading {
             plane,
             plane_because,
@@ -134,15 +122,20 @@ impl Robot {
                 let part = LinkInertia::projected(*mass, frame.in_plane(), inertia.as_ref(), &frame.rotation);
                 let negative = |reason| link.refuse(reason).hint("correct the moments and products of its <inertia>");
                 let mut part = part.map_err(negative)?;
-                robot.left_out.extend(part.without_negative_moment().map(|moment| left_out::rounded(link, moment)));
+                if part.moment < 0.0 {
+                    let found = format!("its moment about the plane's normal is {:e} kg m^2", part.moment);
+                    let why = format!("{found}, which is rounding: taken as 0");
+                    robot.left_out.push(LeftOutPart::link(&link.name, why));
+                    part.moment = 0.0;
+                }
                 *moment = part.moment;
                 parts.push((place.body, part));
             }
-            robot.left_out.extend(left_out::doubtful_inertia(link));
+            robot.left_out.extend(LeftOutPart::doubtful_inertia(link));
             let mut reduced = reduce_link(link, place, &mut robot.left_out);
             if !robot.moves(place.body) && !reduced.shapes.is_empty() {
                 reduced.shapes.clear();
-                robot.left_out.push(left_out::bolted_shapes(link));
+                robot.left_out.push(LeftOutPart::bolted_shapes(link));
             }
             robot.links.push(reduced);
         }
@@ -150,7 +143,7 @@ impl Robot {
         for (body, whole) in robot.bodies.iter_mut().zip(wholes) {
             (body.mass, body.com, body.moment) = whole;
         }
-        robot.left_out.extend(left_out::passed_over(description));
+        robot.left_out.extend(passed_over(description));
         let mut shapes =
             robot.links.iter().flat_map(|link| link.shapes.iter().map(|shape| (link.body, shape))).peekable();
         // Without shapes, only the centers of mass are known.
@@ -250,15 +243,18 @@ fn joints_left_out(description: &Description, roles: &[Role], tree: &Tree, readi
     let mut all = Vec::new();
     for (index, joint) in description.joints.iter().enumerate() {
         if let Some(frozen) = frozen.next_if(|frozen| frozen.name == joint.name) {
-            all.push(left_out::frozen(frozen));
+            all.push(LeftOutPart::joint(&joint.name, frozen.why()));
         } else if let Role::Moves { tilt, .. } = roles[index]
             && tilt > 0.0
             && tree.places[joint.parent].is_some()
         {
-            all.push(left_out::tilted(joint, tilt));
+            let wanted = if joint.kind == JointKind::Prismatic { "the plane" } else { "the plane's normal" };
+            let why = format!("its axis is {tilt:.1e} rad off {wanted}: taken as exactly on it");
+            all.push(LeftOutPart::joint(&joint.name, why));
         }
     }
-    all.extend(left_out::outside(reading));
+    let why = "not part of the robot: it belongs to the world or to the base";
+    all.extend(reading.outside.iter().map(|name| LeftOutPart::link(name, why)));
     all
 }
 
@@ -273,7 +269,7 @@ fn reduce_link(link: &UrdfLink, place: &Place, left_out: &mut Vec<LeftOutPart>) 
         let frame = place.frame(&collision.origin);
         match outline(&collision.geometry, &frame.rotation, frame.in_plane(), PARALLEL_SHAPE) {
             Ok(shape) => shapes.push(shape),
-            Err(why) => left_out.push(left_out::skipped(link, collision, why)),
+            Err(why) => left_out.push(LeftOutPart::shape(link, collision, why)),
         }
     }
     Link {
@@ -292,7 +288,7 @@ fn refuse_overflow(robot: &Robot) -> Result<()> {
         let inertia = [body.mass, body.com.x, body.com.z, body.moment];
         refuse_infinite("the inertia of the welded body", inertia, || description::link_place(&body.name))?;
     }
-    for joint in robot.joints.iter().chain(robot.mimic_joints.iter().map(|mimic| &mimic.joint)) {
+    for joint in robot.moving_joints() {
         refuse_infinite("the place at zero", joint.origin.components(), || description::joint_place(&joint.name))?;
     }
     for link in &robot.links {

@@ -8,6 +8,9 @@
 use crate::description::{Description, JointKind, Matrix, Mimic, Pose, UrdfJoint, apply, product, turn, unit};
 use crate::error::{Reason, Result, check_index};
 
+/// A link is a foot if its height above the lowest link is at most this fraction of the robot's height.
+const FOOT: f64 = 0.1;
+
 /// Axes of all joints and poses of all links, with the values of frozen joints.
 pub(super) struct ReferencePose {
     /// For each joint, the value at which it is to be frozen \[rad or m\]. Mimic joints of a frozen joint are frozen
@@ -44,13 +47,12 @@ impl ReferencePose {
         }
         let mimicked = description.mimicked()?;
         for (index, mimicked) in mimicked.iter().enumerate() {
-            if let Some(&Mimic { joint, multiplier, offset }) = mimicked.as_ref() {
+            if let &Some(Mimic { joint, multiplier, offset }) = mimicked {
                 frozen[index] = frozen[joint].map(|value| multiplier * value + offset);
             }
         }
-        let axes = vec![[0.0; 3]; joints.len()];
-        let rotations = vec![Pose::default().rotation(); description.links.len()];
-        let places = vec![[0.0; 3]; description.links.len()];
+        let (axes, links) = (vec![[0.0; 3]; joints.len()], description.links.len());
+        let (rotations, places) = (vec![Pose::default().rotation(); links], vec![[0.0; 3]; links]);
         let mut pose = Self { frozen, mimicked, axes, rotations, places, tolerance };
         pose.turn(description);
         Ok(pose)
@@ -64,8 +66,9 @@ impl ReferencePose {
             let (parent, child) = (joint.parent, joint.child);
             let origin = product(&rotations[parent], &joint.origin.rotation());
             axes[index] = unit(apply(&origin, unit(joint.axis)));
-            rotations[child] = frozen[index].map_or(origin, |value| product(&origin, &frozen_turn(joint, value)));
-            let shift = frozen[index].map_or([0.0; 3], |value| frozen_shift(joint, value));
+            let moved = frozen[index].map(|value| moved(joint, value));
+            rotations[child] = moved.map_or(origin, |(turn, _)| product(&origin, &turn));
+            let shift = moved.map_or([0.0; 3], |(_, shift)| shift);
             let (to_joint, to_child) = (apply(&rotations[parent], joint.origin.xyz), apply(&origin, shift));
             places[child] = [0, 1, 2].map(|axis| places[parent][axis] + to_joint[axis] + to_child[axis]);
         }
@@ -78,7 +81,7 @@ impl ReferencePose {
     pub(super) fn follow(&mut self, description: &Description, stay: impl Fn(usize, usize, bool) -> bool) -> bool {
         let mut moved = false;
         for (index, mimicked) in self.mimicked.iter().enumerate() {
-            let Some(&Mimic { joint, offset, .. }) = mimicked.as_ref() else { continue };
+            let &Some(Mimic { joint, offset, .. }) = mimicked else { continue };
             let has_place = self.frozen[index].is_some() || offset == 0.0 || !description.joints[index].kind.has_axis();
             let inward = |&joint: &usize| description.links[description.joints[joint].parent].joint;
             let on_the_way = || std::iter::successors(Some(joint), inward).any(|before| before == index);
@@ -92,35 +95,42 @@ impl ReferencePose {
         }
         moved
     }
-}
 
-/// Returns the rotation of the child by a joint that is frozen at `value`.
-pub(super) fn frozen_turn(joint: &UrdfJoint, value: f64) -> Matrix {
-    match joint.kind {
-        JointKind::Revolute | JointKind::Continuous => turn(unit(joint.axis), value),
-        _ => Pose::default().rotation(),
+    /// Returns for each joint whether it leads to one of the lowest links, in the root link's axes with z up.
+    pub(super) fn legs(&self, description: &Description) -> Vec<bool> {
+        let joints = &description.joints;
+        let heights = || self.places.iter().map(|place| place[2]);
+        let (low, high) = (heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max));
+        let mut leads: Vec<bool> = heights().map(|height| height <= low + FOOT * (high - low)).collect();
+        let mut legs = vec![false; joints.len()];
+        for index in description.outward(description.root).into_iter().rev() {
+            legs[index] = leads[joints[index].child];
+            leads[joints[index].parent] |= legs[index];
+        }
+        legs
     }
 }
 
-/// Returns the displacement of the child by a joint that is frozen at `value`, in the joint's frame \[m\].
-pub(super) fn frozen_shift(joint: &UrdfJoint, value: f64) -> [f64; 3] {
+/// Returns rotation and displacement \[m\] of the child in the frame of its joint, which is frozen at `value`.
+pub(super) fn moved(joint: &UrdfJoint, value: f64) -> (Matrix, [f64; 3]) {
+    let (unmoved, axis) = (Pose::default().rotation(), unit(joint.axis));
     match joint.kind {
-        JointKind::Prismatic => unit(joint.axis).map(|component| component * value),
-        _ => [0.0; 3],
+        JointKind::Revolute | JointKind::Continuous => (turn(axis, value), [0.0; 3]),
+        JointKind::Prismatic => (unmoved, axis.map(|component| component * value)),
+        _ => (unmoved, [0.0; 3]),
     }
 }
 
 fn refuse_no_coordinate(joint: &UrdfJoint, joints: &[UrdfJoint]) -> Result<()> {
-    let refuse = |reason: String| joint.refuse(Reason::Inconsistent(reason));
-    match (joint.kind, &joint.mimic) {
+    let (reason, hint) = match (joint.kind, &joint.mimic) {
         (_, Some(mimic)) => {
             let mimicked = &joints[mimic.joint].name;
-            let reason = format!("it cannot be frozen by itself: it follows joint \"{mimicked}\"");
-            Err(refuse(reason).hint(format!("hold {mimicked}")))
+            (format!("it cannot be frozen by itself: it follows joint \"{mimicked}\""), format!("hold {mimicked}"))
         }
-        (JointKind::Revolute | JointKind::Continuous | JointKind::Prismatic, None) => Ok(()),
+        (JointKind::Revolute | JointKind::Continuous | JointKind::Prismatic, None) => return Ok(()),
         (kind, None) => {
-            Err(refuse(format!("it cannot be frozen at a value: it is {}", kind.name())).hint("leave it out of `hold`"))
+            (format!("it cannot be frozen at a value: it is {}", kind.name()), "leave it out of `hold`".into())
         }
-    }
+    };
+    Err(joint.refuse(Reason::Inconsistent(reason)).hint(hint))
 }

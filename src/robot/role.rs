@@ -6,8 +6,7 @@
 //!     planar:     angle(a, n) <= 0.9            ->  the base itself                   else slides along n x a
 //! ```
 
-use super::legs::OBLIQUE;
-use super::plane::Plane;
+use super::plane::{OBLIQUE, Plane};
 use super::reference_pose::ReferencePose;
 use super::{Axis, FreezeReason};
 use crate::description::{Description, JointKind, Mimic, UrdfJoint, apply, unit};

@@ -10,7 +10,7 @@
 //! that is frozen at a value then displaces and rotates its child by that value. Cost: linear in the links, without
 //! recursion.
 
-use super::reference_pose::{ReferencePose, frozen_shift, frozen_turn};
+use super::reference_pose::{ReferencePose, moved};
 use super::role::Role;
 use super::{Body, Joint, MimicJoint, ParentJoint};
 use crate::description::{self, Description, Inertial, Matrix, Mimic, Pose, apply, product};
@@ -104,8 +104,8 @@ impl Tree {
                 _ => {
                     let at = match pose.frozen[index] {
                         Some(value) => {
-                            let offset = at.point(frozen_shift(joint, value));
-                            Place { rotation: product(&at.rotation, &frozen_turn(joint, value)), offset, ..at }
+                            let (turn, shift) = moved(joint, value);
+                            Place { rotation: product(&at.rotation, &turn), offset: at.point(shift), ..at }
                         }
                         None => at,
                     };

@@ -1,7 +1,9 @@
 //! What is refused of a state and of options, however they were made. `read` gives the same reasons, with line and
 //! column.
 
-use super::{ByLink, Ground, NamedContact, Scene, SpringEnd, State, Uncertainty, check_length};
+use super::{
+    AppliedImpulse, ByLink, Ground, LinkPoint, NamedContact, Scene, SpringEnd, State, Uncertainty, check_length,
+};
 use crate::error::{Error, Reason, Result, check_index, finite, from_zero};
 use crate::law::Friction;
 use crate::robot::{Base, Robot};
@@ -34,6 +36,10 @@ impl Scene {
     fn check(&self, robot: &Robot) -> Result<()> {
         let (links, joints) = (("links", robot.links.len()), ("joints", robot.joints.len()));
         let index = |place: &str, index: usize, of| check_index(index, of).map_err(|error| error.at(place));
+        let point = |list: &str, at: usize, end: &str, point: LinkPoint| {
+            index(list, point.link, links)?;
+            check_finite(&point.offset, || format!("{list}[{at}]{end}.offset"))
+        };
         self.stance.map_or(Ok(()), |link| index("stance", link, links))?;
         self.braked.iter().try_for_each(|&joint| index("held", joint, joints))?;
         if robot.base != Base::Floating && self.stance.is_some() {
@@ -59,23 +65,17 @@ impl Scene {
         }
         check_contacts(robot, "contacts", self.contacts.as_deref().unwrap_or_default())?;
         for (at, own) in self.loops.iter().enumerate() {
-            [own.a, own.b].iter().try_for_each(|end| index("loops", end.link, links))?;
-            check_finite(&own.a.offset, || format!("loops[{at}].a.offset"))?;
-            check_finite(&own.b.offset, || format!("loops[{at}].b.offset"))?;
+            point("loops", at, ".a", own.a)?;
+            point("loops", at, ".b", own.b)?;
         }
-        for (at, own) in self.impulses.iter().enumerate() {
-            index("impulse", own.link, links)?;
-            check_finite(&own.offset, || format!("impulse[{at}].offset"))?;
-            check_finite(&own.vector.components(), || format!("impulse[{at}].vector"))?;
+        for (at, &AppliedImpulse { link, offset, vector }) in self.impulses.iter().enumerate() {
+            point("impulse", at, "", LinkPoint { link, offset })?;
+            check_finite(&vector.components(), || format!("impulse[{at}].vector"))?;
         }
         for (at, own) in self.springs.iter().enumerate() {
-            index("virtual", own.a.link, links)?;
-            check_finite(&own.a.offset, || format!("virtual[{at}].a.offset"))?;
+            point("virtual", at, ".a", own.a)?;
             match own.b {
-                SpringEnd::Link(b) => {
-                    index("virtual", b.link, links)?;
-                    check_finite(&b.offset, || format!("virtual[{at}].b.offset"))?;
-                }
+                SpringEnd::Link(b) => point("virtual", at, ".b", b)?,
                 SpringEnd::World(place) => check_finite(&place.components(), || format!("virtual[{at}].b.world"))?,
             }
             for law in own.laws {
@@ -180,7 +180,6 @@ fn check_joints(
         let error = check_length(place, list.len(), lengths[0]);
         return error.map_err(|error| error.hint("give an entry per joint; an empty list stands for zeros"));
     }
-    let mimics = || robot.mimic_joints.iter().map(|mimic| &mimic.joint);
-    let name = |at| robot.joints.iter().chain(mimics()).nth(at).map_or("", |joint| &joint.name);
+    let name = |at| robot.moving_joints().nth(at).map_or("", |joint| &joint.name);
     check_each(list, check, |at| format!("{place}.{}", name(at)))
 }

@@ -106,9 +106,8 @@ impl State {
 
 /// Returns whether the body that a coordinate rotates carries no other joint.
 fn is_wheel(robot: &Robot, at: usize) -> bool {
-    let mut joints = robot.joints.iter().chain(robot.mimic_joints.iter().map(|mimic| &mimic.joint));
     match at.checked_sub(robot.base_dofs()) {
-        Some(joint) => joints.all(|other| robot.rigid_body(other.parent) != robot.joints[joint].child),
+        Some(joint) => robot.moving_joints().all(|other| robot.rigid_body(other.parent) != robot.joints[joint].child),
         None => robot.joints.is_empty(),
     }
 }
