@@ -222,21 +222,14 @@ impl Description {
         let root = tree::connect(&mut description.links, &description.joints);
         // For example, <Joint> in place of <joint>.
         let of_robot = |name: &&String| name.starts_with('<') && name.contains(" in <robot>");
-        let misspelt = |error: Error| match (error.remedy(), description.misspelt.iter().find(of_robot)) {
-            (Some(remedy), Some(name)) => {
-                let hint = format!("{remedy}; not read, and perhaps misspelt: {name}");
-                error.hint(hint)
-            }
-            _ => error,
-        };
-        let of_other_programs = |error: Error| match error.remedy() {
-            Some(remedy) if description.has_foreign_joints() => {
-                let hint = format!("{remedy}; {FOREIGN_JOINTS}");
-                error.hint(hint)
-            }
-            _ => error,
-        };
-        description.root = root.map_err(misspelt).map_err(of_other_programs)?;
+        let misspelt = description.misspelt.iter().find(of_robot);
+        let misspelt = misspelt.map(|name| format!("not read, and perhaps misspelt: {name}"));
+        let foreign = description.has_foreign_joints().then(|| FOREIGN_JOINTS.to_owned());
+        description.root = root.map_err(|error: Error| {
+            let remedy = error.remedy().map(str::to_owned);
+            let hints: Vec<String> = remedy.into_iter().chain(misspelt).chain(foreign).collect();
+            error.hint(hints.join("; "))
+        })?;
         Ok(description)
     }
 

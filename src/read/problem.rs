@@ -1,8 +1,7 @@
 //! Reads a contact problem given as matrices.
 
 use super::state as read;
-use crate::impact::check_matrix_size;
-use crate::impact::{ContactProblem, Errors, Source};
+use crate::impact::{ContactProblem, Errors, Source, check_matrix_size};
 use crate::read::json::{Node, Value};
 use crate::scalar::{Ordered, Trigonometry};
 use crate::state::Defaults;
@@ -61,9 +60,8 @@ impl Problem {
 
         if let Some(uncertainty) = field("uncertainty") {
             let reason = Reason::Unsupported("a contact problem is taken as exact".into());
-            return Err(uncertainty
-                .refuse(reason)
-                .hint("give the state it comes from to `impact`, with its uncertainty"));
+            let hint = "give the state it comes from to `impact`, with its uncertainty";
+            return Err(uncertainty.refuse(reason).hint(hint));
         }
 
         let laws = |contacts: usize| -> Result<_> {
@@ -180,13 +178,12 @@ fn names(field: &Node, contacts: usize) -> Result<Vec<String>> {
 /// Returns the entries of a list, one per contact.
 fn counted<'n>(field: &'n Node<'n>, contacts: usize) -> Result<impl Iterator<Item = Node<'n>>> {
     let entries = field.entries()?;
-    match entries.len() {
-        found if found == contacts => Ok(entries),
-        found => {
-            let of = if contacts == 1 { "1 contact".to_owned() } else { format!("{contacts} contacts") };
-            Err(field.refuse(Reason::Inconsistent(format!("{found} entries for {of}"))))
-        }
+    if entries.len() == contacts {
+        return Ok(entries);
     }
+    let plural = if contacts == 1 { "" } else { "s" };
+    let reason = format!("{} entries for {contacts} contact{plural}", entries.len());
+    Err(field.refuse(Reason::Inconsistent(reason)))
 }
 
 #[cfg(test)]

@@ -55,14 +55,20 @@ pub(crate) fn read(root: Node, robot: &Robot, defaults: &Defaults) -> Result<Sta
             "friction" => scene.friction = by_link(field, robot, friction)?,
             "restitution" => scene.restitution = by_link(field, robot, restitution)?,
             "ground" => scene.ground = ground(field)?,
-            "stance" => scene.stance = Some(stance(field, robot)?),
+            "stance" => {
+                scene.stance = Some(link(field, robot)?);
+                refuse_bolted(field, robot, "a stance cannot place it")?;
+            }
             "place" => own_place = Some((field, lowest(field, robot)?)),
             "held" => scene.braked = braked(field, robot)?,
             "rotor_inertia" => scene.rotor_inertia = rotor_inertia(field, robot)?,
             "contacts" => scene.contacts = Some(contacts(field, robot)?),
             "impulse" => scene.impulses = impulses(field, robot)?,
             "gravity" => scene.gravity = Some(field.number()?),
-            "torque" => scene.torque = torque(field, robot)?,
+            "torque" => {
+                scene.torque = vec![0.0; robot.joints.len()];
+                by_joint(field, robot, &mut scene.torque, |entry| entry.number())?;
+            }
             "virtual" => scene.springs = springs(field, robot)?,
             "loops" => own_loops = Some(loops(field, robot)?),
             "uncertainty" => state.uncertainty = Some(uncertainty(field, robot)?),
@@ -133,22 +139,13 @@ fn refuse_base(object: Node, reason: impl Fn(&str) -> String, hint: &str) -> Res
     Ok(())
 }
 
-fn stance(field: Node, robot: &Robot) -> Result<usize> {
-    let link = link(field, robot)?;
-    refuse_bolted(field, robot, "a stance cannot place it")?;
-    Ok(link)
-}
-
 /// Reads whether the lowest foot is placed on the ground: "lowest" is true, "given" is false.
 fn lowest(field: Node, robot: &Robot) -> Result<bool> {
-    match field.text()? {
-        "given" => Ok(false),
-        "lowest" => {
-            let refused = refuse_bolted(field, robot, "it cannot be placed");
-            refused.map_err(|error| error.hint(PLACED_BY_JOINTS)).map(|()| true)
-        }
-        other => Err(field.expected("\"lowest\" or \"given\"").did_you_mean(other, ["lowest", "given"])),
+    let lowest = field.choice("\"lowest\" or \"given\"", [("lowest", true), ("given", false)])?;
+    if lowest {
+        refuse_bolted(field, robot, "it cannot be placed").map_err(|error| error.hint(PLACED_BY_JOINTS))?;
     }
+    Ok(lowest)
 }
 
 fn refuse_bolted(field: Node, robot: &Robot, what: &str) -> Result<()> {
@@ -243,13 +240,6 @@ fn rotor_inertia(field: Node, robot: &Robot) -> Result<Vec<f64>> {
     Ok(inertia)
 }
 
-/// Reads an object of torques by joint.
-fn torque(field: Node, robot: &Robot) -> Result<Vec<f64>> {
-    let mut torque = vec![0.0; robot.joints.len()];
-    by_joint(field, robot, &mut torque, |entry| entry.number())?;
-    Ok(torque)
-}
-
 /// Reads a list of `{"link", "offset", "radius"}`.
 fn contacts(field: Node, robot: &Robot) -> Result<Vec<NamedContact>> {
     let contact = |entry: Node| {
@@ -310,11 +300,10 @@ fn springs(field: Node, robot: &Robot) -> Result<Vec<VirtualSpring>> {
         pulled(&along[0], &along[2])?;
         let [stiffness, damping, target, constant] = along.map(of_axes);
         let [stiffness, damping, target, constant] = [stiffness?, damping?, target?, constant?];
-        let along = |axis: usize| SpringLaw {
-            stiffness: stiffness[axis],
-            damping: damping[axis],
-            target: target[axis],
-            constant: constant[axis],
+        let along = |axis: usize| {
+            let numbers = [stiffness, damping, target, constant].map(|of_axes| of_axes[axis]);
+            let [stiffness, damping, target, constant] = numbers;
+            SpringLaw { stiffness, damping, target, constant }
         };
         let [stiffness, damping, target] = match pitch {
             Some(pitch) => {

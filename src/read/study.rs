@@ -80,7 +80,8 @@ impl<'t> Study<'t> {
         let root = Node::root(&tree, text, None);
         let [_, _, state, _, question] =
             root.object("Study", ["parameters", "constants", "state", "robot", "question"])?;
-        let question = question.map_or(Ok(Aspect::Impact), aspect)?;
+        let aspects = [("impact", Aspect::Impact), ("forces", Aspect::Forces)];
+        let question = question.map(|field| field.choice("\"impact\" or \"forces\"", aspects)).transpose()?;
         let constants = constants(&tree, text)?;
         let with_constants = Node::root(&tree, text, Some(&constants));
         let field = with_constants.field("parameters")?.ok_or_else(|| {
@@ -100,7 +101,7 @@ impl<'t> Study<'t> {
         if state.is_none() {
             return Err(root.missing("state").hint("as in `impact`, with expressions where numbers stand"));
         }
-        Ok(Self { text, question, parameters, constants, tree: tree.clone() })
+        Ok(Self { text, question: question.unwrap_or_default(), parameters, constants, tree: tree.clone() })
     }
 
     /// Returns what is asked about each state.
@@ -147,11 +148,10 @@ impl<'t> Study<'t> {
             !parts.iter().filter_map(|part| self.tree.get(part)).any(|part| uses(part, name))
         };
         let parameters = self.parameters.iter().map(|parameter| parameter.name.as_str());
-        let constants = self.constants.iter();
         let parameters = parameters.filter(|name| unused(name, &["state", "robot"]));
-        parameters
-            .chain(constants.filter(|name| unused(name, &["constants", "parameters", "state", "robot"])))
-            .collect()
+        let constants = self.constants.iter();
+        let constants = constants.filter(|name| unused(name, &["constants", "parameters", "state", "robot"]));
+        parameters.chain(constants).collect()
     }
 
     /// Returns whether the study varies the robot itself.
@@ -181,15 +181,6 @@ impl<'t> Study<'t> {
             Some(field) => variation::applied(field, description).map(Cow::Owned),
             None => Ok(Cow::Borrowed(description)),
         }
-    }
-}
-
-/// Reads "impact" or "forces".
-fn aspect(field: Node) -> Result<Aspect> {
-    match field.text()? {
-        "impact" => Ok(Aspect::Impact),
-        "forces" => Ok(Aspect::Forces),
-        other => Err(field.expected("\"impact\" or \"forces\"").did_you_mean(other, ["impact", "forces"])),
     }
 }
 

@@ -173,12 +173,11 @@ impl<'n> Node<'n> {
         if unknown == "log" {
             return error.hint("write ln or log10: log is the one to some and the other to others");
         }
-        let known = names.iter().filter(|name| !CONSTANTS.contains(name)).collect::<Vec<_>>().join(", ");
-        let error = match known.as_str() {
-            "" => error.hint("only pi, e and functions such as sin and atan2 are known here"),
-            _ => error.hint(format!("known here are {known}, pi, e and functions such as sin and atan2")),
+        let known = match names.iter().filter(|name| !CONSTANTS.contains(name)).collect::<Vec<_>>().join(", ") {
+            none if none.is_empty() => "only pi, e and functions such as sin and atan2 are known here".to_owned(),
+            known => format!("known here are {known}, pi, e and functions such as sin and atan2"),
         };
-        error.did_you_mean(&unknown, names.iter().chain(FUNCTIONS))
+        error.hint(known).did_you_mean(&unknown, names.iter().chain(FUNCTIONS))
     }
 
     /// Returns the string.
@@ -214,6 +213,13 @@ impl<'n> Node<'n> {
             return None;
         };
         value_of(text, key)
+    }
+
+    /// Returns what the string stands for among `choices`, which `expected` lists.
+    pub(crate) fn choice<T>(&self, expected: &'static str, choices: [(&'static str, T); 2]) -> Result<T> {
+        let (text, names) = (self.text()?, choices.each_ref().map(|(name, _)| *name));
+        let chosen = choices.into_iter().find(|(name, _)| *name == text);
+        chosen.map(|(_, meant)| meant).ok_or_else(|| self.expected(expected).did_you_mean(text, names))
     }
 
     /// Refuses a value of the wrong kind.
@@ -292,19 +298,17 @@ impl<'n> Node<'n> {
     /// Returns line and column of `name`, or else of the nearest key on the path to the root, if either is a slice of
     /// the text.
     fn location(&self, name: &str) -> (usize, usize) {
-        let (mut key, mut way) = (None, self.way);
-        let text = loop {
-            way = match way {
-                PathStep::Root { text, .. } => break text,
-                PathStep::Field { parent, key: nearer } => {
-                    key = key.or(Some(nearer));
-                    parent.way
-                }
-                PathStep::Entry { parent, .. } => parent.way,
-            };
-        };
-        let offset = [Some(name), key].into_iter().flatten().find_map(|anchor| offset_in(text, anchor));
-        line_and_column(text.as_bytes(), offset.unwrap_or(0))
+        let (text, key) = self.text_and_key();
+        line_and_column(text.as_bytes(), offset_in(text, name).or_else(|| offset_in(text, key)).unwrap_or(0))
+    }
+
+    /// Returns the root's text, and the nearest key on the path to it.
+    fn text_and_key(&self) -> (&'n str, &'n str) {
+        match self.way {
+            PathStep::Root { text, .. } => (text, ""),
+            PathStep::Field { parent, key } => (parent.text_and_key().0, key),
+            PathStep::Entry { parent, .. } => parent.text_and_key(),
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use super::line_and_column;
 use crate::state::Entries;
 use crate::{Error, Reason};
 use serde::Deserialize;
-use serde::de::value::MapAccessDeserializer;
+use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserializer, Error as _, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde_json::Number;
 use serde_json::value::RawValue;
@@ -95,12 +95,8 @@ impl<'de> Visitor<'de> for AnyValue {
     fn visit_str<E>(self, text: &str) -> Result<Self::Value, E> {
         Ok(Value::Text(Cow::Owned(text.to_owned())))
     }
-    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Self::Value, A::Error> {
-        let mut entries = Vec::new();
-        while let Some(entry) = list.next_element()? {
-            entries.push(entry);
-        }
-        Ok(Value::List(entries))
+    fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Self::Value, A::Error> {
+        Vec::deserialize(SeqAccessDeserializer::new(list)).map(Value::List)
     }
     fn visit_map<A: MapAccess<'de>>(self, object: A) -> Result<Self::Value, A::Error> {
         Entries::deserialize(MapAccessDeserializer::new(object)).map(|entries| Value::Object(fields(entries)))
@@ -173,31 +169,24 @@ fn refusal(text: &str, error: &serde_json::Error) -> Error {
     };
     let rest = text.as_bytes().get(offset..).unwrap_or_default();
     let begins = |words: &[&str]| words.iter().any(|word| rest.starts_with(word.as_bytes()));
-    let refused = if error.is_eof() {
-        refused.hint("the text ends too early: is it whole?")
-    } else if begins(&["NaN", "nan", "Infinity", "-Infinity", "inf", "-inf", "Inf", "-Inf"]) {
-        refused.hint("JSON has no NaN and no infinity: numbers are finite, and friction alone may be \"infinite\"")
-    } else if begins(&["'"]) {
-        refused.hint("JSON has double quotes, as in {\"friction\": 0.8}")
-    } else if whole.starts_with("trailing comma") {
-        refused.hint("leave out the comma before the closing bracket")
-    } else if whole.starts_with("expected `,`") && begins(&["\"", "{", "["]) {
-        refused.hint("put a comma before it")
-    } else if whole.starts_with("key must be") && rest.first().is_some_and(u8::is_ascii_digit) {
-        refused.hint("numbers have a decimal point, as in 0.8")
-    } else if whole.starts_with("key must be") && rest.first().is_some_and(u8::is_ascii_alphabetic) {
-        refused.hint("names are in double quotes, as in {\"friction\": 0.8}")
-    } else if begins(&[","]) {
-        refused.hint("leave out this comma")
-    } else if is_table(text) {
-        refused.hint("is this a table? `heelstrike batch` reads CSV")
-    } else if is_yaml(text) {
-        refused.hint("is this YAML? JSON has braces and double quotes, as in {\"friction\": 0.8}")
-    } else if begins(&["//", "/*", "#"]) {
-        refused.hint("JSON has no comments: leave it out")
-    } else {
-        refused
-    };
+    let is_infinite = begins(&["NaN", "nan", "Infinity", "-Infinity", "inf", "-inf", "Inf", "-Inf"]);
+    let is_key = |kind: fn(&u8) -> bool| whole.starts_with("key must be") && rest.first().is_some_and(kind);
+    let lacks_comma = whole.starts_with("expected `,`") && begins(&["\"", "{", "["]);
+    let hints = [
+        (error.is_eof(), "the text ends too early: is it whole?"),
+        (is_infinite, "JSON has no NaN and no infinity: numbers are finite, and friction alone may be \"infinite\""),
+        (begins(&["'"]), "JSON has double quotes, as in {\"friction\": 0.8}"),
+        (whole.starts_with("trailing comma"), "leave out the comma before the closing bracket"),
+        (lacks_comma, "put a comma before it"),
+        (is_key(u8::is_ascii_digit), "numbers have a decimal point, as in 0.8"),
+        (is_key(u8::is_ascii_alphabetic), "names are in double quotes, as in {\"friction\": 0.8}"),
+        (begins(&[","]), "leave out this comma"),
+        (is_table(text), "is this a table? `heelstrike batch` reads CSV"),
+        (is_yaml(text), "is this YAML? JSON has braces and double quotes, as in {\"friction\": 0.8}"),
+        (begins(&["//", "/*", "#"]), "JSON has no comments: leave it out"),
+    ];
+    let hint = hints.into_iter().find_map(|(applies, hint)| applies.then_some(hint));
+    let refused = hint.into_iter().fold(refused, Error::hint);
     match serde_path_to_error::deserialize::<_, Value>(&mut serde_json::Deserializer::from_str(text)) {
         Err(error) => refused.at(known_part(error.path())),
         Ok(_) => refused,
