@@ -178,12 +178,8 @@ impl Answerer<'_> {
             return;
         }
         let state = lines.read(record).map_err(|error| {
-            let error = with_remedy(error, record);
             // The error's location counts within the line alone.
-            match error.location() {
-                Some(Location { column, .. }) => error.on(around.line, column),
-                None => error,
-            }
+            with_remedy(error, record).relocated(|place| Location { line: around.line, ..place })
         });
         self.answer(state, || utf8(record).ok().and_then(State::id_in), Around { record, ..around }, block);
     }
@@ -274,10 +270,12 @@ impl Answerer<'_> {
         self.keep(state.id.as_ref(), around, block, || {
             Keyframe::of_impact(robot, &self.question.options.feet, state, impact)
         });
-        block.summary.early += u64::from(around.landing.is_some_and(|landing| landing.is_early));
-        block.summary.slowed += u64::from(around.landing.is_some_and(|landing| landing.is_slowed));
-        block.summary.deep += u64::from(around.landing.is_some_and(|landing| landing.is_deep));
-        block.summary.crowded += u64::from(around.landing.is_some_and(|landing| landing.is_crowded));
+        if let Some(landing) = around.landing {
+            block.summary.early += u64::from(landing.is_early);
+            block.summary.slowed += u64::from(landing.is_slowed);
+            block.summary.deep += u64::from(landing.is_deep);
+            block.summary.crowded += u64::from(landing.is_crowded);
+        }
         let place = || StateRef { id: state.id.clone().map(short_id), line: around.line };
         if !impact.notes.is_empty() {
             // Notes on odd numbers come first in the list.
@@ -286,12 +284,8 @@ impl Answerer<'_> {
             let mut others = impact.notes.iter().skip(odd.len()).filter(|_| !impact.contacts.is_empty());
             let other = others.find(|note| !note.contains(AT_REST)).cloned();
             let of = |what| OddStates { states: 1, first: Some(Oddity { state: place(), what }) };
-            if let Some(what) = odd.into_iter().next() {
-                block.summary.odd_states.add(of(what));
-            }
-            if let Some(what) = other {
-                block.summary.noted.add(of(what));
-            }
+            block.summary.odd_states.add(odd.into_iter().next().map(of).unwrap_or_default());
+            block.summary.noted.add(other.map(of).unwrap_or_default());
         }
         match impact.analyzed() {
             Ok(analysis) => {
@@ -332,20 +326,22 @@ impl Answerer<'_> {
 
 /// Adds a hint to the error if the line is one of a table, or holds no whole state or several.
 fn with_remedy(error: Error, record: &[u8]) -> Error {
-    if record.trim_ascii_start().starts_with(b"[") {
-        return error.hint("each line must hold one state; `jq -c '.[]'` takes a list apart");
-    }
-    let Reason::Syntax(reason) = error.reason() else { return error };
-    if reason.starts_with("EOF while parsing") {
-        return error.hint("each line must hold a whole state; `jq -c .` writes JSON so");
-    }
-    if reason == "trailing characters" {
-        return error.hint("a line holds one state and nothing after it");
-    }
-    // Column names of a table.
-    let column = |name: &[u8]| [&b"q_"[..], b"v_"].iter().any(|prefix| name.starts_with(prefix));
-    let header = record.split(|&byte| byte == b',').any(column);
-    if header { error.hint("is this a table? then say `input_format: csv`") } else { error }
+    // The names of a table's columns begin so.
+    let is_column = |name: &[u8]| name.starts_with(b"q_") || name.starts_with(b"v_");
+    let hint = match error.reason() {
+        _ if record.trim_ascii_start().starts_with(b"[") => {
+            "each line must hold one state; `jq -c '.[]'` takes a list apart"
+        }
+        Reason::Syntax(reason) if reason.starts_with("EOF while parsing") => {
+            "each line must hold a whole state; `jq -c .` writes JSON so"
+        }
+        Reason::Syntax(reason) if reason == "trailing characters" => "a line holds one state and nothing after it",
+        Reason::Syntax(_) if record.split(|&byte| byte == b',').any(is_column) => {
+            "is this a table? then say `input_format: csv`"
+        }
+        _ => return error,
+    };
+    error.hint(hint)
 }
 
 impl Block {

@@ -1,5 +1,4 @@
-//! Repairs common faults of URDF files so that their XML can be parsed. Lines and columns of errors refer to the
-//! original.
+//! Repairs common faults of URDF files so that their XML can be parsed. Places of errors are those in the original.
 //!
 //! Two faults are repaired. A declaration `<?xml ...?>` that is misspelt or not at the beginning is replaced by blanks
 //! (the text is UTF-8 already, so it carries no information). Undeclared namespace prefixes (`<sensor:camera>` in a
@@ -66,10 +65,7 @@ impl<'a> Repaired<'a> {
 
     /// Returns `error` with its place in the file.
     pub(super) fn refusal(&self, error: Error) -> Error {
-        match error.location().map(|place| self.in_file(place)) {
-            Some(Location { line, column }) => error.on(line, column),
-            None => error,
-        }
+        error.relocated(|place| self.in_file(place))
     }
 }
 

@@ -135,6 +135,12 @@ impl Error {
         self
     }
 
+    /// Changes line and column, if there are any.
+    pub(crate) fn relocated(mut self, change: impl FnOnce(Location) -> Location) -> Self {
+        self.0.location = self.0.location.map(change);
+        self
+    }
+
     /// Removes line and column, for an input that has none.
     pub fn nowhere(mut self) -> Self {
         self.0.location = None;

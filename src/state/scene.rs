@@ -93,15 +93,12 @@ impl NamedContact {
     pub fn out_of_scale(&self, robot: &Robot) -> Option<String> {
         let link = robot.links.get(self.link).map_or("", |link| &link.name);
         let far = self.offset.iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
-        match (far, self.radius) {
-            _ if far > LONGEST => {
-                Some(format!("the contact of {link} is {far} m from its origin: lengths are in meters"))
-            }
-            (_, radius) if radius > LONGEST => {
-                Some(format!("the contact of {link} has a radius of {radius} m: lengths are in meters"))
-            }
-            _ => None,
-        }
+        let found = match self.radius {
+            _ if far > LONGEST => format!("is {far} m from its origin"),
+            radius if radius > LONGEST => format!("has a radius of {radius} m"),
+            _ => return None,
+        };
+        Some(format!("the contact of {link} {found}: lengths are in meters"))
     }
 }
 

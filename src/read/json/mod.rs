@@ -12,15 +12,14 @@ mod value;
 
 pub(crate) use value::{Value, id_in, id_of, raw_fields};
 
-use crate::error::from_zero;
+use crate::error::{Location, from_zero};
 use crate::read::expression::{CONSTANTS, FUNCTIONS, Fault, Names};
 use crate::{Error, Reason, Result};
 use std::borrow::Cow;
 use std::collections::HashSet;
 
 /// The formats of states, problems and studies: a JSON Schema with a definition for each object. It is the only list of
-/// their fields: hints take the names from it, and the printed schemas are parts of it. `tests/command/schema` compares
-/// schemas and readers value by value.
+/// their fields, from which hints and printed schemas come; `tests/command/schema` compares it with the readers.
 pub(crate) const FORMAT: &str = include_str!("../format.json");
 
 /// The last step of the path from the root to a node.
@@ -63,8 +62,7 @@ impl<'n> Node<'n> {
         Ok(fields.iter().map(move |(key, value)| field(key, value)))
     }
 
-    /// Returns the fields with these names; other fields are refused, because `object` of the format does not have
-    /// them.
+    /// Returns the fields with these names; others are refused, because `object` of the format does not have them.
     pub(crate) fn object<const N: usize>(&'n self, object: &str, names: [&str; N]) -> Result<[Option<Node<'n>>; N]> {
         let mut found = [None; N];
         for field in self.fields("field")? {
@@ -121,8 +119,7 @@ impl<'n> Node<'n> {
         Ok(rows)
     }
 
-    /// Returns the number, or the value of an expression where these are allowed; finite, because JSON has no other
-    /// numbers.
+    /// Returns the number, or the value of an expression where these are allowed; JSON has finite numbers only.
     pub(crate) fn number(&self) -> Result<f64> {
         if let Value::Number(number) = self.value {
             return number.as_f64().ok_or_else(|| self.expected("a number"));
@@ -161,11 +158,8 @@ impl<'n> Node<'n> {
     /// Refuses an expression, with the location of the character at fault.
     fn refuse_expression(&self, names: &Names, fault: Fault) -> Error {
         let error = self.refuse(Reason::Syntax(format!("the expression has no value: {}", fault.what)));
-        let error = match error.location() {
-            // The text begins after the quotation mark.
-            Some(at) => error.on(at.line, at.column + 1 + fault.before),
-            None => error,
-        };
+        // The text begins after the quotation mark.
+        let error = error.relocated(|at| Location { column: at.column + 1 + fault.before, ..at });
         let Some(unknown) = fault.unknown else { return error };
         if FUNCTIONS.contains(&unknown.as_str()) {
             return error.hint(format!("{unknown} is a function, as in {unknown}(1)"));
@@ -295,8 +289,7 @@ impl<'n> Node<'n> {
         }
     }
 
-    /// Returns line and column of `name`, or else of the nearest key on the path to the root, if either is a slice of
-    /// the text.
+    /// Returns line and column of `name`, or else of the nearest key, if either is a slice of the text.
     fn location(&self, name: &str) -> (usize, usize) {
         let (text, key) = self.text_and_key();
         line_and_column(text.as_bytes(), offset_in(text, name).or_else(|| offset_in(text, key)).unwrap_or(0))

@@ -185,8 +185,10 @@ fn refusal(text: &str, error: &serde_json::Error) -> Error {
         (is_yaml(text), "is this YAML? JSON has braces and double quotes, as in {\"friction\": 0.8}"),
         (begins(&["//", "/*", "#"]), "JSON has no comments: leave it out"),
     ];
-    let hint = hints.into_iter().find_map(|(applies, hint)| applies.then_some(hint));
-    let refused = hint.into_iter().fold(refused, Error::hint);
+    let refused = match hints.into_iter().find(|(applies, _)| *applies) {
+        Some((_, hint)) => refused.hint(hint),
+        None => refused,
+    };
     match serde_path_to_error::deserialize::<_, Value>(&mut serde_json::Deserializer::from_str(text)) {
         Err(error) => refused.at(known_part(error.path())),
         Ok(_) => refused,

@@ -22,11 +22,14 @@ use std::sync::Arc;
 /// The greatest number of rows of a part; they are answered together.
 const TOGETHER: usize = 512;
 
-type Batches = Box<dyn Iterator<Item = std::result::Result<RecordBatch, ArrowError>> + Send>;
+/// The fault of a file that contains more than one stream.
+const JOINED: &str = "more follows the end of the stream: are several joined?";
+
+type Batch = std::result::Result<RecordBatch, ArrowError>;
 
 /// A table with typed columns, read part by part.
 pub struct Parts {
-    batches: Batches,
+    batches: Box<dyn Iterator<Item = Batch> + Send>,
     schema: SchemaRef,
     /// The columns of the header, and the number of coordinates of a state; empty until the header is read.
     columns: Arc<[TableColumn]>,
@@ -55,27 +58,22 @@ impl Parts {
     ///
     /// # Errors
     /// Returns an error if the file is neither, or has a compression that is not supported.
-    pub fn open(file: File, form: Form) -> Result<Self> {
-        if form == Form::Parquet { Self::parquet(file) } else { Self::arrow(file) }
-    }
-
-    fn parquet(file: File) -> Result<Self> {
-        let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(unreadable)?;
-        let schema = Arc::clone(builder.schema());
-        let batches = builder.with_batch_size(8 * TOGETHER).build().map_err(unreadable)?;
-        Ok(Self::new(Box::new(batches), schema))
-    }
-
-    /// Reads Arrow's file or stream, by the first bytes.
-    fn arrow(mut file: File) -> Result<Self> {
+    pub fn open(mut file: File, form: Form) -> Result<Self> {
+        if form == Form::Parquet {
+            let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(unreadable)?;
+            let schema = Arc::clone(builder.schema());
+            let batches = builder.with_batch_size(8 * TOGETHER).build().map_err(unreadable)?;
+            return Ok(Self::new(batches, schema));
+        }
+        // The first bytes distinguish Arrow's file and stream.
         let mut magic = Vec::new();
         (&mut file).take(6).read_to_end(&mut magic).and_then(|_| file.rewind()).map_err(unreadable)?;
         if magic != b"ARROW1" {
             return Self::arrow_stream_of(file);
         }
-        let reader = guarded(|| FileReader::try_new_buffered(file, None))?.map_err(unreadable)?;
+        let reader = guarded(|| FileReader::try_new_buffered(file, None))?;
         let schema = reader.schema();
-        Ok(Self::new(Box::new(reader), schema))
+        Ok(Self::new(reader, schema))
     }
 
     /// Reads Arrow's stream; what follows its end is not read.
@@ -83,32 +81,29 @@ impl Parts {
     /// # Errors
     /// Returns an error if the input is not such a stream.
     pub fn arrow_stream(input: impl Read + Send + 'static) -> Result<Self> {
-        let reader = guarded(|| StreamReader::try_new(input, None))?.map_err(unreadable)?;
+        let reader = guarded(|| StreamReader::try_new(input, None))?;
         let schema = reader.schema();
-        Ok(Self::new(Box::new(reader), schema))
+        Ok(Self::new(reader, schema))
     }
 
     /// Reads a file that contains one stream and nothing else.
     fn arrow_stream_of(file: File) -> Result<Self> {
-        let mut reader = guarded(|| StreamReader::try_new(BufReader::new(file), None))?.map_err(unreadable)?;
+        let mut reader = guarded(|| StreamReader::try_new(BufReader::new(file), None))?;
         let schema = reader.schema();
         let mut is_open = true;
         let batches = std::iter::from_fn(move || match reader.next() {
             None if std::mem::take(&mut is_open) => match reader.get_mut().read(&mut [0]) {
                 Ok(0) => None,
-                Ok(_) => {
-                    let joined = "more follows the end of the stream: are several joined?";
-                    Some(Err(ArrowError::IpcError(joined.into())))
-                }
+                Ok(_) => Some(Err(ArrowError::IpcError(JOINED.into()))),
                 Err(error) => Some(Err(error.into())),
             },
             next => next,
         });
-        Ok(Self::new(Box::new(batches), schema))
+        Ok(Self::new(batches, schema))
     }
 
-    fn new(batches: Batches, schema: SchemaRef) -> Self {
-        Self { batches, schema, columns: Arc::new([]), dofs: 0, ready: None, next: 1 }
+    fn new(batches: impl Iterator<Item = Batch> + Send + 'static, schema: SchemaRef) -> Self {
+        Self { batches: Box::new(batches), schema, columns: Arc::new([]), dofs: 0, ready: None, next: 1 }
     }
 
     /// Reads the columns' names, as [`Header::read`] does, and checks their types.
@@ -122,10 +117,10 @@ impl Parts {
         for (at, (&column, field)) in header.columns.iter().zip(self.schema.fields()).enumerate() {
             let expected = match (column, kind(field.data_type())) {
                 (TableColumn::Carried | TableColumn::Ignored, _) | (_, DataType::Null) => continue,
-                (TableColumn::Id, DataType::Int64 | DataType::Utf8) => continue,
-                (TableColumn::Id, _) => "text or whole numbers",
-                (TableColumn::Stance, DataType::Utf8) | (TableColumn::Friction, DataType::Utf8) => continue,
+                (TableColumn::Id | TableColumn::Stance | TableColumn::Friction, DataType::Utf8) => continue,
                 (TableColumn::Stance, _) => "text",
+                (TableColumn::Id, DataType::Int64) => continue,
+                (TableColumn::Id, _) => "text or whole numbers",
                 (_, DataType::Float64 | DataType::Int64) => continue,
                 _ => "numbers",
             };
@@ -152,8 +147,7 @@ impl Parts {
     /// Returns an error if the next rows cannot be read.
     pub fn is_empty(&mut self) -> Result<bool> {
         while self.ready.is_none() {
-            let Some(batch) = guarded(|| self.batches.next())? else { return Ok(true) };
-            let batch = batch.map_err(unreadable)?;
+            let Some(batch) = guarded(|| self.batches.next().transpose())? else { return Ok(true) };
             if batch.num_rows() > 0 {
                 self.ready = Some((Arc::new(Typed::new(&batch, &self.columns, self.dofs)?), 0));
             }
@@ -166,9 +160,7 @@ impl Parts {
     /// # Errors
     /// Returns an error if the next rows cannot be read.
     pub fn part(&mut self) -> Result<Option<Part>> {
-        if self.is_empty()? {
-            return Ok(None);
-        }
+        self.is_empty()?;
         let Some((columns, start)) = self.ready.take() else { return Ok(None) };
         let rows = columns.rows();
         let (count, first) = (TOGETHER.min(rows - start), self.next);
@@ -182,9 +174,9 @@ impl Parts {
 }
 
 /// Returns what a reader returns; arrow's readers panic on some damaged files.
-fn guarded<R>(read: impl FnOnce() -> R) -> Result<R> {
+fn guarded<R>(read: impl FnOnce() -> std::result::Result<R, ArrowError>) -> Result<R> {
     // A reader that has panicked is not used again.
-    catch_unwind(AssertUnwindSafe(read)).map_err(|_| unreadable("the file is damaged"))
+    catch_unwind(AssertUnwindSafe(read)).map_err(|_| unreadable("the file is damaged"))?.map_err(unreadable)
 }
 
 impl Part {

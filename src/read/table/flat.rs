@@ -47,9 +47,7 @@ pub(super) fn read(line: &[u8], columns: &[String], cells: &mut ByteRecord) -> R
         next = at + 1;
     }
     cells.clear();
-    values
-        .iter()
-        .for_each(|value| cells.push_field(value.filter(|text| *text != "null").unwrap_or_default().as_bytes()));
+    cells.extend(values.into_iter().map(|value| value.filter(|text| *text != "null").unwrap_or_default()));
     Ok(())
 }
 

@@ -5,6 +5,7 @@ use super::records::{Form, Record};
 use super::resemblance::{Compared, plain, without_one_of};
 use crate::read::json::{fields_of, line_and_column};
 use crate::robot::{Base, FreezeReason, Plane};
+use crate::state::bolted;
 use crate::{Error, Reason, Result, Robot};
 use std::collections::HashSet;
 
@@ -112,9 +113,8 @@ impl Header {
             return Err(Error::new(Reason::TooMany { what: "columns", limit: COLUMN_LIMIT }).on(1, 1));
         }
         if let Some(absent) = foreign.iter().find(|name| !names.contains(name)) {
-            let error =
-                Error::new(Reason::Missing(format!("column \"{}\", given as foreign,", short(absent)))).on(1, 1);
-            return Err(error.did_you_mean(absent, names.iter().map(String::as_str)));
+            let reason = Reason::Missing(format!("column \"{}\", given as foreign,", short(absent)));
+            return Err(Error::new(reason).on(1, 1).did_you_mean(absent, names.iter().map(String::as_str)));
         }
         let mut columns = Vec::with_capacity(names.len());
         let mut seen = HashSet::new();
@@ -130,17 +130,15 @@ impl Header {
             columns.push(column.map_err(|error| in_column(error, record, at, name))?);
         }
         let known = |wanted| columns.iter().position(|&column| column == wanted);
-        let (id, stance, time) =
-            (known(TableColumn::Id), known(TableColumn::Stance), names.iter().position(|name| name == "time"));
         let mut header = Self {
+            id: known(TableColumn::Id),
+            stance: known(TableColumn::Stance),
+            time: names.iter().position(|name| name == "time"),
             names,
             columns,
             foreign: foreign.to_owned(),
             missing: Vec::new(),
             form: record.form,
-            id,
-            stance,
-            time,
             spatial: None,
             #[cfg(feature = "columnar")]
             types: None,
@@ -175,12 +173,16 @@ impl Header {
         positions.chain(velocities).map(|(_, name)| name).chain(sideways).collect()
     }
 
-    /// Refuses a carried column that is named like a field of a state or resembles a missing column, unless it is named
-    /// as foreign.
+    /// Refuses a carried column that is named like a field of a state or resembles a missing one, unless it is foreign.
     fn check_foreign(&self, record: Record, robot: &Robot) -> Result<()> {
-        let (without_columns, own) = (fields_without_columns(), plain_coordinates(robot));
+        let mut without_columns = fields_of("State");
+        without_columns.retain(|field| OTHERS.iter().all(|(other, _)| other != field));
+        let own = plain_coordinates(robot);
         if let Some(at) = self.unread().find(|&at| is_of_states(&self.names[at], &without_columns, &own)) {
-            return Err(self.in_column(of_states(&self.names[at]), record, at));
+            let name = &self.names[at];
+            let reason = format!("\"{}\" is a field of states, and tables have no column for it", short(name));
+            let hint = format!("give the states as lines of JSON, or `foreign: {}` to copy the column", quoted(name));
+            return Err(self.in_column(Error::new(Reason::Inconsistent(reason)).hint(hint), record, at));
         }
         let others = OTHERS.iter().map(|(name, _)| *name).filter(|name| !self.names.iter().any(|given| given == name));
         let missing = self.missing.iter().map(String::as_str).chain(others);
@@ -242,15 +244,12 @@ impl Header {
         Ok(self)
     }
 
-    /// Returns the header, or an error without a line if the base floats and no column gives its height: touchdowns
-    /// need it.
+    /// Returns the header, or an error without a line if the base's height is missing, which touchdowns need.
     pub fn with_base(self) -> Result<Self> {
         if self.missing.iter().any(|name| name == "q_base_z") {
-            let missing = Error::new(Reason::Missing("the base's height, q_base_z,".into()));
-            return Err(missing.hint(
-                "touchdowns are found by the heights of feet; without the base's, answer the rows themselves, by `place: \
-                 lowest` or a column stance, without `touchdowns`",
-            ));
+            let hint = "touchdowns are found by the heights of feet; without the base's, answer the rows themselves, by \
+                        `place: lowest` or a column stance, without `touchdowns`";
+            return Err(Error::new(Reason::Missing("the base's height, q_base_z,".into())).hint(hint));
         }
         Ok(self)
     }
@@ -261,8 +260,7 @@ impl Header {
         self.spatial.is_some()
     }
 
-    /// Returns the names of the columns that are not read because their joints are frozen, fixed or mimic joints, which
-    /// have no coordinate.
+    /// Returns the names of the columns that are not read because their joints have no coordinate.
     pub fn ignored(&self) -> impl Iterator<Item = &str> {
         self.places(TableColumn::Ignored).map(|at| self.names[at].as_str())
     }
@@ -320,21 +318,20 @@ impl Header {
             let example = in_columns(robot).next().unwrap_or("base_x".to_owned());
             Err(in_table(Reason::Missing(format!("a column of {what}, such as {prefix}{example},")), hint))
         };
-        let has_time = self.time.is_some();
         match (rates, velocity) {
             (_, None) if position.is_none() => {
                 let known = few(self.missing.clone());
                 missing("positions", "q_", &format!("the first line must name the columns, of {known}"))
             }
             (_, Some(at)) if self.is_spatial() => Err(self.in_column(spatial_velocity(), record, at)),
-            (Rates::Columns, None) if self.is_spatial() && has_time => Err(in_table(
+            (Rates::Columns, None) if self.is_spatial() && self.time.is_some() => Err(in_table(
                 Reason::Missing("a source of velocities".into()),
                 "give `velocity: central` or backward: those of a base in three dimensions are taken from the time",
             )),
             (Rates::Columns, None) => {
-                let hint = match has_time {
-                    true => "add the columns, or give `velocity: central` or backward to take them from the time",
-                    false => "add the columns; with a column time they can be computed",
+                let hint = match self.time {
+                    Some(_) => "add the columns, or give `velocity: central` or backward to take them from the time",
+                    None => "add the columns; with a column time they can be computed",
                 };
                 missing("velocities", "v_", hint)
             }
@@ -343,20 +340,13 @@ impl Header {
                 let error = Error::new(Reason::Inconsistent(reason));
                 Err(self.in_column(error.hint("leave out `velocity`, or the columns v_..."), record, at))
             }
-            (Rates::Time, None) if !has_time => Err(in_table(
+            (Rates::Time, None) if self.time.is_none() => Err(in_table(
                 Reason::Missing("a column \"time\"".into()),
                 "velocities are computed over the time; add the column, or columns v_...",
             )),
             _ => Ok(()),
         }
     }
-}
-
-/// Returns the refusal of a column for which only states have a field.
-fn of_states(name: &str) -> Error {
-    let reason = format!("\"{}\" is a field of states, and tables have no column for it", short(name));
-    let hint = format!("give the states as lines of JSON, or `foreign: {}` to copy the column", quoted(name));
-    Error::new(Reason::Inconsistent(reason)).hint(hint)
 }
 
 /// Locates an error where column `at`, which has this name, begins in the first record.
@@ -370,8 +360,7 @@ fn in_table(reason: Reason, hint: &str) -> Error {
     Error::new(reason).on(1, 1).hint(hint)
 }
 
-/// Returns the refusal of velocities of a base in three dimensions: engines give them in the world's axes or the
-/// body's.
+/// Refuses velocities of a base in three dimensions: engines give them in the world's axes or the body's.
 fn spatial_velocity() -> Error {
     let reason = "velocities of a robot whose base is in three dimensions are not read".to_owned();
     let hint = "leave out the columns v_..., and give `velocity: central` to take velocities from the time";
@@ -386,9 +375,8 @@ fn names(record: Record) -> Result<Vec<String>> {
     }
     let mut reader = form.csv().from_reader(bytes);
     let mut fields = csv::ByteRecord::new();
-    let read =
-        reader.read_byte_record(&mut fields).map_err(|error| Error::new(Reason::Syntax(error.to_string())).on(1, 1))?;
-    if !read {
+    let read = reader.read_byte_record(&mut fields);
+    if !read.map_err(|error| Error::new(Reason::Syntax(error.to_string())).on(1, 1))? {
         return Err(in_table(Reason::Missing("the line that names the columns".into()), "the table is empty"));
     }
     let end = usize::try_from(reader.position().byte()).unwrap_or(usize::MAX);
@@ -424,18 +412,11 @@ fn names(record: Record) -> Result<Vec<String>> {
 
 /// Returns the meaning of the column `name`.
 fn column(name: &str, robot: &Robot) -> Result<TableColumn> {
-    if let Some(coordinate) = name.strip_prefix("q_") {
-        return self::coordinate("q_", coordinate, robot, TableColumn::Position);
+    match name.split_at_checked(2) {
+        Some(("q_", name)) => coordinate("q_", name, robot, TableColumn::Position),
+        Some(("v_", name)) => coordinate("v_", name, robot, TableColumn::Velocity),
+        _ => Ok(OTHERS.iter().find(|(other, _)| *other == name).map_or(TableColumn::Carried, |&(_, column)| column)),
     }
-    if let Some(coordinate) = name.strip_prefix("v_") {
-        return self::coordinate("v_", coordinate, robot, TableColumn::Velocity);
-    }
-    Ok(OTHERS.iter().find(|(other, _)| *other == name).map_or(TableColumn::Carried, |&(_, column)| column))
-}
-
-/// Returns the fields of a state for which a table has no columns.
-fn fields_without_columns() -> Vec<String> {
-    fields_of("State").into_iter().filter(|field| OTHERS.iter().all(|(other, _)| other != field)).collect()
 }
 
 /// Returns whether a column is named like one of these fields of a state, or like an entry of one.
@@ -477,13 +458,10 @@ fn coordinate(prefix: &str, name: &str, robot: &Robot, moving: fn(usize) -> Tabl
     let in_space = QUATERNION.iter().position(|entry| *entry == name);
     let spatial = in_space.map(TableColumn::Quaternion).or((name == SIDEWAYS).then_some(TableColumn::Sideways));
     if robot.base == Base::Fixed && (in_base.is_some() || spatial.is_some()) {
-        let reason = "the robot is bolted to the world, its base has no coordinates".to_owned();
-        return Err(Error::new(Reason::Inconsistent(reason)).hint("leave the column out, or give `base: floating`"));
+        return Err(bolted("its base has no coordinates").hint("leave the column out, or give `base: floating`"));
     }
-    match spatial {
-        Some(column) if prefix == "q_" => return Ok(column),
-        Some(_) => return Err(spatial_velocity()),
-        None => {}
+    if let Some(column) = spatial {
+        return if prefix == "q_" { Ok(column) } else { Err(spatial_velocity()) };
     }
     match robot.frozen(name) {
         Some(held) if held.reason == FreezeReason::Base => {
@@ -518,15 +496,12 @@ pub(crate) fn in_columns(robot: &Robot) -> impl Iterator<Item = String> {
 /// Joins names, of which there may be many, for a message.
 fn few(mut names: Vec<String>) -> String {
     const MOST: usize = 200;
-    let mut length = 0;
-    let fitting = names.iter().take_while(|name| {
-        length += name.len();
-        length <= MOST
-    });
-    let (fitting, all) = (fitting.count(), names.len());
-    names.truncate(fitting);
-    if fitting < all {
-        names.push(format!("{} more", all - fitting));
+    let mut room = MOST;
+    let fits = |name: &String| room.checked_sub(name.len()).map(|left| room = left).is_some();
+    let more = names.len() - names.iter().map(fits).take_while(|fits| *fits).count();
+    if more > 0 {
+        names.truncate(names.len() - more);
+        names.push(format!("{more} more"));
     }
     names.join(", ")
 }

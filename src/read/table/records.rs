@@ -193,8 +193,7 @@ impl Record<'_> {
         (quotes.inside == Inside::Quoted).then_some((field, "a quote is not closed"))
     }
 
-    /// Returns where the field with this index and `name` begins: the number of lines above, and the column in
-    /// characters from 1.
+    /// Returns where this field begins: the number of lines above, and the column in characters from 1.
     pub fn place_of(self, index: usize, name: &str) -> (usize, usize) {
         if self.form == Form::Ndjson {
             return (0, flat::column_of(self.bytes, name));

@@ -16,8 +16,7 @@ const WORDS: [&[&str]; 2] = [
 /// Largest number of words that are looked for in a name.
 const MOST_WORDS: usize = 4;
 
-/// Returns the name in lower case without a unit in brackets. Characters other than letters and digits become `_`, and
-/// are removed at the ends.
+/// Returns the name in lower case without a unit in brackets, with `_` in place of inner punctuation.
 pub(super) fn plain(name: &str) -> String {
     let letter = |c: char| if c.is_alphanumeric() { c.to_ascii_lowercase() } else { '_' };
     let without_unit = name.split(['[', '(']).next().unwrap_or(name);
@@ -48,9 +47,8 @@ impl Compared {
         Self { plain, bits, rests }
     }
 
-    /// Returns whether a column of this name may be meant as the column `known`: it is equal except for case and
-    /// punctuation, names the coordinate alone or with another word for position or velocity, or has one or two wrong
-    /// letters.
+    /// Returns whether a column of this name may be meant as the column `known`: it differs in case and punctuation,
+    /// names the coordinate alone or with another word for position or velocity, or has one or two wrong letters.
     pub fn resembles(&self, known: &Self) -> bool {
         // Matches "restitution_coefficient" and "friction of the left foot", but not what friction causes or needs.
         const OTHER_QUANTITIES: [&str; 7] = ["needed", "force", "torque", "loss", "power", "margin", "joint"];

@@ -5,12 +5,12 @@ use super::header::{Header, SpatialColumns, TableColumn, short};
 use super::records::{Cell, Form, Record};
 #[cfg(feature = "columnar")]
 use super::typed::Typed;
-use crate::error::finite;
+use crate::error::{Location, finite};
 use crate::gait::spatial::{Spatial, project};
 use crate::law::Friction;
 use crate::read::json::{self, id_in, id_of};
 use crate::robot::Base;
-use crate::state::{ByLink, Defaults, State};
+use crate::state::{ByLink, Defaults, State, bolted, check_restitution};
 use crate::{Error, Reason, Result, Robot};
 #[cfg(feature = "columnar")]
 use arrow_array::{Array, RecordBatch};
@@ -120,8 +120,7 @@ impl Carried {
         })
     }
 
-    /// Returns the cells by column: text as text, with a replacement for bytes that are not UTF-8; other values
-    /// unchanged.
+    /// Returns the cells by column: text as text, with a replacement for what is not UTF-8, others unchanged.
     pub fn by_name<'c>(&'c self, header: &'c Header) -> impl Iterator<Item = (&'c str, CarriedValue)> {
         header.carried().zip((0..self.len()).map(|which| self.value(which)))
     }
@@ -162,14 +161,12 @@ impl<'h> Rows<'h> {
         if raw.iter().all(|&byte| quotes.is_blank(byte)) {
             return Ok(None);
         }
-        let syntax = |reason: String| Error::new(Reason::Syntax(reason)).on(line, 1);
         if self.header.form == Form::Ndjson {
             let read = flat::read(raw, &self.header.names, &mut self.record);
-            read.map_err(|error| error.location().map_or(error.clone(), |place| error.on(line, place.column)))?;
+            read.map_err(|error| error.relocated(|place| Location { line, ..place }))?;
             return Ok(Some(Row { header: self.header, source: Source::Text(&self.record, raw), line }));
         }
-        let fault = Record { bytes: raw, form: self.header.form }.quoting_fault();
-        if let Some((at, fault)) = fault {
+        if let Some((at, fault)) = (Record { bytes: raw, form: self.header.form }).quoting_fault() {
             let error = place(Error::new(Reason::Syntax(fault.into())), self.header, raw, line, at);
             return Err(error.hint("a cell in quotes ends with its closing quote; a quote inside it is written twice"));
         }
@@ -180,6 +177,7 @@ impl<'h> Rows<'h> {
         bytes.get_mut().push(b'\n');
         let start = self.reader.position().byte();
         let read = self.reader.read_byte_record(&mut self.record);
+        let syntax = |reason: String| Error::new(Reason::Syntax(reason)).on(line, 1);
         if self.reader.position().byte() - start <= raw.len() as u64 {
             self.reader = reader(self.header.form);
             return Err(syntax("a line break of another kind stands in the row".into()));
@@ -335,17 +333,16 @@ impl Row<'_> {
             TableColumn::Position(to) => state.position[to] = self.number(at)?,
             TableColumn::Velocity(to) => state.velocity[to] = self.number(at)?,
             TableColumn::Friction => *friction = self.friction(at)?,
-            TableColumn::Restitution => {
-                if self.is_given(at)? {
-                    state.scene.restitution = ByLink::everywhere(self.restitution(at)?);
-                }
+            TableColumn::Restitution if self.is_given(at)? => {
+                let value = check_restitution(self.number(at)?).map_err(|error| self.place(error, at))?;
+                state.scene.restitution = ByLink::everywhere(value);
             }
             TableColumn::Id if state.id.is_none() && self.is_given(at)? => {
-                return Err(
-                    self.refuse(at, Reason::WrongKind { expected: "a string or a number", found: "something else" })
-                );
+                let reason = Reason::WrongKind { expected: "a string or a number", found: "something else" };
+                return Err(self.refuse(at, reason));
             }
-            TableColumn::Id | TableColumn::Stance | TableColumn::Carried | TableColumn::Ignored => {}
+            TableColumn::Restitution | TableColumn::Id | TableColumn::Stance => {}
+            TableColumn::Carried | TableColumn::Ignored => {}
         }
         Ok(())
     }
@@ -379,9 +376,7 @@ impl Row<'_> {
             }
         };
         if robot.base == Base::Fixed {
-            let reason = "the robot is bolted to the world, a stance cannot place it".to_owned();
-            let error = self.refuse(at, Reason::Inconsistent(reason));
-            return Err(error.hint("leave it out, or give `base: floating`"));
+            return Err(self.place(bolted("a stance cannot place it"), at));
         }
         let unknown = || {
             let known = robot.links.iter().map(|link| link.name.as_str());
@@ -418,14 +413,6 @@ impl Row<'_> {
         }
     }
 
-    fn restitution(&self, at: usize) -> Result<f64> {
-        let value = self.number(at)?;
-        if (0.0..=1.0).contains(&value) {
-            return Ok(value);
-        }
-        Err(self.refuse(at, Reason::OutOfRange { what: "restitution".into(), allowed: "between 0 and 1", value }))
-    }
-
     /// Returns the number in a cell, by a shortcut for numbers from typed columns.
     #[inline]
     fn number(&self, at: usize) -> Result<f64> {
@@ -443,15 +430,13 @@ impl Row<'_> {
     fn checked_number(&self, at: usize) -> Result<f64> {
         let value: f64 = match self.cell(at)? {
             Cell::Empty => {
-                let reason = Reason::WrongKind { expected: "a number", found: "an empty cell" };
-                return Err(self
-                    .refuse(at, reason)
-                    .hint("write 0 where it is 0, or leave out the column, or a row that was not recorded"));
+                let error = self.refuse(at, Reason::WrongKind { expected: "a number", found: "an empty cell" });
+                let hint = "write 0 where it is 0, or leave out the column, or a row that was not recorded";
+                return Err(error.hint(hint));
             }
             Cell::Number(value) => value,
             Cell::Text(text) if self.header.form == Form::Ndjson => {
-                let reason = Reason::WrongKind { expected: "a number", found: "a string" };
-                let error = self.refuse(at, reason);
+                let error = self.refuse(at, Reason::WrongKind { expected: "a number", found: "a string" });
                 return Err(if is_number(&text) { error.hint("leave out the quotes") } else { error });
             }
             Cell::Text(text) => text.parse().map_err(|_| {

@@ -15,8 +15,7 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub(super) struct Typed {
     columns: Vec<Column>,
-    /// The columns of positions and velocities in which every cell is a finite number, each with its index into a list
-    /// of q and then v.
+    /// The coordinates' columns that hold finite numbers only, each with its index into a list of q and then v.
     whole: Vec<(usize, Float64Array)>,
     /// The indices of all other columns.
     pub open: Vec<usize>,
