@@ -204,11 +204,9 @@ impl Summary {
         self.slides_regardless += u64::from(impact.slides_regardless);
         for outcome in analysis.outcomes.iter().filter(|outcome| outcome.decided) {
             let names = impact.contacts.iter().map(|contact| &contact.name);
-            let key = impact
-                .contacts
-                .iter()
-                .zip(&outcome.modes)
-                .fold(0, |key: u64, (contact, &mode)| key.rotate_left(7) ^ (4 * contact.link as u64 + mode as u64));
+            let ends = impact.contacts.iter().zip(&outcome.modes);
+            let ends = ends.map(|(contact, &mode)| 4 * contact.link as u64 + mode as u64);
+            let key = ends.fold(0, |key: u64, end| key.rotate_left(7) ^ end);
             let known = |list: &&mut ModeCount| {
                 list.key == key && list.modes == outcome.modes && list.contacts.iter().eq(names.clone())
             };
@@ -341,9 +339,11 @@ impl fmt::Display for Summary {
         let counts = counts.map(|(count, what)| format!("{count} {what}"));
         let plural = if self.states == 1 { "" } else { "s" };
         writeln!(f, "{} state{plural}: {}", self.states, counts.collect::<Vec<_>>().join(", "))?;
-        if self.beyond_budget > 0 {
-            writeln!(f, "undecided because the budget of work ended (`budget`): {}", self.beyond_budget)?;
-        }
+        let counted = |f: &mut fmt::Formatter<'_>, what: &str, count: u64| match count {
+            0 => Ok(()),
+            _ => writeln!(f, "{what}: {count}"),
+        };
+        counted(f, "undecided because the budget of work ended (`budget`)", self.beyond_budget)?;
         if !self.smallest_margins.is_empty() {
             let near = self.smallest_margins.iter().take(SHOWN);
             let near = near.map(|Nearest { state, margin }| format!("{} {state}", two_digits(*margin)));
@@ -362,21 +362,16 @@ impl fmt::Display for Summary {
                 "all outcomes slide because friction is too small: {states}; most is needed by {state}: {friction}"
             )?;
         }
-        if self.slides_regardless > 0 {
-            writeln!(f, "some foot slides whatever the friction: {}", self.slides_regardless)?;
-        }
-        if self.not_holding > 0 {
-            writeln!(f, "outcomes that do not hold within the state's uncertainty: {}", self.not_holding)?;
-        }
+        counted(f, "some foot slides whatever the friction", self.slides_regardless)?;
+        counted(f, "outcomes that do not hold within the state's uncertainty", self.not_holding)?;
         if self.resting > 0 {
             let states = self.resting;
             writeln!(f, "slow contacts are taken as exactly at rest: {states}; `resting_speed: 0` turns this off")?;
         }
-        if let OddStates { states, first: Some(Oddity { state, what }) } = &self.odd_states {
-            writeln!(f, "states with odd numbers: {states}, the first {state}: {}", visible(what))?;
-        }
-        if let OddStates { states, first: Some(Oddity { state, what }) } = &self.noted {
-            writeln!(f, "states with notes: {states}, the first {state}: {}", visible(what))?;
+        for (with, odd) in [("odd numbers", &self.odd_states), ("notes", &self.noted)] {
+            if let OddStates { states, first: Some(Oddity { state, what }) } = odd {
+                writeln!(f, "states with {with}: {states}, the first {state}: {}", visible(what))?;
+            }
         }
         if self.states > 1 && self.verdicts.0[Verdict::NoContact as usize] == self.states {
             writeln!(f, "no foot touches the ground in any state (see `place`, and `touchdowns` of recordings)")?;
