@@ -400,22 +400,22 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
             let (also, later): (Vec<_>, Vec<_>) =
                 strikes.into_iter().partition(|other| self.window.together(&first, other, together));
             strikes = later;
-            let first = if self.heights == Heights::Recorded { self.before_stop(first) } else { first };
+            let is_recorded = self.heights == Heights::Recorded;
+            let first = if is_recorded { self.before_stop(first) } else { first };
             let also: Vec<usize> = also.iter().map(|strike| strike.point).collect();
-            let heights = self.heights;
             let (first, is_crowded) = self.mark(first);
             let mut sample = self.arrival(at, &first);
-            let level = (heights == Heights::True).then_some(self.level);
+            let level = (!is_recorded).then_some(self.level);
             let (shift_z, striking) =
                 self.points.touch(&mut sample.state, (first.point, &also), touching, (together, level));
-            let noise = self.window.measured(first.point);
-            let is_clean = noise.is_some_and(|noise| noise <= EXACT * self.thresholds.above);
-            let is_early = heights == Heights::Recorded && first.is_soft() && is_clean;
-            let is_slowed = heights == Heights::Recorded && self.is_slowed(first.point, &sample);
+            let exact = EXACT * self.thresholds.above;
+            let is_clean = || self.window.measured(first.point).is_some_and(|noise| noise <= exact);
+            let is_early = is_recorded && first.onward == Way::Soft && first.height.is_some() && is_clean();
+            let is_slowed = is_recorded && self.is_slowed(first.point, &sample);
             let row = self.window.frames[first.row].row;
             let is_deep = shift_z > self.deep;
             // The heights of another row are not those of the ground, and deep touchdowns get a note of their own.
-            let is_level = heights == Heights::Recorded && at == At::Crossing && !is_deep;
+            let is_level = is_recorded && at == At::Crossing && !is_deep;
             if let Some(Ok(mut seen)) = self.seen.map(Mutex::lock) {
                 seen.add_touchdown(is_level.then_some(shift_z));
             }

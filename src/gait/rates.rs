@@ -19,56 +19,47 @@ pub enum Difference {
 
 /// Computes each sample's velocity from its neighbors, in order and one sample late. Refuses one without a neighbor.
 pub fn rates<S>(samples: impl Iterator<Item = Sampled<S>>, difference: Difference) -> impl Iterator<Item = Sampled<S>> {
-    let mut pending = PendingSample { difference, sample: None, before: None };
     let mut clock = Clock::default();
+    // The sample that waits for the next one, and time and position of the sample before it.
+    let (mut waiting, mut before): (Option<Sample<S>>, _) = (None, None);
     samples.map(Some).chain([None]).flat_map(move |next| {
-        let (sample, refused) = match next {
+        let (next, refused) = match next {
             Some(Ok(sample)) => (Some(sample), None),
             other => (None, other),
         };
-        let linked = |sample: &&Sample<S>| matches!(clock.step(sample.time), ClockStep::Later(_));
-        let settled = pending.settle(sample.as_ref().filter(linked));
-        pending.sample = sample;
+        let after = next.as_ref().filter(|next| matches!(clock.step(next.time), ClockStep::Later(_)));
+        let settled = waiting.take().map(|own| {
+            let place = after.map(|_| (own.time, own.state.position.clone()));
+            settled(own, std::mem::replace(&mut before, place), after, difference)
+        });
+        waiting = next;
         settled.into_iter().chain(refused)
     })
 }
 
-/// The sample that waits for the next one.
-struct PendingSample<S> {
-    difference: Difference,
-    sample: Option<Sample<S>>,
-    /// Time and position of the sample before it.
+/// Computes the velocity of a sample from time and position of the sample `before` and from the one `after`.
+fn settled<S>(
+    mut sample: Sample<S>,
     before: Option<(f64, Vec<f64>)>,
-}
-
-impl<S> PendingSample<S> {
-    /// Computes the velocity of the sample; `after` is the neighbor that follows.
-    fn settle(&mut self, after: Option<&Sample<S>>) -> Option<Sampled<S>> {
-        let before = self.before.take();
-        let mut sample = self.sample.take()?;
-        let own = (sample.time, &sample.state.position);
-        let before = before.as_ref().map(|(time, position)| (*time, position));
-        let ends = match (self.difference, before, after.map(|after| (after.time, &after.state.position))) {
-            (Difference::Central, Some(before), Some(after)) => Some((before, after)),
-            (_, Some(before), _) => Some((before, own)),
-            (_, None, after) => after.map(|after| (own, after)),
-        };
-        let refused = match ends {
-            Some(((from, start), (to, end))) => {
-                sample.rate_over = [from, to];
-                let rates = start.iter().zip(end).map(|(start, end)| (end - start) / (to - from));
-                sample.state.velocity = rates.collect();
-                let finite = sample.state.velocity.iter().all(|rate| rate.is_finite());
-                (!finite).then_some("the velocity to the next row is beyond all numbers")
-            }
-            None => Some(
-                "no neighboring row of its clip has another time, so that its velocity is not known: time must rise from row to row",
-            ),
-        };
-        self.before = after.map(|_| (sample.time, sample.state.position.clone()));
-        Some(match refused {
-            None => Ok(sample),
-            Some(reason) => Err((sample.source, Error::new(Reason::Inconsistent(reason.to_owned())).at("time"))),
-        })
-    }
+    after: Option<&Sample<S>>,
+    difference: Difference,
+) -> Sampled<S> {
+    let own = (sample.time, &sample.state.position);
+    let before = before.as_ref().map(|(time, position)| (*time, position));
+    let ends = match (difference, before, after.map(|after| (after.time, &after.state.position))) {
+        (Difference::Central, Some(before), Some(after)) => Some((before, after)),
+        (_, Some(before), _) => Some((before, own)),
+        (_, None, after) => after.map(|after| (own, after)),
+    };
+    let reason = if let Some(((from, start), (to, end))) = ends {
+        let rates: Vec<f64> = start.iter().zip(end).map(|(start, end)| (end - start) / (to - from)).collect();
+        if rates.iter().all(|rate| rate.is_finite()) {
+            (sample.rate_over, sample.state.velocity) = ([from, to], rates);
+            return Ok(sample);
+        }
+        "the velocity to the next row is beyond all numbers"
+    } else {
+        "no neighboring row of its clip has another time, so that its velocity is not known: time must rise from row to row"
+    };
+    Err((sample.source, Error::new(Reason::Inconsistent(reason.to_owned())).at("time")))
 }

@@ -88,12 +88,6 @@ impl Heading {
         let Self([cos, sin]) = self;
         [cos * x + sin * y, cos * y - sin * x]
     }
-
-    /// Returns the yaw of a base from the heading, positive to the left \[rad\].
-    fn yaw(self, base: &Spatial) -> f64 {
-        let [along, across] = self.along_and_across(base.forward);
-        libm::atan2(across, along)
-    }
 }
 
 /// The largest parts of a motion in three dimensions that are not in the plane.
@@ -154,7 +148,8 @@ impl Dropped {
         let (sum, count) = bases().fold((0.0, 0.0), |(sum, count), base| (sum + across(base), count + 1.0));
         for base in bases() {
             self.roll = self.roll.max(base.roll.abs());
-            self.yaw = self.yaw.max(heading.yaw(base).abs());
+            let [along, left] = heading.along_and_across(base.forward);
+            self.yaw = self.yaw.max(libm::atan2(left, along).abs());
             self.sideways = self.sideways.max((across(base) - sum / count).abs());
         }
     }

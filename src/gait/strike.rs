@@ -37,11 +37,6 @@ impl Strike {
     pub fn after(point: usize, row: usize, height: Option<f64>) -> Self {
         Self { point, row, height, smooth: row, onward: Way::Through(SMOOTH) }
     }
-
-    /// Returns whether the point is above the level on which it stops.
-    pub fn is_soft(&self) -> bool {
-        self.onward == Way::Soft && self.height.is_some()
-    }
 }
 
 impl<S> Window<S> {
@@ -60,8 +55,7 @@ impl<S> Window<S> {
         }
     }
 
-    /// Returns the strike of a point that was stopped at once, between two of the last three rows; `slow` is the speed
-    /// below which a descent has ended \[m/s\].
+    /// Returns the strike of a point that was stopped at once, from more than twice `slow` \[m/s\].
     fn hit(&self, point: usize, slow: f64) -> Option<Strike> {
         let now = self.frames.len() - 1;
         let end = self.height(point, now).min(self.height(point, now - 1));

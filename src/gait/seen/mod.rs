@@ -94,11 +94,9 @@ impl Seen {
 
     /// Notes descents that end too high or, in a simulation, far below z = 0: more than half as many as touchdowns.
     fn end(&self, Thresholds { ground, .. }: Thresholds) -> Option<String> {
-        let mut ends = self.ends.clone();
-        ends.sort_unstable_by(f64::total_cmp);
-        let are_most = ends.len() >= ENOUGH && 2 * ends.len() > self.touchdowns;
-        let middle = *ends.get(ends.len() / 2).filter(|_| are_most)?;
-        let (count, level) = (ends.len(), rounded(middle));
+        let count = self.ends.len();
+        let middle = median(&self.ends).filter(|_| 2 * count > self.touchdowns)?;
+        let level = rounded(middle);
         if middle > ground {
             Some(format!(
                 "the lowest foot has ended {count} descents at z = {level} m, in the middle of all: the ground must be \
@@ -116,9 +114,7 @@ impl Seen {
 
     /// Notes that touchdowns are not at z = 0, if most of them are on one side of it.
     fn offset(&self, thresholds: Thresholds) -> Option<String> {
-        let mut depths = self.depths.clone();
-        depths.sort_unstable_by(f64::total_cmp);
-        let middle = *depths.get(depths.len() / 2).filter(|_| depths.len() >= ENOUGH)?;
+        let middle = median(&self.depths)?;
         (middle.abs() > 0.5 * thresholds.ground).then(|| {
             format!(
                 "feet reach the ground at z = {} m, in the middle of all touchdowns: shift q_base_z so that the \
@@ -128,4 +124,11 @@ impl Seen {
             )
         })
     }
+}
+
+/// Returns the median; `None` of fewer than [`ENOUGH`] heights.
+fn median(heights: &[f64]) -> Option<f64> {
+    let mut heights = heights.to_vec();
+    heights.sort_unstable_by(f64::total_cmp);
+    heights.get(heights.len() / 2).copied().filter(|_| heights.len() >= ENOUGH)
 }

@@ -27,8 +27,7 @@ const APART: f64 = 0.01;
 /// Observations of the motion.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Motion {
-    /// For each coordinate, sums over the steps from row to row of v^2, of (dq/dt)^2, of their product, and of the
-    /// squared change of dq/dt.
+    /// For each coordinate, sums over the steps of v^2, (dq/dt)^2, their product, and the squared change of dq/dt.
     sums: Vec<[f64; 4]>,
     /// dq/dt of the previous step; empty at the start of a clip.
     rates: Vec<f64>,
