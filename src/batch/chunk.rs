@@ -232,9 +232,8 @@ impl<R: Read + Send> Chunks<R> {
         self.quotes.zip(self.columns).is_some_and(|(quotes, columns)| quotes.swallow_rows(record, columns))
     }
 
-    /// Ends the record that begins at `start` on line `first` after that line. The lines behind it are read again. No
-    /// quote that is open at the end of a line before line `hopeless` is closed correctly, so no line is read a third
-    /// time.
+    /// Ends the record that begins at `start` on line `first` after that line; the lines behind it are read again. No
+    /// quote that is open at the end of a line before `hopeless` is closed correctly, so no line is read a third time.
     fn end_with_line(&mut self, chunk: &mut Chunk, (start, first): (usize, usize), hopeless: usize) {
         self.hopeless = self.hopeless.max(hopeless);
         self.quotes = self.quotes.map(Quotes::fresh);

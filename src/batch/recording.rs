@@ -1,5 +1,4 @@
-//! Tables whose rows depend on each other: they are read in order, and the resulting states are answered like any
-//! others.
+//! Tables whose rows depend on each other: they are read in order, and their states answered like any others.
 
 use super::chunk::{Chunks, too_long};
 use crate::error::excerpt::Excerpt;

@@ -120,8 +120,7 @@ fn require_urdf(root: Node<'_, '_>) -> Result<()> {
     Err(xml::refuse(root, Reason::Missing("<robot>".into())).at(format!("<{tag}>")).hint(hint))
 }
 
-/// Refuses unexpanded macros, recognized by their namespace or by the old syntax without a namespace. A file that only
-/// declares the namespace is plain URDF.
+/// Refuses unexpanded macros, with a namespace or the old syntax without; a declared namespace alone is no macro.
 fn refuse_xacro(robot: Node<'_, '_>) -> Result<()> {
     let is_macro = |element: &Node| {
         let of_xacro = |uri: &str| uri.contains("xacro") || element.lookup_prefix(uri) == Some("xacro");

@@ -187,8 +187,7 @@ pub(super) fn misspelt(robot: Node<'_, '_>) -> Vec<String> {
     found
 }
 
-/// Returns the element that an attribute with this name belongs to, or the child element with this name. Any element
-/// may have the names of the first line.
+/// Returns the element that an attribute with this name belongs to, or the child element with this name.
 fn owner(name: &str, children: &[&'static str]) -> Option<&'static str> {
     if matches!(name, "name" | "type" | "joint") {
         return None;
@@ -199,8 +198,7 @@ fn owner(name: &str, children: &[&'static str]) -> Option<&'static str> {
     child.or_else(|| Some(of_attribute().or_else(of_element)?.0))
 }
 
-/// Returns a function that finds the name in `known` which another name may stand for, among those that are not
-/// `given`.
+/// Returns a function that finds the name in `known`, but not `given`, which another name may stand for.
 fn meant<'a>(
     given: impl Iterator<Item = &'a str>,
     known: &'static [&'static str],

@@ -15,8 +15,7 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// Returns the matrix that transforms vectors of this frame into the outer frame's axes: Rz(yaw) Ry(pitch)
-    /// Rx(roll).
+    /// Returns the matrix from this frame's axes to those of the outer frame: Rz(yaw) Ry(pitch) Rx(roll).
     ///
     /// Zero angles and quarter turns give exact ones and zeros. The digits are the same on every platform.
     pub fn rotation(&self) -> Matrix {

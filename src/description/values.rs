@@ -1,5 +1,4 @@
-//! Values of an element, with every number checked. urdf-rs provides the types and default values, roxmltree the
-//! attributes.
+//! Values of an element, with every number checked, in the types and with the defaults of urdf-rs.
 
 use super::{Collision, Geometry, Inertial, JointKind, Mesh, Mimic, Pose, xml};
 use crate::error::{Reason, Result};

@@ -12,8 +12,7 @@ pub(super) const MOST_LINKS: usize = 10_000;
 const MOST_ATTRIBUTES: usize = 100;
 /// Largest accepted number of nodes (elements, texts, comments), and of attributes in total: 100 per link.
 const MOST_NODES: u32 = 1_000_000;
-/// Largest accepted number of namespace declarations: roxmltree copies all that are in scope into each element that
-/// adds one.
+/// Largest accepted number of namespace declarations: roxmltree copies all in scope into each element that adds one.
 const MOST_NAMESPACES: usize = 1000;
 
 /// The hint for a text that is not XML at all.
@@ -168,8 +167,7 @@ pub(super) fn children<'a, 'input: 'a>(node: Node<'a, 'input>) -> impl Iterator<
 
 pub(super) type Child<'a, 'input> = Option<Node<'a, 'input>>;
 
-/// Finds the child elements with these tags in one pass over all children. A second element with the same tag is an
-/// error.
+/// Finds the child elements with these tags in one pass. A second element with the same tag is an error.
 pub(super) fn named<'a, 'input: 'a, const N: usize>(
     node: Node<'a, 'input>,
     tags: [&str; N],

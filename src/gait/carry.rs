@@ -3,9 +3,8 @@
 /// The longest extrapolation, as a multiple of the distance of the last rows.
 pub(super) const REACH: f64 = 2.5;
 
-/// Returns the time \[s\] from the last row until the parabola through the values of the last three rows (a line
-/// through two) falls to `level`. `None` if it never does, or if `most` is more than [`REACH`] steps. `times` and
-/// values begin with the last row.
+/// Returns the time \[s\] until the parabola through the last values (a line through two) falls to `level`; `None`
+/// if it never does, or if `most` is more than [`REACH`] steps. `times` and values begin with the last row.
 pub(super) fn down_to(level: f64, times: &[f64], value: impl Fn(usize) -> f64, most: f64) -> Option<f64> {
     let &[last, before, ..] = times else { return None };
     let (step, rate) = (last - before, (value(0) - value(1)) / (last - before));

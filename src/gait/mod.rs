@@ -17,9 +17,8 @@
 //! ```
 //!
 //! The toe of a flat foot therefore touches down even if the heel is recorded a little lower, but the upper side of a
-//! sole or points inside a round foot do not. The thresholds are lengths, because the floating of feet depends on the
-//! recording and not on the robot. They can be set ([`Touchdowns::with`]). A robot smaller than [`SMALL`] lifts its
-//! feet less, so its thresholds are proportionally smaller.
+//! sole does not. The thresholds are lengths, because the floating of feet depends on the recording and not on the
+//! robot; a robot smaller than [`SMALL`] lifts its feet less, and has smaller ones.
 //!
 //! The *noise* of a point's height is measured on the last rows of the clip. It is the median distance of a row from
 //! the polynomial through the six rows before it, divided by 0.67 and by the factor by which this distance amplifies a
@@ -66,12 +65,12 @@
 //! [`Thresholds::drop`] or more. At the moment of contact its height is zero if all coordinates continue on the
 //! polynomial through up to six rows before. None of these rows is before the last touchdown, or before two rows of one
 //! time. If that leaves one or two rows, they continue from the last touchdown, unless it is too near to the first of
-//! them to show a rate; a single row without recorded velocity then leaves the row before that touchdown. With six rows and more, each coordinate and each rate uses as many rows as have predicted its last two values
-//! best, because accelerations may jump from row to row, as with a controller. Recorded velocities are extrapolated;
-//! differences are replaced by the rates of the polynomial. If the polynomial does not reach the ground before the next
-//! row, time and positions are on the line between both rows. A clip that ends aloft ends without a touchdown.
-//! A point that rises between two rows has bounced if its motion before leads into the ground, and no other point into
-//! the ground before it.
+//! them to show a rate; a single row without recorded velocity then leaves the row before that touchdown. With six rows
+//! and more, each coordinate and each rate uses as many rows as have predicted its last two values best, because a
+//! controller may make accelerations jump. Recorded velocities are extrapolated; differences are replaced by the rates
+//! of the polynomial. If the polynomial does not reach the ground before the next row, time and positions are on the
+//! line between both rows. A clip that ends aloft ends without a touchdown. A point that rises between two rows has
+//! bounced if its motion before leads into the ground, and no other point into the ground before it.
 //!
 //! A jump back in time starts a new clip, and so does a step more than ten times the longest of the clip so far. A
 //! refused sample is passed on in its place and left out of the motion. Touchdowns come in the order in which their
@@ -216,8 +215,7 @@ pub enum Touching {
     /// striking point's by at most `height` \[m\]. With [`Heights::True`], also every point on the ground, or in it by
     /// up to `height`, that is slower than `speed` or goes down; only the outer two of each body.
     Slow { speed: f64, height: f64 },
-    /// Every point that is free toward the ground and whose height differs from the striking point's by at most
-    /// `height` \[m\], however it moves.
+    /// Every point that is free toward the ground and within `height` \[m\] of the striking point's, however it moves.
     Near { height: f64 },
 }
 

@@ -59,8 +59,7 @@ impl<S> Window<S> {
         sum / rows as f64
     }
 
-    /// Returns the time at which the line through a point's last `rows` rows up to `row` reaches `level`, and these
-    /// rows, which begin with the last one.
+    /// Returns when the line through a point's `rows` rows up to `row` reaches `level`, and these rows, last first.
     pub fn along(&self, point: usize, row: usize, rows: usize, level: f64) -> Option<(f64, Vec<usize>)> {
         let before = self.smooth_rows(row, rows);
         let times = self.times(before.iter().copied());

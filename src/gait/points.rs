@@ -75,10 +75,9 @@ impl<'r> Points<'r> {
         least <= most
     }
 
-    /// Shifts `state` along z so that the point `striking` is at z = 0, and names its contacts, including the points
-    /// `also` that strike with it; `together` is that of [`Points::is_free`]. With true heights, points of any body
-    /// that are no higher than `level` \[m\] and stand or go down touch as well. Returns the shift \[m\] and the name
-    /// of the striking contact.
+    /// Shifts `state` along z so that the point `striking` is at z = 0, and names its contacts, with the points `also`
+    /// that strike with it and, with true heights, points of any body that stand or go down up to `level` \[m\].
+    /// Returns the shift \[m\] and the name of the striking contact. `together` is that of [`Points::is_free`].
     pub fn touch(
         &mut self,
         state: &mut State,

@@ -56,8 +56,7 @@ impl<S> Window<S> {
         rows.into_iter().map(|row| self.frames[row].sample.time).collect()
     }
 
-    /// Returns at most `most` rows from which the motion continues after `row`, the last one first. None is from before
-    /// an impact.
+    /// Returns at most `most` rows up to `row` that no impact separates, the last one first.
     pub fn smooth_rows(&self, row: usize, most: usize) -> Vec<usize> {
         let before = (0..row).rev().take_while(|&row| !self.frames[row].ends_motion());
         std::iter::once(row).chain(before).take(most).collect()

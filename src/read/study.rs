@@ -114,8 +114,7 @@ impl<'t> Study<'t> {
         &self.parameters
     }
 
-    /// Returns the refusal of a study that needs more than its budget of work, located at the number of samples of the
-    /// parameter with the most samples.
+    /// Returns the refusal of a study beyond its budget of work, located at the parameter with the most samples.
     pub fn beyond(&self, BudgetSpent(time): BudgetSpent) -> Error {
         let most = (0..self.parameters.len()).rev().max_by_key(|&at| self.parameters[at].steps).unwrap_or_default();
         let Parameter { name, from, to, steps } = &self.parameters[most];
@@ -141,8 +140,7 @@ impl<'t> Study<'t> {
         refused().unwrap_or_else(|| reason.clone().into())
     }
 
-    /// Returns the parameters that no expression of the state or the robot uses, and the constants that no expression
-    /// uses.
+    /// Returns the parameters and constants that no expression uses; a parameter is used by the state or the robot.
     pub fn unused(&self) -> Vec<&str> {
         let unused = |name: &&str, parts: &[&str]| {
             !parts.iter().filter_map(|part| self.tree.get(part)).any(|part| uses(part, name))

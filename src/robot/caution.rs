@@ -58,8 +58,7 @@ impl Seen<'_> {
         std::iter::successors(link(joint), move |&joint| link(joint))
     }
 
-    /// Returns the angle between an `axis` of a joint and the plane's normal, or the plane for a prismatic joint
-    /// \[rad\].
+    /// Returns the angle of a joint's `axis` to the plane's normal, or to the plane for a prismatic joint \[rad\].
     fn off(&self, joint: usize, axis: [f64; 3]) -> f64 {
         match self.description.joints[joint].kind {
             JointKind::Prismatic => self.plane.off_plane(axis),
@@ -228,8 +227,7 @@ fn about_lengths(description: &Description) -> Vec<String> {
     large.into_iter().chain(small).collect()
 }
 
-/// Returns the caution about a mass \[kg\] that is too large for the robot's size \[m\], for example grams taken for
-/// kilograms.
+/// Returns the caution about a mass \[kg\] that is too large for the robot's size \[m\], as of grams.
 pub(super) fn about_mass(mass: f64, size: f64) -> Option<String> {
     (mass > DENSEST * size * size * size).then(|| {
         let [mass, size] = [mass, size].map(rounded);
@@ -239,8 +237,7 @@ pub(super) fn about_mass(mass: f64, size: f64) -> Option<String> {
     })
 }
 
-/// Returns the cautions about joints held beyond their limits, for example in degrees, or frozen at zero beyond their
-/// limits.
+/// Returns the cautions about joints held or frozen at zero beyond their limits, for example in degrees.
 fn about_held(description: &Description, frozen: &[(usize, FrozenJoint)]) -> impl Iterator<Item = String> {
     let (mut held, mut at_zero) = (Vec::new(), Vec::new());
     for (index, joint) in frozen {
@@ -322,16 +319,14 @@ pub(super) fn about_inertias<'l>(
     found.filter_map(|(links, (what, remedy))| Some(format!("{what}: {}; {remedy}", names(links)?))).collect()
 }
 
-/// Returns the moment of a ball of this mass \[kg\] with the highest density \[kg m^2\]: a lower bound on the largest
-/// moment of any body.
+/// Returns the moment of the densest ball of this mass \[kg, kg m^2\]: a bound on any body's largest moment.
 fn of_ball(mass: f64) -> f64 {
     let radius = libm::cbrt(mass / (2.0 / 3.0 * TAU * HEAVIEST));
     0.4 * mass * radius * radius
 }
 
-/// Returns the caution about bodies without mass that a joint moves, if they extend from joint to joint, touch the
-/// ground or carry no mass; and the caution about joints that make the mass matrix singular, because nothing resists
-/// them in any state.
+/// Returns the cautions about bodies without mass that a joint moves, if they extend from joint to joint, touch the
+/// ground or carry no mass; and about joints whose motion nothing resists in any state: M is singular.
 pub(super) fn about_massless(robot: &Robot) -> Vec<String> {
     let weighs_nothing = |body: &Body| body.mass == 0.0 && body.moment == 0.0;
     // For each rigid body: whether it extends from joint to joint or touches the ground, and whether any part has mass.
@@ -546,8 +541,7 @@ fn serves_all(seen: &Seen, (hinge, angle): (usize, f64), stays: &[bool]) -> bool
     })
 }
 
-/// Returns the angle \[rad\] by which a rotation about `hinge` aligns `axis` with the plane's normal; `None` if no
-/// rotation does. Both are unit vectors.
+/// Returns the angle \[rad\] by which a rotation about the unit vector `hinge` aligns `axis` with the plane's normal.
 fn angle_into_line(axis: [f64; 3], hinge: [f64; 3], plane: Plane, tolerance: f64) -> Option<f64> {
     let [_, normal, _] = plane.axes();
     let cross =

@@ -16,8 +16,7 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 const ROUNDED: f64 = 1e-3;
 
 /// Returns whether a rigid body can have this inertia about its center of mass: no principal moment exceeds the sum of
-/// the other two, which also excludes negative ones (Featherstone 2008, section 2.13). Equivalently, no principal minor
-/// of `tr(I) / 2 - I` is negative.
+/// the other two (Featherstone 2008, section 2.13). Equivalently, no principal minor of `tr(I) / 2 - I` is negative.
 pub(super) fn is_physical(inertia: &Matrix) -> bool {
     let largest = inertia.as_flattened().iter().map(|entry| entry.abs()).fold(0.0, f64::max);
     if largest == 0.0 {
@@ -49,9 +48,8 @@ impl LinkInertia {
         Self { mass, com, moment: 0.0 }
     }
 
-    /// Projects the three-dimensional `inertia` about the center of mass, whose axes are the columns of `rotation` in
-    /// the body's frame. Without `inertia` the result is a point mass. Returns an error if the moment about the normal
-    /// is negative by more than rounding.
+    /// Projects the `inertia` about the center of mass, whose axes are the columns of `rotation` in the body's frame;
+    /// without it the result is a point mass. Returns an error if the moment is negative by more than rounding.
     pub(super) fn projected(
         mass: f64,
         com: Vector<f64>,

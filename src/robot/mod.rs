@@ -131,8 +131,7 @@ pub struct MimicJoint {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[allow(missing_docs, reason = "the text of each variant names its fields")]
 pub enum Axis {
-    /// The joint rotates the child about the plane's normal. `sign` is +1 if the URDF's axis points along the normal,
-    /// and -1 if it points against the normal.
+    /// The joint rotates the child about the plane's normal; `sign` is -1 if the URDF's axis points against the normal.
     Revolute { sign: f64 },
     /// The joint moves the child along a unit vector in the parent body's frame.
     Prismatic { direction: Vector<f64> },
@@ -260,8 +259,7 @@ impl Robot {
         [LENGTH, LENGTH, ANGLE].into_iter().take(self.base_dofs()).chain(joints)
     }
 
-    /// Returns the names of the coordinates in the order of q: x, z, pitch (if the base floats), then the joints in the
-    /// file's order.
+    /// Returns the coordinates' names in the order of q: x, z, pitch if the base floats, then joints as in the file.
     pub fn coordinates(&self) -> impl Iterator<Item = &str> {
         let base = ["x", "z", "pitch"].into_iter().take(self.base_dofs());
         base.chain(self.joints.iter().map(|joint| joint.name.as_str()))
@@ -306,14 +304,12 @@ impl Robot {
         self.joints.iter().position(|joint| joint.name == name)
     }
 
-    /// Returns the joint of the file with this name if it has no coordinate in the reduced robot, because it is frozen
-    /// or part of the base; else `None`.
+    /// Returns the joint of the file with this name if it has no coordinate, being frozen or part of the base.
     pub fn frozen(&self, name: &str) -> Option<&FrozenJoint> {
         self.reading.frozen.iter().find(|frozen| frozen.name == name)
     }
 
-    /// Follows fixed joints from `body` toward the root and returns the last body, which is `body` itself if it has
-    /// none.
+    /// Follows fixed joints from `body` toward the root as far as there are any, and returns the last body.
     pub(crate) fn rigid_body(&self, body: usize) -> usize {
         let mut at = body;
         while let Some(ParentJoint::Fixed { parent, .. }) = self.bodies[at].joint {
@@ -327,8 +323,7 @@ impl Robot {
         self.base == Base::Floating || self.bodies[self.rigid_body(body)].joint.is_some()
     }
 
-    /// Returns the center of mass of each body together with all bodies fixed to it, in its frame \[m\]; `None` for a
-    /// body that is fixed to another.
+    /// Returns the center of mass of each body with all that is fixed to it \[m\]; `None` for a body that is fixed.
     pub(crate) fn centers(&self) -> Vec<Option<Vector<f64>>> {
         let mut parts = Vec::with_capacity(self.bodies.len());
         // For each body, the result of `rigid_body`, and the body's origin in that body's frame.

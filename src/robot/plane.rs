@@ -61,15 +61,13 @@ impl Plane {
         }
     }
 
-    /// Returns the plane whose normal is parallel to all of these unit vectors within `tolerance` \[rad\]; `None` if
-    /// there is no such plane or no vector.
+    /// Returns the plane whose normal is parallel to all of these unit vectors within `tolerance`, if there are any.
     pub(super) fn normal_to(axes: impl Iterator<Item = [f64; 3]> + Clone, tolerance: f64) -> Option<Self> {
         axes.clone().next()?;
         Self::ALL.into_iter().find(|plane| axes.clone().all(|axis| plane.off_normal(axis) <= tolerance))
     }
 
-    /// Returns the angle between the line of a vector in the root link's axes and the plane's normal, at most pi/2
-    /// \[rad\].
+    /// Returns the angle, at most pi/2 \[rad\], between the line of a vector in the root link's axes and the normal.
     pub(super) fn off_normal(self, axis: [f64; 3]) -> f64 {
         let [x, n, z] = apply(&self.axes(), axis);
         libm::atan2(libm::hypot(x, z), n.abs())

@@ -1,5 +1,4 @@
-//! Description -> robot: places the tree at zero coordinates, projects it into its plane, and welds joints that leave
-//! the plane.
+//! Description -> robot: places the tree at zero, projects it into its plane, and welds joints that leave the plane.
 
 use super::composite::{LinkInertia, composites};
 use super::left_out::passed_over;

@@ -13,8 +13,7 @@ const FOOT: f64 = 0.1;
 
 /// Axes of all joints and poses of all links, with the values of frozen joints.
 pub(super) struct ReferencePose {
-    /// For each joint, the value at which it is to be frozen \[rad or m\]. Mimic joints of a frozen joint are frozen
-    /// too.
+    /// For each joint, the value at which it is to be frozen, if any; also for what mimics it \[rad or m\].
     pub(super) frozen: Vec<Option<f64>>,
     /// For each joint, the joint that it finally mimics, after chains of mimic joints are resolved.
     pub(super) mimicked: Vec<Option<Mimic>>,

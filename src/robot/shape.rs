@@ -35,8 +35,7 @@ pub enum Rim {
 }
 
 impl Rim {
-    /// Returns the rim's point that lies farthest along the unit vector `direction`, relative to the rim's center
-    /// \[m\].
+    /// Returns the rim's point that is farthest along the unit vector `direction`, from the rim's center \[m\].
     ///
     /// For an ellipse this is `(a (a.d) + b (b.d)) / |(a.d, b.d)|`, the gradient of its support function |(a.d, b.d)|.
     pub fn support(&self, direction: Vector<f64>) -> Vector<f64> {

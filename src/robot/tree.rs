@@ -55,8 +55,7 @@ pub(super) struct Tree {
 }
 
 impl Tree {
-    /// Builds the tree from `root`, whose axes are the columns of `rotation`. The walk is depth-first, so parents come
-    /// before their children.
+    /// Builds the tree from `root`, whose axes are the columns of `rotation`, parents before their children.
     pub(super) fn grow(
         description: &Description,
         (pose, roles): (&ReferencePose, &[Role]),

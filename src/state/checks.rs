@@ -1,5 +1,4 @@
-//! What is refused of a state and of options, however they were made. `read` gives the same reasons, with line and
-//! column.
+//! What is refused of a state and of options, however they were made; `read` adds line and column.
 
 use super::{
     AppliedImpulse, ByLink, Ground, LinkPoint, NamedContact, Scene, SpringEnd, State, Uncertainty, check_length,
@@ -13,8 +12,7 @@ use std::f64::consts::FRAC_PI_2;
 pub(crate) const PLACED_BY_JOINTS: &str = "put its foot on the ground by its joints, or give `base: floating`";
 
 impl State {
-    /// Refuses lists of a wrong length, unknown indices, numbers that are not finite or outside their range, and a base
-    /// that cannot be placed or is placed twice.
+    /// Refuses wrong lengths, unknown indices, numbers out of range, and a base that cannot be placed or is twice.
     pub(crate) fn check(&self, robot: &Robot) -> Result<()> {
         let Self { position, velocity, scene, uncertainty, .. } = self;
         check_length("position", position.len(), robot.dofs())?;

@@ -48,8 +48,7 @@ impl State {
         })
     }
 
-    /// Describes oddities among the numbers in sentences: joints outside their limits, and numbers that look like
-    /// degrees or millimeters.
+    /// Describes oddities in sentences: joints outside their limits, and numbers as in degrees or millimeters.
     pub fn oddities(&self, robot: &Robot) -> Vec<String> {
         let mut odd = Vec::new();
         self.outside_limits(robot).for_each(|outside| odd.push(outside.to_string()));

@@ -99,8 +99,7 @@ mod tests {
         }
     }
 
-    /// Asserts that all points lie inside the corners or at most `beyond` outside, and that the corners are points and
-    /// turn left.
+    /// Asserts that points lie at most `beyond` outside the corners, and that the corners are points and turn left.
     fn assert_hull(points: &[Vector<f64>], corners: &[Vector<f64>], beyond: f64) {
         assert!(corners.iter().all(|corner| points.contains(corner)));
         for (at, &a) in corners.iter().enumerate() {

@@ -43,8 +43,7 @@ pub(super) fn outline(
             projected(center, &[half(2, length), Vector::new(z * radius, -x * radius)], POINT)
         }
         &Geometry::Cylinder { radius, length } => {
-            // The rims are circles about the shape's z axis. Their half diameters along its x and y remain conjugate
-            // when projected.
+            // The half diameters of the rims along the shape's x and y remain conjugate when projected.
             let half_diameters = [half(0, 2.0 * radius), half(1, 2.0 * radius)];
             projected(center, &[half(2, length)], Rim::Ellipse { half_diameters })
         }
@@ -99,8 +98,7 @@ mod tests {
         outline(geometry, &Pose { xyz: [0.0; 3], rpy }.rotation(), CENTER, 1e-3).expect("an outline")
     }
 
-    /// Asserts that the outline has these corners, in this order and up to `off`, and a circle of this radius about
-    /// each.
+    /// Asserts that the outline has these corners in order, up to `off`, and a circle of this radius about each.
     #[track_caller]
     fn assert_outline(geometry: &Geometry, rpy: [f64; 3], off: f64, corners: &[Vector<f64>], radius: f64) {
         let shape = outline_of(geometry, rpy);

@@ -1,5 +1,4 @@
-//! Projection of a box: `{c + sum of s_i g_i, |s_i| <= 1}` with the projected half axes g_i. It is a polygon with
-//! parallel sides (a zonogon).
+//! Projection of a box: the zonogon `{c + sum of s_i g_i, |s_i| <= 1}` with the projected half axes g_i.
 //!
 //! A walk along the half sides, ordered by angle, gives the corners. So each corner of an unrotated shape is computed
 //! from its center and half sizes by a single sum.
@@ -10,8 +9,7 @@ use crate::planar::Vector;
 /// (of a quarter turn, whose cosine is 6e-17 in f64). They would split one corner into two.
 const ROUNDING: f64 = 1e-12;
 
-/// Returns the corners about `center` for these half sides, counter-clockwise from the lowest: one corner if all sides
-/// vanish, two if all are parallel.
+/// Returns the corners about `center`, counter-clockwise from the lowest: one if all sides vanish, two if parallel.
 pub(super) fn corners(center: Vector<f64>, half_sides: &[Vector<f64>]) -> Vec<Vector<f64>> {
     let sides = distinct(half_sides);
     // The walk goes up from the lowest corner along all sides, and back down along all sides.
@@ -24,8 +22,7 @@ pub(super) fn corners(center: Vector<f64>, half_sides: &[Vector<f64>]) -> Vec<Ve
     (0..(2 * count).max(1)).map(|step| center + corner(step)).collect()
 }
 
-/// Drops half sides that are rounding errors and joins parallel ones. The result points up (or forward, if level) and
-/// is sorted by the angle from level.
+/// Drops rounding errors and joins parallel half sides. They point up, or forward if level, by the angle from level.
 fn distinct(half_sides: &[Vector<f64>]) -> Vec<Vector<f64>> {
     let longest = half_sides.iter().map(|side| side.length()).fold(0.0, f64::max);
     let mut sides: Vec<Vector<f64>> = Vec::with_capacity(half_sides.len());
@@ -49,8 +46,7 @@ fn distinct(half_sides: &[Vector<f64>]) -> Vec<Vector<f64>> {
     sides
 }
 
-/// Returns the sine of the angle from `a` to `b`. It is positive if `b` points to the left of `a`, where forward points
-/// right and up points up.
+/// Returns the sine of the angle from `a` to `b`, positive if `b` points to the left of `a`.
 fn sine(a: Vector<f64>, b: Vector<f64>) -> f64 {
     let (la, lb) = (a.length(), b.length());
     (a.x / la) * (b.z / lb) - (a.z / la) * (b.x / lb)
