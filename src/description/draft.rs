@@ -2,7 +2,7 @@
 
 use super::elements::{ByName, EXPAND, IgnoredCount, WORLD, limits, misspelt, rotors, undefined_world};
 use super::repair::Repaired;
-use super::xml::{self, Cursor, MOST_LINKS, Unparsed};
+use super::xml::{self, Cursor, MOST_LINKS};
 use super::{Description, JointKind, UrdfJoint, UrdfLink, joint_place, link_place, values};
 use crate::error::{Location, Reason, Result};
 use memchr::memmem;
@@ -25,7 +25,7 @@ pub(super) fn read(text: &str) -> Result<Description> {
                 places.for_each(|place| *place = repaired.in_file(*place));
                 return Ok(description);
             }
-            Err(Unparsed { prefix, refused }) => {
+            Err((refused, prefix)) => {
                 let refused = repaired.refusal(refused);
                 repaired = prefix.and_then(|prefix| repaired.declaring(&prefix)).ok_or(refused)?;
             }

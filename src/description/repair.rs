@@ -22,18 +22,13 @@ pub(super) struct Repaired<'a> {
 impl<'a> Repaired<'a> {
     /// Replaces the XML declaration in `text` by blanks.
     pub(super) fn new(text: &'a str) -> Self {
-        let text = match declarations(text) {
-            found if found.is_empty() => Cow::Borrowed(text),
-            found => {
-                let mut repaired = text.to_owned();
-                for range in found.into_iter().rev() {
-                    let blank = |character| if character == '\n' { '\n' } else { ' ' };
-                    repaired.replace_range(range.clone(), &text[range].chars().map(blank).collect::<String>());
-                }
-                Cow::Owned(repaired)
-            }
-        };
-        Self { text, prefixes: Vec::new(), inserted: None }
+        let mut repaired = Cow::Borrowed(text);
+        for range in declarations(text).into_iter().rev() {
+            let blank = |character| if character == '\n' { '\n' } else { ' ' };
+            let blanks: String = text[range.clone()].chars().map(blank).collect();
+            repaired.to_mut().replace_range(range, &blanks);
+        }
+        Self { text: repaired, prefixes: Vec::new(), inserted: None }
     }
 
     /// Declares one more prefix in the text; `None` if that cannot help.

@@ -21,23 +21,16 @@ const NO_URDF: &str = "give the text of a URDF file, which begins with <robot";
 const JSON: &str = "this is JSON, as states are: the robot's URDF file comes first";
 const TABLE: &str = "this is a table, as of states: the robot's URDF file comes first";
 
-/// Why a text has no XML tree. `prefix` is an undeclared namespace prefix, if declaring it may help.
-pub(super) struct Unparsed {
-    pub(super) prefix: Option<String>,
-    pub(super) refused: Error,
-}
-
 /// Parses `text` into an XML tree. Document type definitions, and too many or too deeply nested elements are refused.
-pub(super) fn parse(text: &str) -> std::result::Result<Document<'_>, Unparsed> {
-    let refused = |refused| Unparsed { prefix: None, refused };
-    refuse_many(text).map_err(refused)?;
+/// An error comes with the undeclared namespace prefix, if declaring it may help.
+pub(super) fn parse(text: &str) -> std::result::Result<Document<'_>, (Error, Option<String>)> {
+    refuse_many(text).map_err(|error| (error, None))?;
     let options = ParsingOptions { allow_dtd: false, nodes_limit: MOST_NODES, ..ParsingOptions::default() };
-    let document = Document::parse_with_options(text, options).map_err(|error| {
-        let refused = refusal(text, &error);
-        let prefix = if let roxmltree::Error::UnknownNamespace(prefix, _) = error { Some(prefix) } else { None };
-        Unparsed { prefix, refused }
+    let document = Document::parse_with_options(text, options).map_err(|error| match error {
+        roxmltree::Error::UnknownNamespace(ref prefix, _) => (refusal(text, &error), Some(prefix.clone())),
+        _ => (refusal(text, &error), None),
     })?;
-    refuse_deep_nesting(&document).map_err(refused)?;
+    refuse_deep_nesting(&document).map_err(|error| (error, None))?;
     Ok(document)
 }
 

@@ -37,7 +37,7 @@ const UNMOVED: Transform = (IDENTITY, [0.0; 3]);
 pub(super) fn vertices(bytes: &[u8]) -> Result<Vec<[f64; 3]>, String> {
     let text = std::str::from_utf8(bytes).map_err(|_| "the text is not UTF-8".to_owned())?;
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let document = xml::parse(text).map_err(|unparsed| unparsed.refused.to_string())?;
+    let document = xml::parse(text).map_err(|(refused, _)| refused.to_string())?;
     let root = document.root_element();
     if root.tag_name().name() != "COLLADA" {
         return Err(format!("the outermost element is <{}> and not <COLLADA>", root.tag_name().name()));
