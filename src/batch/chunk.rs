@@ -76,8 +76,7 @@ impl<R: Read + Send> Chunks<R> {
             if let Some(line) = chunk.too_long {
                 return Err(too_long().on(line, 1));
             }
-            let found = chunk.records().find(|(_, record)| !self.is_blank(record));
-            if let Some((line, record)) = found {
+            if let Some((line, record)) = chunk.records().find(|(_, record)| !self.is_blank(record)) {
                 return Ok(Some((line, record.to_vec())));
             }
         }

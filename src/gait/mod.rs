@@ -198,10 +198,7 @@ pub enum At {
 impl At {
     /// Returns the name on the command line and in results.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Crossing => "crossing",
-            Self::Row => "row",
-        }
+        ["crossing", "row"][self as usize]
     }
 }
 

@@ -58,16 +58,14 @@ const FOREIGN: [(&[u8], &str, &str); 10] = [
 
 /// Refuses an input whose first bytes show that it is not plain UTF-8 text, but compressed or a spreadsheet, say.
 pub(crate) fn refuse_foreign(beginning: &[u8]) -> Result<()> {
-    let known =
-        FOREIGN.iter().find(|(magic, ..)| beginning.starts_with(magic)).map(|&(_, what, remedy)| (what, remedy));
-    // UTF-16 without a byte order mark has a zero in one of the first two bytes, if the text begins with ASCII.
-    let utf_16 = || {
-        beginning.get(..2).is_some_and(|two| (two[0] == 0) != (two[1] == 0)).then_some(("the text is UTF-16", UTF_16))
+    let known = FOREIGN.iter().find(|(magic, ..)| beginning.starts_with(magic));
+    let (what, remedy) = match (known, beginning) {
+        (Some(&(_, what, remedy)), _) => (what, remedy),
+        // UTF-16 without a byte order mark has a zero in one of the first two bytes, if the text begins with ASCII.
+        (None, [0, 1..=u8::MAX, ..] | [1..=u8::MAX, 0, ..]) => ("the text is UTF-16", UTF_16),
+        _ => return Ok(()),
     };
-    match known.or_else(utf_16) {
-        Some((what, remedy)) => Err(Error::new(Reason::Unsupported(what.into())).hint(remedy)),
-        None => Ok(()),
-    }
+    Err(Error::new(Reason::Unsupported(what.into())).hint(remedy))
 }
 
 /// Returns the bytes as text without a byte order mark; an error has the location of the first byte that is not UTF-8.
@@ -114,21 +112,21 @@ impl<'t> Iterator for Documents<'t> {
             self.within = Within::Stream;
             self.skip_blanks();
         }
-        if self.within == Within::List && self.text[self.at..].starts_with(',') {
-            self.at += 1;
-            self.skip_blanks();
-        } else if self.within == Within::List {
+        match self.within {
+            Within::List if self.text[self.at..].starts_with(',') => {
+                self.at += 1;
+                self.skip_blanks();
+            }
             // Neither a comma nor the end of the list follows: the rest cannot be split.
-            self.within = Within::Stream;
-            return Some(self.take(self.text.len()));
-        }
-        if self.within == Within::FreshList {
-            self.within = Within::List;
+            Within::List => {
+                self.within = Within::Stream;
+                return Some(self.take(self.text.len()));
+            }
+            Within::FreshList => self.within = Within::List,
+            Within::Stream if self.at == self.text.len() => return None,
+            Within::Stream => {}
         }
         let rest = &self.text[self.at..];
-        if rest.is_empty() && self.within == Within::Stream {
-            return None;
-        }
         let mut values = serde_json::Deserializer::from_str(rest).into_iter::<IgnoredAny>();
         let length = match values.next() {
             Some(Ok(_)) => values.byte_offset(),

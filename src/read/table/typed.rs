@@ -57,30 +57,29 @@ impl Typed {
     pub fn new(batch: &RecordBatch, columns: &[TableColumn], dofs: usize) -> Result<Self> {
         let places = (0..columns.len()).filter(|&at| columns[at] == TableColumn::Carried).collect::<Vec<_>>();
         let carried = batch.project(&places).map_err(unreadable)?;
-        let typed =
-            columns.iter().zip(batch.columns()).zip(batch.schema_ref().fields()).map(|((column, own), field)| {
-                let to = |to: DataType| -> Result<ArrayRef> {
-                    let exact = CastOptions { safe: false, ..CastOptions::default() };
-                    cast_with_options(own, &to, &exact).map_err(|error| unreadable(error).at(field.name()))
-                };
-                Ok(match (column, kind(own.data_type())) {
-                    (TableColumn::Ignored, _) => Column::Unread,
-                    (TableColumn::Carried, _) if field.name().trim() != "time" => Column::Unread,
-                    (TableColumn::Id, DataType::Int64) => {
-                        let numbers =
-                            to(DataType::Int64).map_err(|error| error.hint("give it as int64, or as text"))?;
-                        Column::Integers(numbers.as_primitive::<Int64Type>().clone())
-                    }
-                    (_, DataType::Int64 | DataType::Float64) => {
-                        Column::Numbers(to(DataType::Float64)?.as_primitive::<Float64Type>().clone())
-                    }
-                    (_, DataType::Utf8 | DataType::Null) => Column::Texts(to(DataType::Utf8)?.as_string().clone()),
-                    (TableColumn::Carried, _) => {
-                        to(DataType::Utf8).map_or(Column::Unread, |texts| Column::Texts(texts.as_string().clone()))
-                    }
-                    _ => Column::Unread,
-                })
-            });
+        let fields = columns.iter().zip(batch.columns()).zip(batch.schema_ref().fields());
+        let typed = fields.map(|((column, own), field)| {
+            let to = |to: DataType| -> Result<ArrayRef> {
+                let exact = CastOptions { safe: false, ..CastOptions::default() };
+                cast_with_options(own, &to, &exact).map_err(|error| unreadable(error).at(field.name()))
+            };
+            Ok(match (column, kind(own.data_type())) {
+                (TableColumn::Ignored, _) => Column::Unread,
+                (TableColumn::Carried, _) if field.name().trim() != "time" => Column::Unread,
+                (TableColumn::Id, DataType::Int64) => {
+                    let numbers = to(DataType::Int64).map_err(|error| error.hint("give it as int64, or as text"))?;
+                    Column::Integers(numbers.as_primitive::<Int64Type>().clone())
+                }
+                (_, DataType::Int64 | DataType::Float64) => {
+                    Column::Numbers(to(DataType::Float64)?.as_primitive::<Float64Type>().clone())
+                }
+                (_, DataType::Utf8 | DataType::Null) => Column::Texts(to(DataType::Utf8)?.as_string().clone()),
+                (TableColumn::Carried, _) => {
+                    to(DataType::Utf8).map_or(Column::Unread, |texts| Column::Texts(texts.as_string().clone()))
+                }
+                _ => Column::Unread,
+            })
+        });
         let typed = typed.collect::<Result<Vec<_>>>()?;
         // With a stance, x and z of the base must be empty: these columns are checked cell by cell.
         let least = if columns.contains(&TableColumn::Stance) { 2 } else { 0 };
