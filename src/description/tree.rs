@@ -3,8 +3,7 @@
 use super::{Description, UrdfJoint, UrdfLink};
 use crate::error::{Reason, Result};
 
-/// Sets the joint of each link and returns the root, in linear time. Returns an error if a link has two parents, if
-/// there are several roots, or if there is a cycle.
+/// Sets the joint of each link and returns the root, in linear time. Refuses two parents, several roots and cycles.
 pub(super) fn connect(links: &mut [UrdfLink], joints: &[UrdfJoint]) -> Result<usize> {
     for (index, joint) in joints.iter().enumerate() {
         if let Some(first) = links[joint.child].joint {

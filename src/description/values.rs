@@ -78,8 +78,7 @@ fn geometry(geometry: Node<'_, '_>) -> Result<Geometry> {
     })
 }
 
-/// Reads the `<axis>` of a joint; `None` if it gives no direction (`<axis/>` counts as missing). A zero vector is an
-/// error if joints of this `kind` have an axis.
+/// Reads the `<axis>` of a joint, if it gives a direction. Zero is an error if joints of this `kind` have an axis.
 pub(super) fn axis(axis: Option<Node<'_, '_>>, kind: JointKind) -> Result<Option<urdf_rs::Axis>> {
     let Some(axis) = axis else { return Ok(None) };
     let Some(xyz) = optional(axis, "xyz", ANY)? else { return Ok(None) };

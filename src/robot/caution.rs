@@ -418,8 +418,7 @@ fn about_shapes(description: &Description) -> impl Iterator<Item = String> {
     })
 }
 
-/// Returns the caution about frozen joints whose axes are nearly in line. `all` joints could move; `stays` marks the
-/// joints that are kept if these are.
+/// Returns the caution about nearly aligned frozen joints, of `all` that could move; `stays` marks those kept then.
 fn about_tilted(seen: &Seen, nearly: &[&(usize, FrozenJoint)], (all, stays): (usize, &[bool])) -> String {
     let angles = nearly.iter().filter_map(|(_, joint)| match joint.reason {
         FreezeReason::OffPlane { angle, .. } => Some(angle),
@@ -529,8 +528,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Returns whether a rotation of a hinge by this angle aligns every joint beyond it that `stays` marks. A joint that
-/// was off only by the digits of the file may remain so.
+/// Returns whether this rotation of a hinge aligns all joints beyond that `stays` marks, up to the file's digits.
 fn serves_all(seen: &Seen, (hinge, angle): (usize, f64), stays: &[bool]) -> bool {
     let Seen { description, pose, .. } = seen;
     let turned = turn(pose.axes[hinge], angle);

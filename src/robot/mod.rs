@@ -131,7 +131,7 @@ pub struct MimicJoint {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[allow(missing_docs, reason = "the text of each variant names its fields")]
 pub enum Axis {
-    /// The joint rotates the child about the plane's normal; `sign` is -1 if the URDF's axis points against the normal.
+    /// The joint rotates the child about the plane's normal; `sign` is +1, or -1 if the URDF's axis points against it.
     Revolute { sign: f64 },
     /// The joint moves the child along a unit vector in the parent body's frame.
     Prismatic { direction: Vector<f64> },

@@ -196,8 +196,7 @@ fn find_plane(
     }
 }
 
-/// Returns the plane that keeps the most joints, with their number; `None` if none keeps more than the current plane,
-/// in which the joints have the roles `here`.
+/// Returns the plane that keeps the most joints, with their number, if more than in the plane with roles `here`.
 fn better_plane(description: &Description, pose: &ReferencePose, here: (Plane, &[Role])) -> Option<(Plane, usize)> {
     let can_move = |kind| matches!(kind, JointKind::Revolute | JointKind::Continuous | JointKind::Prismatic);
     let moving = |roles: &[Role]| {

@@ -60,8 +60,7 @@ impl Seen {
         self.depths.extend(depth);
     }
 
-    /// Adds the height \[m\] at which the lowest foot has ended a descent that is no touchdown, or that continues in
-    /// the ground. Several points in one row count as one foot.
+    /// Adds the end \[m\] of a descent of the lowest foot as in `ends`; several points in one row count as one foot.
     pub(super) fn add_end(&mut self, row: usize, height: f64) {
         if self.last_end.replace(row) != Some(row) {
             self.ends.push(height);
