@@ -59,27 +59,25 @@ struct Facet<T> {
 impl<T: Ordered> Hull<'_, T> {
     /// A corner of S that is farthest in a direction.
     fn farthest(&self, direction: &[T]) -> Result<Vec<T>, Unsettled> {
-        T::keeping(|| self.farthest_of(direction))
-    }
-
-    fn farthest_of(&self, direction: &[T]) -> Result<Vec<T>, Unsettled> {
-        let rank = 0..self.image.len();
-        let axis = |own| rank.clone().map(|at| if at == own { T::one() } else { T::zero() }).collect();
-        let axes = rank.clone().map(axis);
-        let mut functions = self.functions.to_vec();
-        let mut y = vec![T::zero(); self.image.first().map_or(0, |z| z.coefficients.len())];
-        // Among the farthest points, the one with the greatest entries, compared one after the other, is a corner.
-        for toward in [direction.to_vec()].into_iter().chain(axes) {
-            let along = |at: usize| dot(&toward, &self.image.iter().map(|z| z.coefficients[at]).collect::<Vec<T>>());
-            let objective: Vec<T> = (0..y.len()).map(along).collect();
-            let shifted: Vec<LinearFunction<T>> = functions.iter().map(|function| function.seen_from(&y)).collect();
-            let step = maximize(&shifted, &objective)?.ok_or(Unsettled)?;
-            for (entry, change) in y.iter_mut().zip(step) {
-                *entry = *entry + change;
+        T::keeping(|| {
+            let rank = 0..self.image.len();
+            let axis = |own| rank.clone().map(|at| if at == own { T::one() } else { T::zero() }).collect();
+            let axes = rank.clone().map(axis);
+            let mut functions = self.functions.to_vec();
+            let mut y = vec![T::zero(); self.image.first().map_or(0, |z| z.coefficients.len())];
+            // Among the farthest points, the one with the greatest entries, compared one after the other, is a corner.
+            for toward in [direction.to_vec()].into_iter().chain(axes) {
+                let column = |at: usize| self.image.iter().map(|z| z.coefficients[at]).collect::<Vec<T>>();
+                let objective: Vec<T> = (0..y.len()).map(|at| dot(&toward, &column(at))).collect();
+                let shifted: Vec<LinearFunction<T>> = functions.iter().map(|function| function.seen_from(&y)).collect();
+                let step = maximize(&shifted, &objective)?.ok_or(Unsettled)?;
+                for (entry, change) in y.iter_mut().zip(step) {
+                    *entry = *entry + change;
+                }
+                functions.push(LinearFunction { constant: -dot(&objective, &y), coefficients: objective });
             }
-            functions.push(LinearFunction { constant: -dot(&objective, &y), coefficients: objective });
-        }
-        Ok(self.image.iter().map(|z| z.at(&y)).collect())
+            Ok(self.image.iter().map(|z| z.at(&y)).collect())
+        })
     }
 
     /// Finds a simplex of corners and its facets.

@@ -11,7 +11,6 @@ use super::problem::ContactProblem;
 use crate::law::{Impulse, Mode};
 use crate::planar::Pair;
 use crate::scalar::{Ordered, subtract};
-use std::cmp::Ordering;
 
 /// The sign of det B; if det B is zero, that of the lowest nonzero coefficient of det(B + s I), `None` without any.
 pub fn index<T: Ordered>(problem: &ContactProblem<T>, modes: &[Mode]) -> Result<Option<i8>, Unsettled> {
@@ -92,10 +91,9 @@ fn lowest_coefficient<T: Ordered>(matrix: &[Vec<T>]) -> Result<Option<i8>, Unset
         coefficients.push(coefficient);
     }
     for &coefficient in coefficients.iter().rev() {
-        match settled(coefficient)? {
-            Ordering::Less => return Ok(Some(-1)),
-            Ordering::Greater => return Ok(Some(1)),
-            Ordering::Equal => {}
+        let sign = settled(coefficient)?;
+        if sign.is_ne() {
+            return Ok(Some(sign as i8));
         }
     }
     Ok(None)

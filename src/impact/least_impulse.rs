@@ -73,8 +73,7 @@ fn least_on_face<T: Ordered>(
     Ok((found.origin[..free].to_vec(), multipliers))
 }
 
-/// The first function to reach zero along `step`, and the fraction of the step there; `None` if none does before its
-/// end.
+/// The first function to reach zero along `step`, and the fraction of the step there; `None` if none does.
 fn first_reached<T: Ordered>(
     functions: &[LinearFunction<T>],
     binding: &[usize],

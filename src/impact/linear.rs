@@ -66,6 +66,12 @@ impl<T: Real> LinearFunction<T> {
         Self { constant: -self.constant, coefficients }
     }
 
+    /// The function whose constant and coefficients `entry` computes from those of two functions.
+    pub fn with(&self, other: &Self, entry: impl Fn(T, T) -> T) -> Self {
+        let coefficients = self.coefficients.iter().zip(&other.coefficients).map(|(&own, &other)| entry(own, other));
+        Self { constant: entry(self.constant, other.constant), coefficients: coefficients.collect() }
+    }
+
     /// The function with another `constant` and one more entry of y, which has this `coefficient`.
     pub fn extended(&self, constant: T, coefficient: T) -> Self {
         Self { constant, coefficients: extended(&self.coefficients, coefficient) }

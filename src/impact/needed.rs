@@ -12,7 +12,7 @@
 use super::digits::least_friction;
 use super::linear::{LinearFunction, Unsettled, settled, solve};
 use super::simplex::{join, maximize, widest};
-use crate::law::{Friction, Law, Mode};
+use crate::law::{Law, Mode};
 use crate::planar::Pair;
 use crate::scalar::{Ordered, Real, Sign};
 use std::cmp::Ordering;
@@ -27,7 +27,6 @@ const ENOUGH: f64 = 1e3;
 /// Returns the friction |L_t| / L_n that each sticking contact needs; `None` if no admissible impulse presses it on the
 /// ground. Contacts that depend on each other are left out if all their `shortest` impulses are zero. The impulses are
 /// functions of y, admissible where no `functions` are negative; at y = 0 none is.
-/// does not need it. The impulses are functions of y, admissible where no function is negative, as none is at y = 0.
 pub fn friction_needed<T: Ordered>(
     modes: &[Mode],
     laws: &[Law],
@@ -45,8 +44,10 @@ pub fn friction_needed<T: Ordered>(
         let [t, n] = [0, 1].map(|entry| sum(members().map(|own| &impulses[own][entry])));
         let are_alike = members().all(|own| laws[own] == laws[contact]);
         if are_alike && t.is_constant()? && n.is_constant()? && exchange(members(), impulses)? {
-            let is_pressed = settled(n.constant)?.is_gt();
-            needed[contact] = if is_pressed { Some(magnitude(t.constant)? / n.constant) } else { None };
+            if settled(n.constant)?.is_gt() {
+                let size = if settled(t.constant)?.is_lt() { -t.constant } else { t.constant };
+                needed[contact] = Some(size / n.constant);
+            }
             continue;
         }
         needed[contact] = least_ratio(&impulses[contact], functions)?;
@@ -102,11 +103,7 @@ fn least_common<'a, T: Ordered + 'a>(
     // The largest possible smallest slack with this friction; it is shown to be negative if the friction is not enough.
     let room = |friction: f64| {
         let edge = |side: f64| {
-            move |[t, n]: &'a Pair<LinearFunction<T>>| {
-                let slack = |t: T, n: T| n.scaled(friction) + t.scaled(side);
-                let coefficients = t.coefficients.iter().zip(&n.coefficients).map(|(&t, &n)| slack(t, n));
-                LinearFunction { constant: slack(t.constant, n.constant), coefficients: coefficients.collect() }
-            }
+            move |[t, n]: &'a Pair<LinearFunction<T>>| t.with(n, |t, n| n.scaled(friction) + t.scaled(side))
         };
         T::freeing(|| -> Result<f64, Unsettled> {
             let edges = members.clone().map(edge(1.0)).chain(members.clone().map(edge(-1.0)));
@@ -124,10 +121,7 @@ fn least_common<'a, T: Ordered + 'a>(
     if at_low >= 0.0 {
         return Ok(Some(T::zero()));
     }
-    let most = match law.friction() {
-        Friction::Finite(mu) => mu.min(GREATEST),
-        Friction::Infinite => GREATEST,
-    };
+    let most = law.friction().limit(GREATEST);
     let mut high = most.min(1.0);
     let mut at_high = room(high)?;
     while at_high < 0.0 {
@@ -211,20 +205,14 @@ fn least_ratio<T: Ordered>(
 
 fn sum<'a, T: Real + 'a>(mut functions: impl Iterator<Item = &'a LinearFunction<T>>) -> LinearFunction<T> {
     let first = functions.next().cloned().unwrap_or(LinearFunction { constant: T::zero(), coefficients: Vec::new() });
-    functions.fold(first, |sum, next| LinearFunction {
-        constant: sum.constant + next.constant,
-        coefficients: sum.coefficients.iter().zip(&next.coefficients).map(|(&a, &b)| a + b).collect(),
-    })
-}
-
-fn magnitude<T: Ordered>(number: T) -> Result<T, Unsettled> {
-    Ok(if settled(number)?.is_lt() { -number } else { number })
+    functions.fold(first, |sum, next| sum.with(next, T::add))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::impact::linear::tests::{Number, affine};
+    use crate::law::Friction;
 
     fn needed(frictions: [f64; 2], impulses: [Pair<LinearFunction<Number>>; 2]) -> [Option<f64>; 2] {
         let laws = frictions.map(|mu| Law::from(Friction::Finite(mu)));

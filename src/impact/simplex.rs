@@ -183,21 +183,13 @@ impl<T: Ordered> Dictionary<T> {
         let inverse = T::one() / self.rows[row][column];
         let mut solved: Vec<T> = self.rows[row].iter().map(|&entry| -(entry * inverse)).collect();
         solved[column] = inverse;
-        let substitute = |line: &mut Vec<T>| {
+        let lines = self.rows.iter_mut().chain([&mut self.gain]).enumerate().filter(|(other, _)| *other != row);
+        for (_, line) in lines.filter(|(_, line)| line[column].sign() != Sign::Zero) {
             let factor = line[column];
-            if factor.sign() == Sign::Zero {
-                return;
-            }
             for (index, entry) in line.iter_mut().enumerate() {
                 *entry = if index == column { factor * inverse } else { *entry + factor * solved[index] };
             }
-        };
-        for (other, line) in self.rows.iter_mut().enumerate() {
-            if other != row {
-                substitute(line);
-            }
         }
-        substitute(&mut self.gain);
         self.rows[row] = solved;
         std::mem::swap(&mut self.basic[row], &mut self.nonbasic[column]);
     }
@@ -218,11 +210,9 @@ fn first_at_zero<T: Ordered>(
         // A function reaches zero after value / speed; comparing two quotients needs no division.
         let first = match least {
             None => true,
-            Some((other, [least, of_least])) => match settled(value * of_least - least * speed)? {
-                Ordering::Less => true,
-                Ordering::Equal => label < other,
-                Ordering::Greater => false,
-            },
+            Some((other, [least, of_least])) => {
+                settled(value * of_least - least * speed)?.then(label.cmp(&other)).is_lt()
+            }
         };
         if first {
             least = Some((label, [value, speed]));

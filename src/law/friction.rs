@@ -28,6 +28,14 @@ impl Friction {
         self == Friction::ZERO
     }
 
+    /// The smaller of a ratio |L_t| / L_n and mu.
+    pub(crate) fn limit(self, ratio: f64) -> f64 {
+        match self {
+            Self::Finite(mu) => ratio.min(mu),
+            Self::Infinite => ratio,
+        }
+    }
+
     /// Converts the coefficient to another number type.
     pub(crate) fn map<T>(self, number: impl FnOnce(f64) -> T) -> Friction<T> {
         match self {
