@@ -1,11 +1,9 @@
 //! Collects what the passes over all combinations find.
 
-use super::combination::Solved;
-use super::digits::Numbers;
-use super::outcome::{AtZero, Border, Effort, Family, Motion, Outcome, Range, Rejection};
+use super::digits::{Numbers, Solution};
+use super::outcome::{AtZero, Border, Effort, Family, Motion, Outcome, Rejection};
 use super::problem::ContactProblem;
-use super::reading::CombinationReading;
-use super::singular::SingularOutcome;
+use super::singular::Solved;
 use super::slack::Scale;
 use crate::law::{Inequality, Law, Mode};
 use crate::reductions::Reductions;
@@ -122,7 +120,7 @@ pub enum Corner {
     /// The outcome at this place: its velocity is the only one of its modes.
     Isolated(usize),
     /// A velocity of the family with this combination number, one of many with its modes.
-    OfFamily(u64, SingularOutcome),
+    OfFamily(u64, Solution),
 }
 
 /// Everything that was found, in the order of the combinations.
@@ -182,12 +180,9 @@ impl<'a> Collected<'a> {
     pub fn add(&mut self, pending: &Pending, solved: Solved) {
         let &Pending { number, ref modes } = pending;
         match solved {
-            Solved::Regular { reading, index, numbers } => {
-                self.add_regular(number, modes.clone(), reading, index, numbers);
-            }
+            Solved::Outcome(own) => self.push(number, own),
             Solved::Rejected(rejection) => self.reject(number, modes, || rejection),
-            Solved::Singular(own) => self.add_singular(number, own),
-            Solved::Family => self.pending_families.push(pending.clone()),
+            Solved::Family(()) => self.pending_families.push(pending.clone()),
         }
     }
 
@@ -201,27 +196,6 @@ impl<'a> Collected<'a> {
         self.memory.lists.pop().unwrap_or_default()
     }
 
-    /// Adds an outcome whose equations have one solution.
-    pub fn add_regular(
-        &mut self,
-        number: u64,
-        modes: Vec<Mode>,
-        mut reading: CombinationReading,
-        index: i8,
-        numbers: Numbers,
-    ) {
-        let index = reading.at_zero.is_empty().then_some(index);
-        let margin = reading.margin.map(|margin| margin + 0.0);
-        self.push(number, modes, numbers, Solution { index, margin, range: None, at_zero: &reading.at_zero });
-        reading.at_zero.clear();
-        self.memory.at_zero = reading.at_zero;
-    }
-
-    fn add_singular(&mut self, number: u64, own: SingularOutcome) {
-        let SingularOutcome { modes, numbers, index, margin, range, at_zero } = own;
-        self.push(number, modes, numbers, Solution { index, margin, range, at_zero: &at_zero });
-    }
-
     /// Counts a combination that no precision decided, and lists the first ones with zeros for the unknown impulses.
     pub fn add_undecided(&mut self, Pending { number, modes }: Pending) {
         self.found.undecided += 1;
@@ -231,7 +205,7 @@ impl<'a> Collected<'a> {
         let velocity_after = self.problem.velocity_free().to_vec();
         let motion = Motion { impulse: vec![[0.0; 2]; modes.len()], velocity_after };
         let numbers = Numbers::of_motion(motion, &modes, self.problem, Vec::new());
-        self.push(number, modes, numbers, Solution { index: None, margin: None, range: None, at_zero: &[] });
+        self.push(number, Solution { modes, numbers, index: None, margin: None, range: None, at_zero: Vec::new() });
         if let Some(outcome) = self.memory.outcomes.last_mut() {
             (outcome.decided, outcome.proven) = (false, false);
         }
@@ -259,7 +233,7 @@ impl<'a> Collected<'a> {
             let place = match corner {
                 Corner::Isolated(place) => place,
                 Corner::OfFamily(number, own) => {
-                    self.add_singular(number, own);
+                    self.push(number, own);
                     self.memory.outcomes.len() - 1
                 }
             };
@@ -305,13 +279,14 @@ impl<'a> Collected<'a> {
     }
 
     /// Adds a decided outcome. It is built in place, because a large value that was just written is slow to move.
-    fn push(&mut self, number: u64, modes: Vec<Mode>, numbers: Numbers, own: Solution) {
+    pub fn push(&mut self, number: u64, Solution { modes, numbers, index, margin, range, mut at_zero }: Solution) {
         let Numbers { motion, energy_loss, friction_needed, are_sharp } = numbers;
-        let Solution { index, margin, range, at_zero } = own;
         let border = match self.options.brief {
             true => None,
-            false => border(&modes, self.problem.laws(), at_zero, &motion, self.name),
+            false => border(&modes, self.problem.laws(), &at_zero, &motion, self.name),
         };
+        at_zero.clear();
+        self.memory.at_zero = at_zero;
         let Motion { impulse, velocity_after } = motion.unsigned();
         self.memory.numbers.push(number);
         self.memory.outcomes.push(Outcome {
@@ -339,15 +314,6 @@ impl<'a> Collected<'a> {
 /// Removes the numbers of a list. The list is nearly always empty, and collecting in place is slow to begin.
 fn unnumbered<T>(listed: Vec<(u64, T)>) -> Vec<T> {
     if listed.is_empty() { Vec::new() } else { listed.into_iter().map(|(_, own)| own).collect() }
-}
-
-/// The properties of an outcome that [`Numbers`] does not hold.
-struct Solution<'a> {
-    index: Option<i8>,
-    margin: Option<f64>,
-    /// The range of each entry of an impulse that is not unique.
-    range: Option<Vec<[Range; 2]>>,
-    at_zero: &'a [(usize, Inequality)],
 }
 
 /// The border of an outcome, where the impulse inequalities `at_zero` are zero; `None` if there are none.

@@ -5,48 +5,19 @@ use super::enumerate::Tableau;
 use super::linear::Unsettled;
 use super::outcome::{Motion, Rejection};
 use super::problem::ContactProblem;
-use super::reading::{CombinationReading, motion, read};
-use super::singular::{Equations, SingularCase, SingularOutcome};
+use super::reading::{motion, read};
+use super::singular::{Equations, Solved};
 use super::slack::{Scale, slacks};
 use crate::law::Mode;
 use crate::planar::Pair;
 use crate::scalar::{Ordered, Sign};
 
-/// The solution of a combination.
-#[derive(Debug)]
-pub enum Solved {
-    /// The combination is not an outcome.
-    Rejected(Rejection),
-    /// The equations have one solution, which is an outcome.
-    Regular {
-        reading: CombinationReading,
-        /// The sign of det A.
-        index: i8,
-        numbers: Numbers,
-    },
-    /// The equations are singular, but only one velocity has these modes; it is an outcome.
-    Singular(SingularOutcome),
-    /// The equations are singular, and the velocities form a set.
-    Family,
-}
-
-impl<T> From<SingularCase<T>> for Solved {
-    fn from(case: SingularCase<T>) -> Self {
-        match case {
-            SingularCase::Rejected(rejection) => Self::Rejected(rejection),
-            SingularCase::Valid(outcome) => Self::Singular(outcome),
-            SingularCase::Family(_) => Self::Family,
-        }
-    }
-}
-
 impl Solved {
     /// Whether the numbers of the outcome have the promised digits; true if there is no outcome yet.
     pub fn is_sharp(&self) -> bool {
         match self {
-            Self::Regular { numbers, .. } => numbers.are_sharp,
-            Self::Singular(own) => own.numbers.are_sharp,
-            Self::Rejected(_) | Self::Family => true,
+            Self::Outcome(own) => own.numbers.are_sharp,
+            Self::Rejected(_) | Self::Family(()) => true,
         }
     }
 
@@ -56,7 +27,7 @@ impl Solved {
             Self::Rejected(Rejection { margin, motion, .. }) => {
                 !(motion.as_ref().is_none_or(Motion::is_finite) && margin.is_none_or(f64::is_finite))
             }
-            Self::Regular { .. } | Self::Singular(_) | Self::Family => false,
+            Self::Outcome(_) | Self::Family(()) => false,
         }
     }
 }
@@ -80,8 +51,15 @@ impl<'e, T: Ordered> CombinationSolver<'e, T> {
         let Self { exact, scale, tableau } = self;
         T::freeing(|| {
             let equations = Equations::of(exact, scale, modes);
+            let singular = || {
+                Ok(match equations.solve()? {
+                    Solved::Rejected(rejection) => Solved::Rejected(rejection),
+                    Solved::Outcome(outcome) => Solved::Outcome(outcome),
+                    Solved::Family(_) => Solved::Family(()),
+                })
+            };
             if equations.are_shared() {
-                return equations.solve().map(Solved::from);
+                return singular();
             }
             let mut index = 1;
             let ends = |pivot: T| {
@@ -91,7 +69,7 @@ impl<'e, T: Ordered> CombinationSolver<'e, T> {
             };
             let leaf = match tableau.leaf_unless(modes, ends) {
                 Ok(leaf) => leaf,
-                Err(Sign::Zero) => return equations.solve().map(Solved::from),
+                Err(Sign::Zero) => return singular(),
                 Err(_) => return Err(Unsettled),
             };
             let reading = read(&leaf, modes, exact.laws(), scale, Vec::new());
@@ -112,7 +90,7 @@ impl<'e, T: Ordered> CombinationSolver<'e, T> {
                 let error = scale.scaled(&slack, slack.number.error());
                 numbers.are_sharp &= error <= scale.digits() * reading.margin.unwrap_or(0.0).max(1.0);
             });
-            Ok(Solved::Regular { reading, index, numbers })
+            Ok(Solved::Outcome(reading.solution(modes.to_vec(), index, numbers)))
         })
     }
 }

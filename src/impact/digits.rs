@@ -18,10 +18,10 @@
 
 use super::enumerate::Leaf;
 use super::generators::Generators;
-use super::outcome::Motion;
+use super::outcome::{Motion, Range};
 use super::problem::ContactProblem;
 use super::slack::Scale;
-use crate::law::{Friction, Impulse, Law, Mode};
+use crate::law::{Impulse, Inequality, Law, Mode};
 use crate::planar::Pair;
 use crate::scalar::{Ordered, Real, Rounded};
 use nalgebra::DMatrix;
@@ -48,13 +48,9 @@ struct Scales<'a> {
 }
 
 impl<'a> Scales<'a> {
-    fn of(scale: &'a Scale, before: &'a [Pair<f64>], motion: &'a Motion) -> Self {
-        Self { scale, before, motion, greatest: [0.0; 2] }
-    }
-
-    fn of_robot(scale: &'a Scale, before: &'a [Pair<f64>], motion: &'a Motion) -> Self {
-        let greatest = [largest(before).max(largest(&motion.velocity_after)), largest(&motion.impulse)];
-        Self { scale, before, motion, greatest }
+    fn of(scale: &'a Scale, before: &'a [Pair<f64>], motion: &'a Motion, is_of_robot: bool) -> Self {
+        let greatest = || [largest(before).max(largest(&motion.velocity_after)), largest(&motion.impulse)];
+        Self { scale, before, motion, greatest: if is_of_robot { greatest() } else { [0.0; 2] } }
     }
 
     /// The speed scale V of a contact \[m/s\].
@@ -110,7 +106,7 @@ impl Numbers {
         let energy = energy_loss(before, impulse, &after);
         let motion = Motion { impulse: nearest(impulse), velocity_after: nearest(&after) };
         let nearest_before = nearest(before);
-        let scales = Scales::of(scale, &nearest_before, &motion);
+        let scales = Scales::of(scale, &nearest_before, &motion, false);
         let of_contact = |contact: usize| {
             let ([t, n], after) = (impulse[contact], after[contact]);
             let [of_t, of_n] = scales.impulse(contact, &laws[contact]);
@@ -131,9 +127,26 @@ impl Numbers {
         let known =
             |(needed, law): (&Option<T>, &Law)| needed.is_none_or(|ratio| is_known(ratio, least_friction(law), digits));
         self.are_sharp &= needed.iter().zip(laws).all(known);
-        let nearest = |(needed, law): (&Option<T>, &Law)| needed.map(|ratio| at_most(law, ratio.to_f64()));
+        let nearest = |(needed, law): (&Option<T>, &Law)| needed.map(|ratio| law.friction().limit(ratio.to_f64()));
         self.friction_needed = needed.iter().zip(laws).map(nearest).collect();
     }
+}
+
+/// A decided outcome, before it is listed.
+#[derive(Debug)]
+pub struct Solution {
+    /// The strict modes of the velocity.
+    pub modes: Vec<Mode>,
+    /// The numbers of the velocity and the impulse of least norm.
+    pub numbers: Numbers,
+    /// The sign of det A, or of det B of singular equations; `None` on a border.
+    pub index: Option<i8>,
+    /// The smallest slack; `None` if there is none.
+    pub margin: Option<f64>,
+    /// The least and greatest value of every entry of the impulse; `None` if the impulse is unique.
+    pub range: Option<Vec<Pair<Range>>>,
+    /// The impulse inequalities that are zero for every admissible impulse, by contact.
+    pub at_zero: Vec<(usize, Inequality)>,
 }
 
 fn nearest<T: Ordered>(list: &[Pair<T>]) -> Vec<Pair<f64>> {
@@ -165,10 +178,7 @@ pub fn is_known_range<T: Ordered>(ends: [Option<T>; 2], own: T, digits: f64) -> 
 
 /// The smallest scale of a tangential impulse, min(mu, 1), as a share of the normal impulse's scale.
 pub fn least_friction(law: &Law) -> f64 {
-    match law.friction() {
-        Friction::Finite(mu) => mu.min(1.0),
-        Friction::Infinite => 1.0,
-    }
+    law.friction().limit(1.0)
 }
 
 /// c+ of a contact from its `[c_t, xi_n]` \[m/s\].
@@ -184,20 +194,12 @@ fn energy_loss<T: Real>(before: &[Pair<T>], impulse: &[Pair<T>], after: &[Pair<T
     T::zero() - T::from_f64(0.5) * work
 }
 
-/// |L_t| / L_n of each sticking contact with L_n > 0; its friction cone was shown to hold.
+/// |L_t| / L_n of each sticking contact with L_n > 0; its friction cone was shown to hold, which rounding may exceed.
 fn friction_needed(modes: &[Mode], laws: &[Law], impulse: &[Pair<f64>]) -> impl Iterator<Item = Option<f64>> {
     let needed = |((&mode, law), l): ((&Mode, &Law), &Pair<f64>)| {
-        (mode == Mode::Stick && l[1] > 0.0).then(|| at_most(law, l[0].abs() / l[1]))
+        (mode == Mode::Stick && l[1] > 0.0).then(|| law.friction().limit(l[0].abs() / l[1]))
     };
     modes.iter().zip(laws).zip(impulse).map(needed)
-}
-
-/// Limits a ratio to the friction, which rounding may have made it exceed.
-fn at_most(law: &Law, ratio: f64) -> f64 {
-    match law.friction() {
-        Friction::Finite(mu) => ratio.min(mu),
-        Friction::Infinite => ratio,
-    }
 }
 
 /// Whether the f64 numbers of a leaf, including the `margin`, have the promised digits, judged by their likely errors,
@@ -228,10 +230,7 @@ impl Candidate<'_> {
     /// Whether all numbers have their digits if each contact's two numbers ([`Leaf::numbers`]) are off by `errors`.
     fn serves(&self, errors: impl Fn(usize) -> [f64; 2]) -> bool {
         let Self { modes, problem, scale, motion, margin, .. } = self;
-        let scales = match scale.likely_rounding {
-            0.0 => Scales::of,
-            _ => Scales::of_robot,
-        }(scale, problem.velocity_before(), motion);
+        let scales = Scales::of(scale, problem.velocity_before(), motion, scale.likely_rounding != 0.0);
         let noise = scale.likely_noise * scale.speed;
         let (mut work, mut doubt) = (0.0, 0.0);
         for (contact, (&mode, law)) in modes.iter().zip(problem.laws()).enumerate() {
@@ -276,7 +275,6 @@ impl Candidate<'_> {
     ///
     /// A is scaled by the mobilities. X, its inverse in f64, is verified: with R = I - A X and r < 1 the greatest row
     /// sum of |R|, |A^-1| y <= |X| (y + r / (1 - r) max y).
-    /// |R| of r < 1, |A^-1| y <= |X| (y + r / (1 - r) max y).
     fn serves_by_sensitivity(&self) -> bool {
         let Self { leaf, modes, problem, scale, .. } = self;
         let impulse: Vec<f64> =
@@ -293,12 +291,8 @@ impl Candidate<'_> {
         };
         // The rows that L holds: one per generator, in the same order.
         let held = modes.iter().zip(problem.laws()).enumerate().flat_map(|(contact, (&mode, law))| {
-            let first = match law.impulse(mode) {
-                Impulse::Zero => 2,
-                Impulse::Along(_) => 1,
-                Impulse::Free => 0,
-            };
-            2 * contact + first..2 * contact + 2
+            let end = 2 * (contact + 1);
+            end - law.impulse(mode).unknowns()..end
         });
         let held: Vec<usize> = held.collect();
         let generators = Generators::of(modes, problem.laws());
@@ -315,14 +309,12 @@ impl Candidate<'_> {
         }
         let off: Vec<f64> = (0..count).map(|at| (residual(held[at]) + given(held[at])) / unit(at)).collect();
         let more = VERIFIED / (1.0 - VERIFIED) * off.iter().copied().fold(0.0, f64::max);
-        let weighed = |a: f64, b: &f64| a.abs() * b;
         let change = |row: usize| {
             let off = off.iter().map(|off| off + more);
             inverse.row(row).iter().zip(off).map(|(a, off)| a.abs() * off).sum::<f64>() / unit(row)
         };
         let lambda: Vec<f64> = (0..count).map(change).collect();
-        let velocity =
-            |row: usize| given(row) + rows[row].iter().zip(&lambda).map(|(&a, b)| weighed(a, b)).sum::<f64>();
+        let velocity = |row: usize| given(row) + rows[row].iter().zip(&lambda).map(|(a, b)| a.abs() * b).sum::<f64>();
         let number = |row: usize| match held.iter().position(|&own| own == row) {
             Some(place) => lambda[place],
             None => velocity(row),

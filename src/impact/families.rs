@@ -3,7 +3,7 @@
 use super::collected::{Collected, Corner, FoundFamilies, Pending};
 use super::linear::{Unsettled, are_zero};
 use super::problem::{ContactProblem, Precision, PrecisionTask};
-use super::singular::{Equations, FamilyVelocities, modes_of};
+use super::singular::{Equations, modes_of};
 use super::slack::Scale;
 use crate::law::Mode;
 use crate::scalar::Ordered;
@@ -58,10 +58,7 @@ impl FamiliesPass<'_, '_> {
         known: &[(Vec<Mode>, Vec<T>)],
     ) -> Result<Option<FamilyCorners<T>>, Unsettled> {
         let scale = &Scale::of(exact);
-        let Some(FamilyVelocities { dimension, corners }) = Equations::of(exact, scale, &pending.modes).family()?
-        else {
-            return Ok(None);
-        };
+        let Some((dimension, corners)) = Equations::of(exact, scale, &pending.modes).family()? else { return Ok(None) };
         let mut family = FamilyCorners { dimension, is_sharp: true, places: Vec::new(), new: Vec::new() };
         for velocity in corners {
             let modes = modes_of(&velocity, exact.laws())?;

@@ -1,7 +1,7 @@
 //! The passes over all combinations: first in f64, then with more digits over those that need them.
 
 use super::collected::{Collected, OutcomeLists, Pending};
-use super::combination::{CombinationSolver, Solved};
+use super::combination::CombinationSolver;
 use super::digits::{Numbers, after, f64_serves};
 use super::enumerate::{Labels, Leaf, Visitor};
 use super::kernel::Kernel;
@@ -9,6 +9,7 @@ use super::linear::Unsettled;
 use super::outcome::{Motion, Rejection, RejectionReason};
 use super::problem::{ContactProblem, Precision, PrecisionTask};
 use super::reading::{motion, read, rejects};
+use super::singular::Solved;
 use super::slack::Scale;
 use crate::budget::{ROUNDS, is_spent_after};
 use crate::law::{Impulse, Law, Mode};
@@ -40,8 +41,7 @@ impl Visitor<Rounded> for F64Pass<'_, '_> {
         let Self { shares, regular, collected, .. } = self;
         let laws = collected.problem.laws();
         let (Some(&mode), Some(law)) = (modes.last(), laws.last()) else { return false };
-        // A leaf that stands for several combinations is needed, and so is the one in which all contacts stick, which
-        // may show that G is regular.
+        // Needed are leaves that stand for several combinations, and the one that may show that G is regular.
         let is_wanted = *shares || !*regular && is_free(modes, laws) || collected.options.rejections.contain(modes);
         let drops = !is_wanted && rejects(last, mode, law);
         collected.found.visited += u64::from(drops);
@@ -85,7 +85,7 @@ impl Visitor<Rounded> for F64Pass<'_, '_> {
                     let index = leaf.pivots.iter().fold(1, sign);
                     modes.clone_into(&mut own_modes);
                     let numbers = Numbers::of_motion(motion, modes, problem, friction_needed);
-                    return collected.add_regular(number, own_modes, reading, index, numbers);
+                    return collected.push(number, reading.solution(own_modes, index, numbers));
                 }
             }
             undecided.push(Undecided { pending: pending(), blunt: None });
@@ -103,13 +103,6 @@ pub struct Undecided {
     pub pending: Pending,
     /// The solution so far, if only its numbers or the reason of a rejection lack digits.
     blunt: Option<Solved>,
-}
-
-impl Undecided {
-    /// Returns whether the combination is already known not to be an outcome.
-    fn is_rejected(&self) -> bool {
-        matches!(self.blunt, Some(Solved::Rejected(_)))
-    }
 }
 
 /// The pass over the combinations that need more digits than f64 has.
@@ -165,8 +158,10 @@ impl PrecisionTask for UndecidedPass<'_, '_> {
         let rejections = self.collected.options.rejections;
         if !self.is_decided {
             // Combinations that are rejected, or excluded by the kernel, are solved later, only to find the reason.
-            let (no, perhaps): (Vec<_>, _) =
-                open.into_iter().partition(|own| own.is_rejected() || self.excludes(&own.pending).is_some());
+            let is_no = |own: &Undecided| {
+                matches!(own.blunt, Some(Solved::Rejected(_))) || self.excludes(&own.pending).is_some()
+            };
+            let (no, perhaps): (Vec<_>, _) = open.into_iter().partition(is_no);
             self.rejected.extend(no.into_iter().filter(|own| rejections.contain(&own.pending.modes)));
             open = perhaps;
         }
@@ -181,8 +176,7 @@ impl PrecisionTask for UndecidedPass<'_, '_> {
                     let left = if self.is_decided { &mut self.undecided } else { &mut self.rejected };
                     left.push(Undecided { pending, blunt: Some(solved) });
                 }
-                // The velocity is that of other combinations because contacts depend on each other, not because of a
-                // border.
+                // The velocity is that of other combinations because contacts are dependent, not because of a border.
                 Ok(Solved::Rejected(Rejection { because: RejectionReason::OnBorder, .. }))
                     if self.excludes(&pending).is_some() =>
                 {

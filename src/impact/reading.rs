@@ -1,5 +1,6 @@
 //! Combines the signs of all inequalities of a combination into one.
 
+use super::digits::{Numbers, Solution};
 use super::enumerate::Leaf;
 use super::outcome::{Motion, Rejection, RejectionReason};
 use super::slack::{Scale, slacks};
@@ -22,6 +23,12 @@ pub struct CombinationReading {
 }
 
 impl CombinationReading {
+    /// The outcome of a valid combination; `index` is the sign of det A.
+    pub fn solution(self, modes: Vec<Mode>, index: i8, numbers: Numbers) -> Solution {
+        let (index, margin) = (self.at_zero.is_empty().then_some(index), self.margin.map(|margin| margin + 0.0));
+        Solution { modes, numbers, index, margin, range: None, at_zero: self.at_zero }
+    }
+
     /// Whether the combination is rejected because it lies on a border, although it may also violate an inequality.
     pub fn is_vague(&self) -> bool {
         self.is_open && self.because == RejectionReason::OnBorder
@@ -29,8 +36,7 @@ impl CombinationReading {
 }
 
 impl Rejection {
-    /// The rejection of a combination whose reading is negative; `motion` is not called if two equations are
-    /// contradictory.
+    /// The rejection of a combination whose reading is negative; no `motion` solves contradictory equations.
     pub(super) fn read(modes: &[Mode], reading: CombinationReading, motion: impl FnOnce() -> Motion) -> Self {
         let solved = !matches!(reading.because, RejectionReason::NothingHolds { .. });
         let is_vague = reading.is_vague();
@@ -102,8 +108,7 @@ pub fn read<T: Ordered>(
     reading
 }
 
-/// Impulses and velocities of a leaf as the nearest f64 of each number, in reused memory. `after` computes c+ of a
-/// contact from `[c_t, xi_n]`.
+/// Impulses and velocities of a leaf as the nearest f64, in reused memory. `after` computes c+ of a contact from xi.
 pub fn motion<T: Ordered>(
     leaf: &Leaf<'_, T>,
     after: impl Fn(usize, Pair<T>) -> Pair<f64>,

@@ -19,7 +19,7 @@
 //! equation for it, and directions that shift tangential impulse from one to the other change no velocity.
 
 use super::corners::corners;
-use super::digits::{Numbers, is_known, is_known_range};
+use super::digits::{Numbers, Solution, is_known, is_known_range};
 use super::generators::Generators;
 use super::index::index;
 use super::least_impulse::least_impulse;
@@ -39,37 +39,15 @@ const UNBOUNDED: f64 = 1e3;
 /// Violated inequalities within this relative distance of the worst one count as equal when one of them is named.
 const EQUALLY_BAD: f64 = 1e-9;
 
-/// The result for a combination whose equations are singular.
-pub enum SingularCase<T> {
+/// The result for a combination of modes.
+#[derive(Debug)]
+pub enum Solved<F = ()> {
     Rejected(Rejection),
     /// An outcome: only one velocity has these modes.
-    Valid(SingularOutcome),
-    /// A family: the solutions that the inequalities admit; their origin is an interior point.
-    Family(Space<T>),
-}
-
-/// The velocities of a family, `[c_t, xi_n]` by rows \[m/s\].
-pub struct FamilyVelocities<T> {
-    pub dimension: usize,
-    /// The velocities of each corner of the closure.
-    pub corners: Vec<Vec<T>>,
-}
-
-/// An outcome of singular equations: one velocity and the impulses that lead to it.
-#[derive(Debug, Clone)]
-pub struct SingularOutcome {
-    /// The strict modes of the velocity.
-    pub modes: Vec<Mode>,
-    /// The numbers of the velocity and the impulse of least norm.
-    pub numbers: Numbers,
-    /// The smallest slack; `None` if there is none.
-    pub margin: Option<f64>,
-    /// The least and greatest value of every entry of the impulse; `None` if the impulse is unique.
-    pub range: Option<Vec<[Range; 2]>>,
-    /// The impulse inequalities that are zero for every admissible impulse, by contact.
-    pub at_zero: Vec<(usize, Inequality)>,
-    /// The sign of det B; `None` on a border.
-    pub index: Option<i8>,
+    Outcome(Solution),
+    /// The equations are singular, and the velocities form a set. While it is computed, `F` is the solutions that the
+    /// inequalities admit; their origin is an interior point.
+    Family(F),
 }
 
 /// An inequality as a function on the solutions, scaled free of units.
@@ -141,10 +119,10 @@ impl<'a, T: Ordered> Equations<'a, T> {
         !self.shared.is_empty()
     }
 
-    pub fn solve(&self) -> Result<SingularCase<T>, Unsettled> {
-        let modes = self.modes;
+    pub fn solve(&self) -> Result<Solved<Space<T>>, Unsettled> {
+        let rejection = |because| Rejection::of(self.modes, because);
         let Some(solutions) = self.solutions()? else {
-            return Ok(SingularCase::Rejected(Rejection::of(modes, RejectionReason::NoSolution)));
+            return Ok(Solved::Rejected(rejection(RejectionReason::NoSolution)));
         };
         let space = self.space(solutions, self.shared.len());
         // A velocity that is zero for all solutions belongs to other modes.
@@ -157,25 +135,25 @@ impl<'a, T: Ordered> Equations<'a, T> {
         let cap = T::from_f64(if is_of_others { 0.0 } else { UNBOUNDED });
         let found = widest(&functions, space.solutions.directions.len(), cap);
         let found = found.and_then(|(inside, least)| Ok((inside, least, settled(least)?)));
-        let twin = Rejection::of(modes, RejectionReason::RedundantTwin);
+        let twin = rejection(RejectionReason::RedundantTwin);
         let (inside, least, standing) = match found {
-            Ok((inside, .., Ordering::Less)) => return Ok(SingularCase::Rejected(self.rejected(&space, &inside))),
-            Ok(_) if is_of_others => return Ok(SingularCase::Rejected(twin)),
+            Ok((inside, .., Ordering::Less)) => return Ok(Solved::Rejected(self.rejected(&space, &inside))),
+            Ok(_) if is_of_others => return Ok(Solved::Rejected(twin)),
             // The combination may also violate an inequality.
-            Err(_) if is_of_others => return Ok(SingularCase::Rejected(twin.vague())),
+            Err(_) if is_of_others => return Ok(Solved::Rejected(twin.vague())),
             found => found?,
         };
         if space.is_one_velocity()? {
-            return Ok(SingularCase::Valid(self.outcome(&space, &inside, least)?));
+            return Ok(Solved::Outcome(self.outcome(&space, &inside, least)?));
         }
         let origin = space.solutions.at(&inside);
         if standing.is_gt() {
-            return Ok(SingularCase::Family(self.space(Solutions { origin, ..space.solutions }, self.shared.len())));
+            return Ok(Solved::Family(self.space(Solutions { origin, ..space.solutions }, self.shared.len())));
         }
         let from_inside: Vec<LinearFunction<T>> = functions.iter().map(|each| each.seen_from(&inside)).collect();
         let (equalities, inner) = vanishing(&from_inside)?;
         if equalities.iter().any(|&place| space.inequalities[place].inequality.is_strict()) {
-            return Ok(SingularCase::Rejected(Rejection::of(modes, RejectionReason::RedundantTwin)));
+            return Ok(Solved::Rejected(twin));
         }
         let shifted = Solutions { origin, ..space.solutions };
         let origin = shifted.at(&inner);
@@ -184,9 +162,9 @@ impl<'a, T: Ordered> Equations<'a, T> {
         if space.is_one_velocity()? {
             // The inequalities determine the velocity, which the equations leave free.
             let still = vec![T::zero(); space.solutions.directions.len()];
-            return Ok(SingularCase::Valid(self.outcome(&space, &still, T::zero())?));
+            return Ok(Solved::Outcome(self.outcome(&space, &still, T::zero())?));
         }
-        Ok(SingularCase::Family(space))
+        Ok(Solved::Family(space))
     }
 
     /// Solves the equations of the rows that the modes hold at zero; the directions of shared impulses come first.
@@ -224,10 +202,10 @@ impl<'a, T: Ordered> Equations<'a, T> {
         Ok(Some(Solutions { origin, directions: all }))
     }
 
-    /// The velocities of a family, given by its corners; `None` if there are too many corners. Returns an error if the
-    /// combination is not shown to be a family.
-    pub fn family(&self) -> Result<Option<FamilyVelocities<T>>, Unsettled> {
-        let SingularCase::Family(Space { solutions, velocity: rows, inequalities }) = self.solve()? else {
+    /// The dimension of a family, and the velocities at the corners of its closure, `[c_t, xi_n]` by rows \[m/s\];
+    /// `None` if there are too many corners. Returns an error if the combination is not shown to be a family.
+    pub fn family(&self) -> Result<Option<(usize, Vec<Vec<T>>)>, Unsettled> {
+        let Solved::Family(Space { solutions, velocity: rows, inequalities }) = self.solve()? else {
             return Err(Unsettled);
         };
         // Independent velocity rows are coordinates of the family; the others are linear in them.
@@ -257,11 +235,11 @@ impl<'a, T: Ordered> Equations<'a, T> {
             rows.iter().zip(&factors).map(entry).collect()
         };
         let corners = corners.into_iter().map(velocity).collect::<Result<_, _>>()?;
-        Ok(Some(FamilyVelocities { dimension: coordinates.len(), corners }))
+        Ok(Some((coordinates.len(), corners)))
     }
 
     /// The outcome of the combination with this velocity, `[c_t, xi_n]` by rows.
-    pub fn outcome_at(&self, velocity: &[T]) -> Result<SingularOutcome, Unsettled> {
+    pub fn outcome_at(&self, velocity: &[T]) -> Result<Solution, Unsettled> {
         let Self { problem, generators, .. } = self;
         let equation =
             |row: usize| extended(&generators.velocity_row(problem, row), velocity[row] - problem.free_row(row));
@@ -273,7 +251,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
         let functions: Vec<LinearFunction<T>> = pressing.map(|own| own.function.clone()).collect();
         let (inside, least) = widest(&functions, still.len(), T::from_f64(UNBOUNDED))?;
         let outcome = self.outcome(&space, &inside, least)?;
-        Ok(SingularOutcome { index: None, margin: None, ..outcome })
+        Ok(Solution { index: None, margin: None, ..outcome })
     }
 
     /// The velocities and inequalities on `solutions`, whose first `still` directions change no velocity.
@@ -323,8 +301,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
     fn rejected(&self, space: &Space<T>, y: &[T]) -> Rejection {
         let values = space.inequalities.iter().map(|inequality| (inequality, inequality.function.at(y).to_f64()));
         let least = values.clone().map(|(_, value)| value).fold(f64::INFINITY, f64::min);
-        // At the optimum several inequalities are equally violated up to rounding; the first contact's is named, first
-        // its cone.
+        // At the optimum several are equally violated up to rounding; the first contact's is named, first its cone.
         let order = |own: &Constraint<T>| (own.contact, own.inequality != Inequality::FrictionCone);
         let equals = values.filter(|(_, value)| *value <= least + EQUALLY_BAD * least.abs());
         let worst = equals.min_by_key(|(own, _)| order(own));
@@ -346,7 +323,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
 
     /// The outcome with the only velocity of `space` and its impulses. At `inside` the smallest inequality has the
     /// value `least`, which is not negative.
-    fn outcome(&self, space: &Space<T>, inside: &[T], least: T) -> Result<SingularOutcome, Unsettled> {
+    fn outcome(&self, space: &Space<T>, inside: &[T], least: T) -> Result<Solution, Unsettled> {
         let Self { problem, scale, modes, generators, .. } = self;
         let Space { solutions, velocity, inequalities } = space;
         // The velocities are determined; only impulses still depend on y.
@@ -415,7 +392,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
             ends.map(|end| end.map(T::to_f64))
         };
         let ranges: Option<Vec<Range>> = (!unique).then(|| ranges.iter().zip(&impulse).map(range).collect());
-        Ok(SingularOutcome {
+        Ok(Solution {
             numbers,
             margin: margin.map(T::to_f64),
             range: ranges.map(|ranges| ranges.as_chunks().0.to_vec()),

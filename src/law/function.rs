@@ -24,8 +24,7 @@ pub enum Function<T = f64> {
 }
 
 impl<T: Real> Function<T> {
-    /// Evaluates the function. `number` gives the contact's first (0) or second (1) number, and `scaled` multiplies a
-    /// number by a coefficient of the law.
+    /// Evaluates the function of the contact's first (0) and second (1) `number`; `scaled` multiplies one by mu.
     #[inline]
     pub fn at<N: Real>(self, number: impl Fn(usize) -> N, scaled: impl Fn(T, N) -> N) -> N {
         match self {

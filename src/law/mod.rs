@@ -42,6 +42,17 @@ pub enum Impulse<T = f64> {
     Free,
 }
 
+impl<T> Impulse<T> {
+    /// The number of unknowns.
+    pub(crate) fn unknowns(&self) -> usize {
+        match self {
+            Self::Zero => 0,
+            Self::Along(_) => 1,
+            Self::Free => 2,
+        }
+    }
+}
+
 /// The law of a contact; `T` is the number type of its coefficients.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
@@ -110,14 +121,14 @@ impl<T: Real> Law<T> {
             (_, Mode::Separate) => Impulse::Zero,
             // Minus zero, so that the product with a negative lambda is plus zero.
             (Self::Frictionless, _) => Impulse::Along([T::from_f64(-0.0), T::one()]),
-            // In every closed mode the friction acts against the given direction.
-            (Self::Sliding(friction, mode), _) => match friction {
-                Friction::Finite(mu) => Impulse::Along([T::from_f64(-mode.direction()) * mu, T::one()]),
-                Friction::Infinite => Impulse::Along([T::from_f64(-mode.direction()), T::zero()]),
-            },
-            (_, Mode::Stick) => Impulse::Free,
-            (Self::Coulomb(mu), _) => Impulse::Along([T::from_f64(-mode.direction()) * mu, T::one()]),
-            (Self::Unbounded, _) => Impulse::Along([T::from_f64(-mode.direction()), T::zero()]),
+            (Self::Coulomb(_) | Self::Unbounded, Mode::Stick) => Impulse::Free,
+            // In every closed mode a sliding contact's friction acts against the given direction.
+            (Self::Coulomb(mu), mode) | (Self::Sliding(Friction::Finite(mu), mode), _) => {
+                Impulse::Along([T::from_f64(-mode.direction()) * mu, T::one()])
+            }
+            (Self::Unbounded, mode) | (Self::Sliding(Friction::Infinite, mode), _) => {
+                Impulse::Along([T::from_f64(-mode.direction()), T::zero()])
+            }
         }
     }
 
@@ -130,7 +141,7 @@ impl<T: Real> Law<T> {
             Self::Unbounded => vec![([one, zero], true), ([zero, one], false)],
             Self::Sliding(_, mode) => match self.impulse(mode) {
                 Impulse::Along(ray) => vec![(ray, false)],
-                Impulse::Zero | Impulse::Free => Vec::new(),
+                _ => Vec::new(),
             },
         }
     }
@@ -138,31 +149,21 @@ impl<T: Real> Law<T> {
     /// Calls `visit` with every inequality of a mode; that of its velocity comes last.
     #[inline]
     pub fn conditions(&self, mode: Mode, mut visit: impl FnMut(Inequality, Function<T>)) {
-        let pushed = match (self, mode) {
-            (_, Mode::Separate) => None,
+        match (self, mode) {
+            (_, Mode::Separate) => return visit(Inequality::NormalVelocity, Function::Second),
             (Self::Unbounded, Mode::SlidePlus | Mode::SlideMinus) | (Self::Sliding(Friction::Infinite, _), _) => {
-                Some(Inequality::TangentialImpulse)
+                visit(Inequality::TangentialImpulse, Function::Second);
             }
-            (Self::Frictionless | Self::Coulomb(_) | Self::Unbounded | Self::Sliding(..), _) => {
-                Some(Inequality::NormalImpulse)
+            _ => visit(Inequality::NormalImpulse, Function::Second),
+        }
+        match (self, mode) {
+            (&Self::Coulomb(mu), Mode::Stick) => {
+                visit(Inequality::FrictionCone, Function::ConeMinus(mu));
+                visit(Inequality::FrictionCone, Function::ConePlus(mu));
             }
-        };
-        let moved = match mode {
-            Mode::Separate => Some((Inequality::NormalVelocity, Function::Second)),
-            Mode::SlidePlus | Mode::SlideMinus if matches!(self, Self::Sliding(..)) => None,
-            Mode::SlidePlus => Some((Inequality::TangentialVelocity, Function::First)),
-            Mode::SlideMinus => Some((Inequality::TangentialVelocity, Function::MinusFirst)),
-            Mode::Stick => None,
-        };
-        if let Some(inequality) = pushed {
-            visit(inequality, Function::Second);
-        }
-        if let (&Self::Coulomb(mu), Mode::Stick) = (self, mode) {
-            visit(Inequality::FrictionCone, Function::ConeMinus(mu));
-            visit(Inequality::FrictionCone, Function::ConePlus(mu));
-        }
-        if let Some((inequality, function)) = moved {
-            visit(inequality, function);
+            (Self::Sliding(..), _) | (_, Mode::Stick | Mode::Separate) => {}
+            (_, Mode::SlidePlus) => visit(Inequality::TangentialVelocity, Function::First),
+            (_, Mode::SlideMinus) => visit(Inequality::TangentialVelocity, Function::MinusFirst),
         }
     }
 

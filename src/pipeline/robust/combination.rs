@@ -118,11 +118,7 @@ impl<T: Ordered> UncertainProblem<T> {
             if law.is_unheld(mode) {
                 numerators.push((None, velocity(tangential)));
             }
-            column += match impulse {
-                Impulse::Zero => 0,
-                Impulse::Along(_) => 1,
-                Impulse::Free => 2,
-            };
+            column += impulse.unknowns();
         }
         *determinant = whole;
     }
