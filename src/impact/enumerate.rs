@@ -274,8 +274,7 @@ impl<T: Real> Leaf<'_, T> {
         self.laws[contact].impulse(self.modes[contact])
     }
 
-    /// The two numbers of a contact: `[c_t, xi_n]` if L = 0, `[c_t, lambda]` if L is lambda times a ray, `[L_t, L_n]`
-    /// if L is free.
+    /// The two numbers of a contact: `[c_t, xi_n]` if L = 0, `[c_t, lambda]` if it has a ray, `[L_t, L_n]` if free.
     pub fn numbers(&self, contact: usize) -> Pair<T> {
         self.constants[contact]
     }

@@ -408,9 +408,8 @@ impl Analysis {
 
     /// A note if not all of the requested rejected combinations are listed.
     pub(crate) fn unlisted_note(&self) -> Option<String> {
-        let listed = self.rejected.len();
-        (self.unlisted > 0).then(|| {
-            let others = self.unlisted;
+        let (listed, others) = (self.rejected.len(), self.unlisted);
+        (others > 0).then(|| {
             format!(
                 "{listed} rejected combinations are listed; of {others} others a search shows that nothing leads there"
             )

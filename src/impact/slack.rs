@@ -70,8 +70,7 @@ impl Scale {
             self.speed = bounces.fold(0.0, f64::max);
         }
         if self.speed == 0.0 {
-            // Speeds that underflow in the division do not mean rest; with so tiny a scale, f64 leaves them to other
-            // numbers.
+            // Speeds that underflow in the division do not mean rest; so tiny a scale leaves them to other numbers.
             let at_rest = problem.velocity_free().iter().flatten().all(|&c| c == 0.0);
             self.speed = if at_rest { 1.0 } else { f64::MIN_POSITIVE };
         }

@@ -38,8 +38,7 @@ pub struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    /// Searches all combinations of a problem, or those without sliding contacts if `without_slip`. Combinations that
-    /// the `rejections` list by name survive.
+    /// Searches all combinations, or those `without_slip`. Combinations that the `rejections` list by name survive.
     pub fn of(
         (problem, remembered, shared): (&'a ContactProblem, &Remembered<'_>, &[Option<usize>]),
         scale: &Scale,
@@ -81,7 +80,8 @@ impl<'a> Search<'a> {
                 continue;
             }
             self.modes.push(mode);
-            let is_listed = self.begins_listed();
+            let begins = |own: &Vec<Mode>| own.len() == self.laws.len() && own.starts_with(&self.modes);
+            let is_listed = self.listed.iter().any(begins);
             if !is_listed && self.relaxation.excludes(contact, mode) {
                 self.modes.pop();
                 continue;
@@ -96,10 +96,6 @@ impl<'a> Search<'a> {
             }
             self.modes.pop();
         }
-    }
-
-    fn begins_listed(&self) -> bool {
-        self.listed.iter().any(|own| own.len() == self.laws.len() && own.starts_with(&self.modes))
     }
 }
 

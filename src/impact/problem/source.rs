@@ -84,8 +84,7 @@ impl<S: Source> Ladder for S {
     }
 }
 
-/// A source that computes its problem once in each kind of numbers; in intervals each time, since these end with a
-/// scope.
+/// A source that computes its problem once in each kind of numbers, except in intervals, which end with a scope.
 pub struct Remembered<'a> {
     pub source: &'a dyn Ladder,
     plain: OnceCell<ContactProblem<Ball>>,
@@ -219,21 +218,15 @@ pub trait Attempt {
 }
 
 /// A task together with the source of its problem.
-struct Posed<'a, Q> {
-    source: &'a Remembered<'a>,
-    task: &'a mut Q,
-}
-
-impl<Q: PrecisionTask> Attempt for Posed<'_, Q> {
+impl<Q: PrecisionTask> Attempt for (&Remembered<'_>, &mut Q) {
     fn attempt<T: Rung>(&mut self, precision: Precision) -> bool {
-        self.task.attempt(&T::problem(self.source), precision)
+        self.1.attempt(&T::problem(self.0), precision)
     }
 }
 
-/// Attempts a task in one kind of numbers after the other, beginning with `first`, until nothing is left open or the
-/// budget is spent.
+/// Attempts a task in ever more precise numbers, from `first` on, until nothing is open or the budget is spent.
 pub fn escalate(source: &Remembered<'_>, first: Precision, task: &mut impl PrecisionTask) {
-    climb(first, &mut Posed { source, task });
+    climb(first, &mut (source, task));
 }
 
 /// Does the same as [`escalate`] for any question.

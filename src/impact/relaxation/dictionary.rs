@@ -12,8 +12,7 @@ const PIVOTS: usize = 6;
 /// Rows are padded to a multiple of this length.
 pub const LANES: usize = 4;
 
-/// Basic variables as affine functions of the nonbasic ones. The first 2n variables are velocities, the others
-/// multipliers.
+/// Basic variables as affine functions of the nonbasic ones. The first 2n are velocities, the others multipliers.
 #[derive(Debug, Clone, Default)]
 pub struct Dictionary {
     /// One row per basic variable: its coefficients of the nonbasic variables, padding, and last its value.
@@ -52,8 +51,7 @@ impl Dictionary {
         }
     }
 
-    /// Pivots until all variables are in their ranges. Returns a variable that cannot reach its range; `None` if there
-    /// is none, or if the search gives up.
+    /// Pivots until all variables are in their ranges. Returns one that cannot get there; `None` also if it gives up.
     pub fn impossible(&mut self) -> Option<Lack> {
         let width = self.width;
         for _ in 0..PIVOTS * self.basic.len() {

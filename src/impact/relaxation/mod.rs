@@ -176,8 +176,7 @@ impl Relaxation {
         per_root * (size(&z) + per_root * rest)
     }
 
-    /// Decides the mode of a contact after all contacts before it; returns what is lacking if f64 finds that
-    /// impossible.
+    /// Decides the mode of a contact after all contacts before it; returns what f64 finds lacking.
     pub fn decide(&mut self, contact: usize, mode: Mode) -> Option<Lack> {
         let ranges = self.ranges(contact, mode);
         let (before, after) = self.depths.split_at_mut(contact + 1);
@@ -312,12 +311,17 @@ mod tests {
         ContactProblem::new(delassus, vec![[0.5, -1.0]; 2], vec![friction; 2], vec![0.0; 2]).unwrap()
     }
 
-    /// `None` if f64 does not find these modes impossible; otherwise whether an error bound shows that they are, and
-    /// whether exact numbers do.
-    fn found(problem: &ContactProblem, modes: &[Mode]) -> Option<(bool, bool)> {
+    fn loaded(problem: &ContactProblem) -> Relaxation {
         let (mut relaxation, mut scale) = (Relaxation::default(), Scale::default());
         scale.measure(problem, Errors::NONE);
         relaxation.load(problem, &scale, Errors::NONE);
+        relaxation
+    }
+
+    /// `None` if f64 does not find these modes impossible; otherwise whether an error bound shows that they are, and
+    /// whether exact numbers do.
+    fn found(problem: &ContactProblem, modes: &[Mode]) -> Option<(bool, bool)> {
+        let mut relaxation = loaded(problem);
         let lacks: Vec<Option<Lack>> =
             modes.iter().enumerate().map(|(contact, &mode)| relaxation.decide(contact, mode)).collect();
         let lack = lacks.last().copied().flatten()?;
@@ -349,9 +353,7 @@ mod tests {
     fn what_is_shown_once_excludes_what_lies_within() {
         use Mode::{Separate, SlidePlus, Stick};
         let problem = struck(Friction::Finite(0.3));
-        let (mut relaxation, mut scale) = (Relaxation::default(), Scale::default());
-        scale.measure(&problem, Errors::NONE);
-        relaxation.load(&problem, &scale, Errors::NONE);
+        let mut relaxation = loaded(&problem);
         relaxation.decide(0, SlidePlus);
         let lack = relaxation.decide(1, Separate).expect("the first point alone turns the second into the ground");
         assert!(!relaxation.excludes(1, Separate));
@@ -368,9 +370,7 @@ mod tests {
     fn a_false_claim_is_seen_through() {
         // A claim about one problem is checked in another one, in which the first point may well slide backward.
         let problem = struck(Friction::Finite(0.3));
-        let (mut relaxation, mut scale) = (Relaxation::default(), Scale::default());
-        scale.measure(&problem, Errors::NONE);
-        relaxation.load(&problem, &scale, Errors::NONE);
+        let mut relaxation = loaded(&problem);
         let modes = [Mode::SlideMinus];
         let lack = relaxation.decide(0, modes[0]).expect("it slides the other way");
         let claim = relaxation.claim(&modes, lack);

@@ -95,18 +95,11 @@ impl Ray {
         let own = if self.both { Range::FREE } else { Range::ABOVE };
         match mode.map(|mode| law.impulse(mode)) {
             None | Some(Impulse::Free) => own,
-            Some(Impulse::Zero) => Range::ZERO,
             Some(Impulse::Along([t, n])) if t * self.entries[1] == n * self.entries[0] => {
-                let forward = t * self.entries[0] + n * self.entries[1] > 0.0;
-                if forward {
-                    Range::ABOVE
-                } else if self.both {
-                    Range::BELOW
-                } else {
-                    Range::ZERO
-                }
+                let is_forward = t * self.entries[0] + n * self.entries[1] > 0.0;
+                Range { above_zero: is_forward, below_zero: !is_forward && self.both }
             }
-            Some(Impulse::Along(_)) => Range::ZERO,
+            Some(Impulse::Zero | Impulse::Along(_)) => Range::ZERO,
         }
     }
 }
