@@ -155,13 +155,9 @@ impl<T: Real> Assembly<T> {
         close(&self.plan, &self.loops, Closed::Velocity, velocity, &self.workspace)
     }
 
-    /// Adds the response of the constraints to a `change` of velocity; returns the loops' impulses on their points a.
-    pub fn answer(&self, change: &mut [T]) -> Vec<Vector<T>> {
-        self.answer_to(Closed::Change, change)
-    }
-
-    /// The same as [`Assembly::answer`], for a change of velocity or an acceleration, as `closed` selects.
-    pub fn answer_to(&self, closed: Closed<'_, T>, change: &mut [T]) -> Vec<Vector<T>> {
+    /// Adds the response of the constraints to a `change` of velocity or to an acceleration, as `closed` selects. Returns
+    /// the loops' impulses on their points a.
+    pub fn answer(&self, closed: Closed<'_, T>, change: &mut [T]) -> Vec<Vector<T>> {
         if !self.is_constrained() {
             return Vec::new();
         }

@@ -107,16 +107,13 @@ impl Pipeline<'_> {
             let name = &self.robot.joints[joint].name;
             notes.push(format!("{name} is held: its torque is carried by what holds it, and has no effect"));
         }
-        let asked = self.asked_of_forces(prepared.impact.contacts.len(), chosen);
+        let asked = self.asked(prepared.impact.contacts.len(), chosen);
         let mut analysis = self.analyze_forces(state, &prepared, &unforced, asked);
         let Impact { notes, problem, .. } = &mut *prepared.impact;
         notes.extend(analysis.as_ref().and_then(|own| own.balance_note(problem, || self.robot.mass())));
         notes.extend(analysis.as_ref().and_then(Analysis::unlisted_note));
         let is_none = analysis.as_ref().is_some_and(|own| own.verdict == Verdict::None);
-        let mut shock = match is_none {
-            true => self.shock(state, &prepared, &slips, asked),
-            false => None,
-        };
+        let mut shock = if is_none { self.shock(state, &prepared, &slips, asked) } else { None };
 
         let rest = vec![0.0; unforced.free.len()];
         let velocity = self.assembly.workspace.contact_velocity.as_flattened();
@@ -252,7 +249,7 @@ impl Pipeline<'_> {
         self.take_part(after, &mut prepared, &slips)?;
         let taking: Vec<Ordering> = slips.iter().copied().flatten().collect();
         let unforced = self.pose(after, &mut prepared, &taking, STOPPED)?;
-        let asked = self.asked_of_forces(taking.len(), Some(&[]));
+        let asked = self.asked(taking.len(), Some(&[]));
         let of_impact = |modes: &Vec<Mode>| {
             let mut taking = modes.iter().copied();
             slips.iter().map(|slip| slip.and_then(|_| taking.next())).collect()
@@ -280,8 +277,7 @@ impl Pipeline<'_> {
         velocity.iter_mut().zip(stops).filter(|(_, stops)| *stops).for_each(|(rate, _)| *rate = 0.0);
     }
 
-    /// Puts the problem of accelerations in place of that of velocities. `rounding` is the relative error of the sum of
-    /// a body's rates.
+    /// Puts the problem of accelerations in place of that of velocities. `rounding` is that of a sum of rates.
     fn pose(&mut self, state: &State, prepared: &mut Prepared, slips: &[Ordering], rounding: f64) -> Result<Unforced> {
         let steady = self.steady(prepared, slips, rounding);
         self.refuse_turning_normals(state, prepared, slips, &steady)?;
@@ -292,7 +288,7 @@ impl Pipeline<'_> {
         let driven = self.driven(&prepared.velocity, loads)?;
         let (unclosed, drifts) = self.assembly.acceleration(&prepared.velocity, loads);
         let mut free = unclosed.clone();
-        self.assembly.answer_to(Closed::Acceleration(&drifts), &mut free);
+        self.assembly.answer(Closed::Acceleration(&drifts), &mut free);
         self.refuse_parting(&state.scene.loops, [&prepared.velocity, &unclosed, &free], &drifts, loads)?;
         for &entry in &free {
             finite(entry, || "an acceleration".into()).map_err(|error| {
@@ -337,17 +333,6 @@ impl Pipeline<'_> {
         let whole = stretched.contact_accelerations(&magnitudes(acceleration));
         let Assembly { plan, workspace, .. } = assembly;
         bounds.accelerations(plan, acceleration, workspace, (&terms, loads.scene.springs.len()), &whole)
-    }
-
-    /// The options for an analysis of forces with this number of contacts.
-    fn asked_of_forces<'a>(&self, contacts: usize, chosen: Option<&'a [Vec<Mode>]>) -> AnalysisOptions<'a> {
-        let explain = contacts > 0 && contacts <= self.options.explain_up_to;
-        AnalysisOptions {
-            rejections: chosen.map_or(explain.into(), ListedRejections::Only),
-            prove: !self.options.no_proof,
-            brief: self.options.brief,
-            reductions: self.options.reductions,
-        }
     }
 
     /// Finds every set of forces of the posed problem; `None` if there are more contacts than are enumerated.
@@ -467,8 +452,7 @@ impl Pipeline<'_> {
                     && contact.radius != 0.0
                     && self.assembly.velocity_of(&center, &prepared.velocity) != Vector::zero()
             };
-            // A side that lies flat on a segment has its normal at a ground corner, too, but the normal turns with the
-            // side.
+            // A side that lies flat on a segment has its normal at a ground corner, too, but that turns with the side.
             let turns = slip.is_ne() && !steady[contact.body] && self.is_on_side(contact);
             if turns || surface.is_corner(contact) && (slip.is_ne() || rolls()) {
                 let reason =
@@ -488,8 +472,7 @@ impl Pipeline<'_> {
         contact.offset.is_none() && own.all(is_elsewhere)
     }
 
-    /// Finds every outcome with an impulse of an impact at contacts that neither approach nor leave; `None` if it is
-    /// undecided.
+    /// Finds every outcome with an impulse at contacts that neither approach nor leave; `None` if it is undecided.
     fn shock(
         &mut self,
         state: &State,

@@ -14,8 +14,7 @@ use crate::robot::Robot;
 use crate::scalar::{Ball, Certified, Magnitude, Real};
 use crate::state::NamedLoop;
 
-/// The greatest gap of a loop, as a fraction of the robot's size: recorded poses are rounded, and simulators close
-/// loops by springs.
+/// The greatest gap of a loop, as a fraction of the robot's size: poses are rounded, and simulators have springs.
 const OPEN: f64 = 1e-4;
 /// The greatest fraction of the kinetic energy in a motion that opens the loops: a hundredth of the speed.
 const OPENING: f64 = 1e-4;
@@ -86,10 +85,9 @@ impl Pipeline<'_> {
         let Assembly { plan, loops, kept, workspace, .. } = &self.assembly;
         let rows = independent_rows(plan, loops, kept, &reaches, tolerance, workspace);
         self.assembly.rows = rows.iter().map(|&(row, _)| row).collect();
-        let [shortest, longest] = [
-            reaches.as_flattened().iter().fold(f64::INFINITY, |least, reach| least.min(reach.shortest)),
-            reaches.as_flattened().iter().fold(0.0, |most: f64, reach| most.max(reach.longest)),
-        ];
+        let all = reaches.as_flattened().iter();
+        let shortest = all.clone().map(|reach| reach.shortest).fold(f64::INFINITY, f64::min);
+        let longest = all.map(|reach| reach.longest).fold(0.0, f64::max);
         let doubtful = CERTAIN * (gap + f64::EPSILON * longest) / shortest;
         let all_count = rows.len() == 2 * named.len();
         if rows.iter().any(|&(_, share)| share <= doubtful)
@@ -203,7 +201,7 @@ impl Pipeline<'_> {
             return Ok(());
         }
         let reaches = named.iter().flat_map(|own| self.reaches(own.arms(self.robot)));
-        let shortest = reaches.fold(f64::INFINITY, |least, reach| least.min(reach.shortest));
+        let shortest = reaches.map(|reach| reach.shortest).fold(f64::INFINITY, f64::min);
         let Self { robot, assembly: Assembly { plan, loops, workspace, rows, .. }, stretched, bounds, .. } = self;
         let gap = loops.iter().fold(0.0, |most: f64, own| most.max(own.gap(plan, workspace).length()));
         // Magnitudes of the terms of the accelerations.

@@ -359,11 +359,9 @@ impl<'r> Pipeline<'r> {
         let RoundingBounds { delassus, velocity: of_velocity, likely, .. } = &self.bounds;
         let errors = Errors { delassus: *delassus, velocity: Some(of_velocity), likely: *likely };
         let source = prepared.exact(self.robot, state, &self.assembly, errors);
-        let explain = contacts.len() <= self.options.explain_up_to && !contacts.is_empty();
-        let Options { no_proof, reductions, brief, .. } = self.options;
-        let next = self.options.next && chosen.is_none();
-        let rejections = chosen.map_or(explain.into(), ListedRejections::Only);
-        let asked = AnalysisOptions { rejections, prove: !no_proof, brief, reductions };
+        let Options { brief, next, .. } = self.options;
+        let next = next && chosen.is_none();
+        let asked = self.asked(contacts.len(), chosen);
         // The only error of `analyze` is that there are too many contacts.
         let mut analysis = self.scratch.analyze(problem, &source, asked).ok();
         let slides = |analysis: &Analysis| {
@@ -397,6 +395,15 @@ impl<'r> Pipeline<'r> {
         impact.slides_regardless = slides_regardless;
         (impact.left_out, impact.matrices) = (left_out, matrices);
         Ok(Answer { impact, prepared, rows: self.assembly.rows.clone() })
+    }
+
+    /// The options for an analysis with this number of contacts. If modes are `chosen`, only the rejected combinations
+    /// with these modes are listed.
+    fn asked<'a>(&self, contacts: usize, chosen: Option<&'a [Vec<Mode>]>) -> AnalysisOptions<'a> {
+        let Options { explain_up_to, no_proof, brief, reductions, .. } = self.options;
+        let explain = contacts > 0 && contacts <= explain_up_to;
+        let rejections = chosen.map_or(explain.into(), ListedRejections::Only);
+        AnalysisOptions { rejections, prove: !no_proof, brief, reductions }
     }
 
     /// Returns the impact, and keeps the memory of the prepared state for the next one.

@@ -34,10 +34,9 @@ impl Pipeline<'_> {
         let given = given.chain(scene.restitution.links.keys().map(|link| ("restitution", *link)));
         let uncertain = uncertainty.iter().flat_map(|uncertainty| uncertainty.friction.links.keys());
         let given = given.chain(uncertain.map(|link| ("uncertainty of friction", *link)));
-        given.filter(|(_, link)| !has_foot(*link)).for_each(|(what, link)| {
-            let name = &self.robot.links[link].name;
-            notes.push(format!("{what} is given to {name}, which has no foot: it has no effect"));
-        });
+        notes.extend(given.filter(|(_, link)| !has_foot(*link)).map(|(what, link)| {
+            format!("{what} is given to {}, which has no foot: it has no effect", self.robot.links[link].name)
+        }));
     }
 
     /// Notes oddities of the contacts, of the feet that nearly touch (`nearest` and `near`), and of the ground.
@@ -75,21 +74,21 @@ impl Pipeline<'_> {
             |a: &Contact, b: &Contact| a.body != b.body && (a.point - b.point).length() <= THIN * self.feet.size();
         let mut pairs = contacts.iter().enumerate().flat_map(|(at, a)| contacts[..at].iter().map(move |b| (b, a)));
         let (a, b) = pairs.find(|(a, b)| is_near(a, b))?;
-        let names = format!("{} and {}", a.name, b.name);
         Some(format!(
-            "{names} are at the same place except for the last digits of the robot or its pose; the outcome depends on those \
-             digits"
+            "{} and {} are at the same place except for the last digits of the robot or its pose; the outcome depends \
+             on those digits",
+            a.name, b.name
         ))
     }
 
     /// Notes that the robot's center of mass is below all contacts, as it is if the robot is upside down.
     fn upside_down(&self, contacts: &[Contact], placement: &Placement) -> Option<String> {
         let bodies = self.assembly.plan.bodies.iter().enumerate();
-        let sum = bodies.fold((0.0, Vector::zero()), |(mass, moment), (body, PlanBody { inertia, .. })| {
+        let start = (0.0, Vector::zero());
+        let (mass, moment) = bodies.fold(start, |(mass, moment), (body, PlanBody { inertia, .. })| {
             let own = placement.world(body, Vector::zero()) * inertia.mass + placement.turned(body, inertia.first);
             (mass + inertia.mass, moment + own)
         });
-        let (mass, moment) = sum;
         let center = moment * (1.0 / mass);
         let above = |contact: &Contact| contact.normal().dot(contact.point - center);
         let depth = contacts.iter().map(above).reduce(f64::min).filter(|&depth| depth > 0.0 && mass > 0.0)?;
@@ -99,7 +98,7 @@ impl Pipeline<'_> {
     /// Notes that a link reaches this depth \[m\] below the named contacts of its body.
     fn inside(&self, (link, depth): (usize, f64)) -> Option<String> {
         let name = &self.robot.links[link].name;
-        (depth > NEAR_MISS * self.feet.size()).then(|| {
+        (depth > self.near_miss()).then(|| {
             format!(
                 "{name} reaches {} m below the contact that is named on its body: is a radius or another contact missing?",
                 rounded(depth)
@@ -129,7 +128,7 @@ impl Pipeline<'_> {
     /// Notes that a foot is deep in the ground while other contacts are named.
     fn sunk_besides(&self, NearestFoot { link, height, .. }: NearestFoot) -> Option<String> {
         let name = &self.robot.links[link].name;
-        (height < -NEAR_MISS * self.feet.size()).then(|| {
+        (height < -self.near_miss()).then(|| {
             format!(
                 "{name} is {} m deep in the ground, and is not among the contacts: it takes no part",
                 rounded(-height)
@@ -181,19 +180,19 @@ impl Pipeline<'_> {
             notes.push(format!("{why}: name contact points by `contacts` in the state or by `feet`"));
             return;
         };
-        let NearestFoot { link, height, velocity } = foot;
-        let (name, moving) = (&self.robot.links[link].name, along_normal(velocity));
-        let shown = rounded(height);
         let by_base = if self.assembly.plan.floating { "`place: lowest`" } else { "its joints" };
         let remedy = match is_near(&foot) {
             true => format!(
                 "to let it touch, put it there by {by_base}, or by the option `contact_tolerance: {:.1e}`",
-                enough(height)
+                enough(foot.height)
             ),
             false => format!("put it there by {by_base}"),
         };
         notes.push(format!(
-            "nothing touches the ground: the lowest foot, {name}, is {shown} m above it and {moving}; {remedy}"
+            "nothing touches the ground: the lowest foot, {}, is {} m above it and {}; {remedy}",
+            self.robot.links[foot.link].name,
+            rounded(foot.height),
+            along_normal(foot.velocity)
         ));
     }
 }

@@ -12,10 +12,11 @@ use super::still::Still;
 use super::{CONTACT_TOLERANCE, Impact, Pipeline};
 use crate::contact::{Contact, Footing, Level, Merged, Placement, RigidParts, Surface, level};
 use crate::dynamics::plan::Plan;
-use crate::dynamics::{Arm, Constraints, RoundingBounds, Workspace, has_balance, kinetic_energy, mass_diagonal};
+use crate::dynamics::{
+    Arm, Closed, Constraints, RoundingBounds, Workspace, has_balance, kinetic_energy, mass_diagonal,
+};
 use crate::error::{Error, Reason, Result, finite};
-use crate::impact::check_matrix_size;
-use crate::impact::{ContactProblem, Errors};
+use crate::impact::{ContactProblem, Errors, check_matrix_size};
 use crate::planar::{Pair, Vector};
 use crate::robot::Robot;
 use crate::scalar::Residue;
@@ -170,7 +171,7 @@ impl Pipeline<'_> {
         applied.resize(self.robot.dofs(), 0.0);
         self.assembly.apply(self.robot, scene, applied);
         change.clone_from(applied);
-        self.assembly.answer(change);
+        self.assembly.answer(Closed::Change, change);
         free.clear();
         free.extend(velocity.iter().zip(&*change).map(|(before, change)| before + change));
         self.problem(scene, contacts, change, problem)?;
@@ -180,12 +181,12 @@ impl Pipeline<'_> {
 
     /// Refuses a joint outside its limits, if the options are strict.
     fn check_limits(&self, state: &State) -> Result<()> {
-        match state.outside_limits(self.robot).next().filter(|_| self.options.strict_limits) {
-            None => Ok(()),
-            Some(outside) => Err(Error::new(Reason::Inconsistent(outside.to_string()))
+        let outside = state.outside_limits(self.robot).next().filter(|_| self.options.strict_limits);
+        outside.map_or(Ok(()), |outside| {
+            Err(Error::new(Reason::Inconsistent(outside.to_string()))
                 .at(format!("position.joints.{}", outside.joint.name))
-                .hint("correct the state or the limits of the robot's file, or do without `strict_limits`")),
-        }
+                .hint("correct the state or the limits of the robot's file, or do without `strict_limits`"))
+        })
     }
 
     /// Compiles the plan, unless the last one was for the same braked joints and rotor inertias.
@@ -269,11 +270,9 @@ impl Pipeline<'_> {
         let Assembly { plan, workspace, motions, .. } = &mut self.assembly;
         let energy = kinetic_energy(plan, velocity, workspace, motions);
         finite(energy, || "the kinetic energy".into()).map_err(|error| {
-            let greatest = given.iter().enumerate().max_by(|(_, a), (_, b)| a.abs().total_cmp(&b.abs()));
-            greatest
-                .map(|(at, _)| coordinate_place(self.robot, "velocity", at))
-                .into_iter()
-                .fold(too_large(error), Error::at)
+            let greatest = (0..given.len()).max_by(|&a, &b| given[a].abs().total_cmp(&given[b].abs()));
+            let place = greatest.map(|at| coordinate_place(self.robot, "velocity", at));
+            place.into_iter().fold(too_large(error), Error::at)
         })
     }
 
@@ -317,8 +316,7 @@ impl Pipeline<'_> {
         Footing { robot: self.robot, feet: &self.feet, scene, placement, surface }
     }
 
-    /// Returns the closed contacts, the contacts for which others act, and the number of shapes out of reach. `memory`
-    /// is reused.
+    /// Returns the closed contacts, those for which others act, and the number of shapes out of reach; reuses `memory`.
     fn contacts(
         &self,
         footing: &Footing,

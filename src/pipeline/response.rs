@@ -92,7 +92,7 @@ impl Pipeline<'_> {
         }
         let mut loops = Vec::new();
         if constrained {
-            loops = self.assembly.answer_to(closed, &mut after);
+            loops = self.assembly.answer(closed, &mut after);
             after.iter_mut().zip(before).for_each(|(after, before)| *after += before);
         }
         self.name(outcome, after, loops);

@@ -73,35 +73,36 @@ impl Pipeline<'_> {
             }
             // With an uncertainty, no speed is taken as zero unless the option asks for it.
             let is_strict = state.uncertainty.is_some() && self.options.resting_speed.is_none();
-            let contact = (index, contact);
-            let because = if is_strict { None } else { self.rests(state, velocity, [slow, bound], contact, foot) };
-            let name = &contact.1.name;
+            let rests = || self.rests(state, velocity, [slow, bound], (index, contact), foot);
+            let because = if is_strict { None } else { rests() };
+            resting[index] = because.is_some();
+            if self.options.brief {
+                continue;
+            }
+            let name = &contact.name;
             if let Some(because) = because {
-                resting[index] = true;
                 // A bound this small only covers underflow. Resting contacts on the foot of the stance need no note.
-                let is_of_foot = self.assembly.loops.is_empty() && foot.is_some_and(|foot| foot.body == contact.1.body);
+                let is_of_foot = self.assembly.loops.is_empty() && foot.is_some_and(|foot| foot.body == contact.body);
                 let is_blurred = bound > f64::MIN_POSITIVE.sqrt() && self.options.resting_speed.is_none();
-                if !self.options.brief && (slow > 0.0 || is_blurred && !is_of_foot) {
+                if slow > 0.0 || is_blurred && !is_of_foot {
                     let moves =
                         if slow > 0.0 { format!(" although it moves at {slow:.1e} m/s") } else { String::new() };
                     notes.push(format!("{name}{AT_REST}{moves} ({because})"));
                 }
-            } else if !self.options.brief && bound > 0.0 && slow <= bound {
+            } else if bound > 0.0 && slow <= bound {
                 notes.push(format!(
                     "{name} moves at {slow:.1e} m/s, which is within the rounding of its velocity: if it is at rest, \
                      say so by `stance` or the option `resting_speed`"
                 ));
-            } else if !self.options.brief
-                && own[1].abs() <= bounds[1]
-                && (own[1] != 0.0 || bounds[1] > 0.0 && self.is_rounded_to_zero(state, contact.1, foot))
+            } else if own[1].abs() <= bounds[1]
+                && (own[1] != 0.0 || bounds[1] > 0.0 && self.is_rounded_to_zero(state, contact, foot))
             {
                 notes.push(format!(
                     "{name} slides, and moves at {} m/s along the normal, which is within the rounding of its velocity, so \
                      rounding decides whether it strikes",
                     rounded(own[1] + 0.0)
                 ));
-            } else if !self.options.brief
-                && self.options.resting_speed.is_none()
+            } else if self.options.resting_speed.is_none()
                 && slow > 0.0
                 && slow <= SUSPICIOUS * self.bounds.terms(index)
             {
@@ -183,8 +184,7 @@ impl Pipeline<'_> {
         bounds.iter_mut().zip(&still.contacts).filter(|(_, still)| **still).for_each(|(bound, _)| *bound = [0.0; 2]);
     }
 
-    /// Returns why a contact with the speed `slow` (or one component of it), rounded by up to `bound`, is taken as
-    /// resting; `None` if it moves.
+    /// Returns why a contact with the speed (or component) `slow`, known to `bound`, is taken as resting, if it is.
     fn rests(
         &self,
         state: &State,
@@ -199,10 +199,9 @@ impl Pipeline<'_> {
             None if bound == 0.0 && self.assembly.loops.is_empty() => None,
             None if slow <= bound => Some(Because::Rounding(bound)),
             None if slow > CANCELED * self.bounds.terms(index) => None,
-            None => {
-                let limit = bound + self.digits(state, velocity, contact, foot);
-                (slow <= limit).then_some(Because::Digits(limit))
-            }
+            None => Some(bound + self.digits(state, velocity, contact, foot))
+                .filter(|limit| slow <= *limit)
+                .map(Because::Digits),
         }
     }
 
@@ -221,15 +220,13 @@ impl Pipeline<'_> {
             let (own, bounds) = (self.assembly.workspace.contact_velocity[index], self.bounds.velocity[index]);
             for (row, along) in [(1, "along the normal"), (0, "along the ground")] {
                 let slow = own[row].abs();
-                if slow == 0.0 {
-                    continue;
+                if slow != 0.0
+                    && let Some(because) = self.rests(state, velocity, [slow, bounds[row]], (index, contact), foot)
+                {
+                    self.assembly.workspace.contact_velocity[index][row] = 0.0;
+                    let name = &contact.name;
+                    notes.push(format!("{name} moves at {slow:.1e} m/s {along}, which is taken as zero ({because})"));
                 }
-                let Some(because) = self.rests(state, velocity, [slow, bounds[row]], (index, contact), foot) else {
-                    continue;
-                };
-                self.assembly.workspace.contact_velocity[index][row] = 0.0;
-                let name = &contact.name;
-                notes.push(format!("{name} moves at {slow:.1e} m/s {along}, which is taken as zero ({because})"));
             }
             let [tangential, normal] = self.assembly.workspace.contact_velocity[index];
             if normal < 0.0 {
@@ -320,8 +317,7 @@ fn is_single(number: f64) -> bool {
     f64::from(number as f32) == number
 }
 
-/// The number of significant digits in the shortest decimal of the number's precision, and the power of ten of its last
-/// digit.
+/// The number of digits in the shortest decimal of the number's precision, and the power of ten of the last one.
 fn last_place(number: f64) -> (usize, i32) {
     let mut buffer = zmij::Buffer::new();
     let text = if is_single(number) { buffer.format(number as f32) } else { buffer.format(number) };

@@ -54,8 +54,9 @@ impl KeptContacts<'_, '_> {
         let [own, given] = [&answer, self.answer];
         let same_foot = match (&own.prepared.foot, &given.prepared.foot) {
             (Some(one), Some(other)) => {
-                let far = one.center - other.center;
-                (one.body, one.radius) == (other.body, other.radius) && far.dot(far) <= self.place_rounding()
+                // Naming a foot moves it by rounding.
+                let (far, rounding) = (one.center - other.center, 1e-12 * self.pipeline.feet.size());
+                (one.body, one.radius) == (other.body, other.radius) && far.dot(far) <= rounding.powi(2)
             }
             (one, other) => one.is_none() == other.is_none(),
         };
@@ -66,11 +67,6 @@ impl KeptContacts<'_, '_> {
         let same = same_foot && same_axes && same_rests && own.rows == given.rows;
         let impact = self.pipeline.finished(answer);
         same.then_some((state, impact.analysis?))
-    }
-
-    /// Square of the distance between a named foot and the same foot when it was detected \[m^2\], at most.
-    fn place_rounding(&self) -> f64 {
-        (1e-12 * self.pipeline.feet.size()).powi(2)
     }
 
     /// Returns the state at a point if its proven outcomes are not the `expected` ones (lists of modes, sorted).

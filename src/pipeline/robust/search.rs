@@ -58,8 +58,7 @@ impl Pipeline<'_> {
     }
 }
 
-/// Looks for a state of the box whose outcomes are not `expected` (lists of modes, sorted), until all boxes are
-/// decided.
+/// Looks for a state whose outcomes are not `expected` (lists of modes, sorted), until all boxes are decided.
 fn search<const N: usize>(kept: &mut KeptContacts<'_, '_>, whole: StateBox, expected: &[Vec<Mode>]) -> Robustness {
     let mut boxes = vec![(whole, kept.combinations())];
     let mut search: BoxSearch<'_, '_, '_, N> =
@@ -100,8 +99,7 @@ struct BoxSearch<'a, 'k, 'r, const N: usize> {
 }
 
 impl<const N: usize> BoxSearch<'_, '_, '_, N> {
-    /// Returns the undecided combinations of a box, and the quantity to halve; `None` if no quantity is known to
-    /// matter.
+    /// Returns the undecided combinations of a box, and the quantity to halve, if one is known to matter.
     fn examine(&mut self, own: &StateBox, mut open: Vec<Vec<Mode>>) -> (Vec<Vec<Mode>>, Option<usize>) {
         let problem = self.kept.problem::<N>(own);
         let mut influence = vec![0.0; own.ends.len()];

@@ -26,8 +26,7 @@ pub(crate) struct StateBox {
     pub quantities: Vec<Quantity>,
     /// The least and greatest value of each quantity.
     pub ends: Vec<[f64; 2]>,
-    /// The outermost f64 that lie within the whole box. Half-widths are exact, and `ends` are rounded outward to cover
-    /// them.
+    /// The outermost f64 within the whole box. Half-widths are exact, and `ends` are rounded outward to cover them.
     inner: Vec<[f64; 2]>,
 }
 
@@ -128,10 +127,8 @@ impl StateBox {
 
     /// Returns the quantity as a number; `certain` is its value if it is certain.
     pub fn number<const N: usize>(&self, quantity: Quantity, certain: f64) -> Affine<N> {
-        match self.find(quantity) {
-            Some((index, middle, radius)) => Affine::varying(middle, radius, index),
-            None => Affine::from_f64(certain),
-        }
+        let uncertain = self.find(quantity).map(|(index, middle, radius)| Affine::varying(middle, radius, index));
+        uncertain.unwrap_or_else(|| Affine::from_f64(certain))
     }
 
     /// Returns the rotations and displacements of all positions in the box, as motions from its middle.
