@@ -218,8 +218,7 @@ fn through_joint<T: Real>(
             let y = driven(sign * force.moment);
             let rate = y / workspace.pivots[column];
             visit(column, y, rate);
-            // Equals n - A_nn y / D without its cancellation: without a rotor, only the joint's own torque is
-            // transmitted.
+            // Equals n - A_nn y / D without its cancellation: without a rotor, only the joint's torque is transmitted.
             let passed = rotor * rate;
             force.moment = sign * tau.map_or(passed, |tau| passed - tau);
             force.linear = force.linear - own.coupling * (sign * rate);

@@ -186,8 +186,7 @@ impl Balance {
         sum
     }
 
-    /// Returns the distance of the motion from u divided by `own`, the length of u, and the same without the roundings
-    /// of this computation.
+    /// Returns the distance of the motion from u divided by `own`, the length of u, with and without its own rounding.
     fn imbalance(
         &mut self,
         plan: &Plan,

@@ -96,8 +96,7 @@ impl RoundingBounds {
         self.roundings = ENTRY * terms as f64;
     }
 
-    /// Bounds c = J v. With a `stance`, that foot determines the base velocity. Contacts for which `rests` is true are
-    /// exactly at rest.
+    /// Bounds c = J v. With a `stance`, that foot determines the base velocity. Contacts that `rests` picks are still.
     pub fn velocities(&mut self, plan: &Plan, velocity: &[f64], stance: Option<Arm>, rests: impl Fn(usize) -> bool) {
         let roundings = self.roundings;
         let eta = roundings * UNIT_ROUNDOFF;

@@ -32,8 +32,7 @@ pub fn delassus<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
     workspace.branch = branch;
 }
 
-/// Computes G = Y^T D^-1 Y of n contacts from Y and D^-1 Y. `shared` returns the columns in which both contacts have
-/// entries.
+/// Computes G = Y^T D^-1 Y of n contacts from Y and D^-1 Y. `shared` returns the columns in which both have entries.
 pub(super) fn from_half<T: Real, I: Iterator<Item = usize>>(
     contacts: usize,
     workspace: &mut Workspace<T>,

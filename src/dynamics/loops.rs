@@ -72,15 +72,10 @@ impl<T: Real> Loop<T> {
         a - b
     }
 
-    /// Returns the velocities of a and b, including the rates of braked joints \[m/s\].
-    pub fn velocities(&self, plan: &Plan<T>, velocity: &[T], workspace: &Workspace<T>) -> [Vector<T>; 2] {
-        let arms = self.arms(workspace);
-        [0, 1].map(|end| point_velocity(plan, self.bodies[end], arms[end], velocity, workspace))
-    }
-
-    /// Returns the velocity of a relative to b, which is K v \[m/s\].
+    /// Returns the velocity of a relative to b, which is K v, including the rates of braked joints \[m/s\].
     pub fn opening(&self, plan: &Plan<T>, velocity: &[T], workspace: &Workspace<T>) -> Vector<T> {
-        let [a, b] = self.velocities(plan, velocity, workspace);
+        let arms = self.arms(workspace);
+        let [a, b] = [0, 1].map(|end| point_velocity(plan, self.bodies[end], arms[end], velocity, workspace));
         a - b
     }
 
@@ -153,8 +148,7 @@ pub fn independent_rows(
     }
 }
 
-/// Returns whether the loops are closed exactly, and all rows of K that are not in `constraints` depend exactly on
-/// those.
+/// Returns whether the loops are closed exactly, and all rows of K not in `constraints` depend exactly on those.
 pub fn follow_exactly<T: Ordered>(
     plan: &Plan<T>,
     loops: &[Loop<T>],

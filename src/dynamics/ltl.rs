@@ -49,8 +49,7 @@ impl<T: Real> LtlFactor<T> {
         y.iter().enumerate().map(|(i, &entry)| entry / self.pivot(i))
     }
 
-    /// Replaces N vectors y by L^-T y. They are zero outside of `columns`, which lists each column before its
-    /// ancestors.
+    /// Replaces N vectors y by L^-T y. They are zero outside of `columns`, each of which comes before its ancestors.
     pub fn half_solve<const N: usize>(&self, plan: &Plan<T>, columns: impl Iterator<Item = usize>, y: &mut [[T; N]]) {
         for i in columns {
             let (above, rest) = y.split_at_mut(i);

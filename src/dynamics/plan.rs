@@ -73,8 +73,7 @@ pub(crate) struct PlanBody<T> {
     pub rotor: T,
 }
 
-/// A joint's motion. `rate` is the motion for a unit rate of its coordinate, which includes the multiplier of a mimic
-/// joint.
+/// A joint's motion. `rate` is the motion for a unit rate of its coordinate, times the multiplier of a mimic joint.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum JointMotion<T> {
     Root,
@@ -123,8 +122,7 @@ impl<T: Trigonometry> Configuration<T> {
 }
 
 impl MimicRatio {
-    /// Returns the rotation by exactly multiplier * `angle` + offset, composed of rotations by f64 angles with this
-    /// sum.
+    /// Returns the rotation by exactly multiplier * `angle` + offset, composed of rotations by f64 angles.
     ///
     /// The rounding error of the product is neglected if it lies below the range of f64 (|multiplier angle| < 1e-290).
     fn turn<T: Trigonometry>(self, angle: f64) -> Rotation<T> {
@@ -262,8 +260,7 @@ impl<T: Real> Plan<T> {
     }
 
     /// Adds `column`, that of a new body, to the columns between its `parent` and the root, so that all of them lie on
-    /// one branch of the elimination tree. The other columns already do; `greatest` is the greatest of them. Returns
-    /// the greatest of all.
+    /// one branch of the elimination tree. The others already do; `greatest` is their greatest. Returns the new one.
     fn join_branch(&mut self, column: usize, parent: usize, greatest: Option<usize>) -> Option<usize> {
         match greatest {
             // The columns before the greatest are its ancestors already, as x and z are ancestors of pitch.

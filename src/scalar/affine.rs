@@ -38,15 +38,9 @@ impl<const N: usize> Affine<N> {
     /// A number at most `radius` from `center`, whose offset is the cause number `symbol`. Causes from number N on are
     /// not tracked: their effects go into the error and do not cancel.
     pub fn varying(center: f64, radius: f64, symbol: usize) -> Self {
-        let mut slopes = [0.0; N];
-        let own = match slopes.get_mut(symbol) {
-            Some(slope) => {
-                *slope = radius;
-                0.0
-            }
-            None => radius,
-        };
-        if center.is_finite() && radius.is_finite() { Self { center, slopes, error: own } } else { Self::unknown() }
+        let slopes = std::array::from_fn(|own| if own == symbol { radius } else { 0.0 });
+        let error = if symbol < N { 0.0 } else { radius };
+        if center.is_finite() && radius.is_finite() { Self { center, slopes, error } } else { Self::unknown() }
     }
 
     /// The cosine and sine of this angle \[rad\]; the enclosures are narrow for angles near zero.

@@ -215,13 +215,10 @@ impl Residue {
 
     /// Whether the number is zero: proven if false, nearly certain if true; `None` after a division by zero.
     pub fn is_zero(self) -> Option<bool> {
-        let [first, second] = self.0;
-        if first == 0 && second == 0 {
-            Some(true)
-        } else if (first != 0 && first != NONE) || (second != 0 && second != NONE) {
-            Some(false)
-        } else {
-            None
+        match self.0 {
+            [0, 0] => Some(true),
+            [0 | NONE, 0 | NONE] => None,
+            _ => Some(false),
         }
     }
 }
@@ -239,8 +236,7 @@ impl Real for Residue {
 }
 
 impl Trigonometry for Residue {
-    /// The coordinates of an angle's point. The map from f64 angles to the circle is a homomorphism, which preserves
-    /// all relations between angles.
+    /// The coordinates of an angle's point. The map to the circle is a homomorphism: it preserves relations of angles.
     fn cos_sin(angle: f64) -> [Self; 2] {
         if !angle.is_finite() {
             return [Self::UNDEFINED; 2];
