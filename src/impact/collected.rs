@@ -253,20 +253,14 @@ impl<'a> Collected<'a> {
     pub fn finish(mut self) -> Findings {
         let found = &mut self.found;
         found.effort.bound = found.visited - found.effort.ball - found.effort.double_double - found.effort.precise;
-        if !self.families.is_empty() {
-            let numbers = &self.memory.numbers;
-            let mut order: Vec<usize> = (0..numbers.len()).collect();
-            order.sort_by_key(|&found| numbers[found]);
-            let mut places = vec![0; order.len()];
-            for (place, found) in order.into_iter().enumerate() {
-                places[found] = place;
-            }
-            for (_, family) in &mut self.families {
-                family.corners.iter_mut().for_each(|corner| *corner = places[*corner]);
-                family.corners.sort_unstable();
-            }
-            self.families.sort_by_key(|(number, _)| *number);
+        let numbered = |found: usize| (self.memory.numbers[found], found);
+        let place =
+            |found: usize| (0..self.memory.numbers.len()).filter(|&own| numbered(own) < numbered(found)).count();
+        for (_, family) in &mut self.families {
+            family.corners.iter_mut().for_each(|corner| *corner = place(*corner));
+            family.corners.sort_unstable();
         }
+        self.families.sort_by_key(|(number, _)| *number);
         let mut outcomes = take(&mut self.memory.outcomes);
         if !self.memory.numbers.is_sorted() {
             let mut numbered: Vec<_> = self.memory.numbers.iter().zip(outcomes.drain(..)).collect();

@@ -71,11 +71,6 @@ impl<T: Real> LinearFunction<T> {
         let coefficients = self.coefficients.iter().zip(&other.coefficients).map(|(&own, &other)| entry(own, other));
         Self { constant: entry(self.constant, other.constant), coefficients: coefficients.collect() }
     }
-
-    /// The function with another `constant` and one more entry of y, which has this `coefficient`.
-    pub fn extended(&self, constant: T, coefficient: T) -> Self {
-        Self { constant, coefficients: extended(&self.coefficients, coefficient) }
-    }
 }
 
 /// The list with one more entry.
@@ -101,7 +96,8 @@ impl<T: Real> Solutions<T> {
         self.moved(self.origin.clone(), y)
     }
 
-    fn moved(&self, mut x: Vec<T>, y: &[T]) -> Vec<T> {
+    /// `x` moved along the directions by y.
+    pub fn moved(&self, mut x: Vec<T>, y: &[T]) -> Vec<T> {
         for (direction, &factor) in self.directions.iter().zip(y) {
             for (entry, &part) in x.iter_mut().zip(direction) {
                 *entry = *entry + factor * part;

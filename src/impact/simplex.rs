@@ -84,9 +84,12 @@ impl<T: Ordered> Block<T> {
             return Ok((still, least));
         }
         // The unknowns are y and s, the rise above `least`. At y = 0, s = 0 no function is negative.
-        let shifted = self.functions.iter().map(|function| function.extended(function.constant - least, -one));
-        let top = LinearFunction { constant: cap - least, coefficients: extended(&still, -one) };
-        let program: Vec<LinearFunction<T>> = shifted.chain([top]).collect();
+        let top = LinearFunction { constant: cap, coefficients: still.clone() };
+        let shifted = |own: &LinearFunction<T>| LinearFunction {
+            constant: own.constant - least,
+            coefficients: extended(&own.coefficients, -one),
+        };
+        let program: Vec<LinearFunction<T>> = self.functions.iter().chain([&top]).map(shifted).collect();
         // The cap bounds the program.
         let mut y = maximize_block(&program, &extended(&still, one))?.ok_or(Unsettled)?;
         let rise = y.pop().ok_or(Unsettled)?;

@@ -219,8 +219,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
             if let Some(dependent) = solve(coordinates.len(), equations)? {
                 factors.push(dependent.origin);
             } else {
-                let own = std::iter::repeat_n(T::zero(), coordinates.len()).chain([T::one()]).collect();
-                factors.push(own);
+                factors.push(extended(&vec![T::zero(); coordinates.len()], T::one()));
                 coordinates.push(row.clone());
             }
         }
@@ -373,8 +372,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
         } else if self.is_free(space)? {
             vec![T::zero(); from.len()]
         } else {
-            let y = least_impulse(&from, &directions, &shifted)?;
-            generators.impulse(&Solutions { origin: at, directions: solutions.directions.clone() }.at(&y))
+            generators.impulse(&solutions.moved(at, &least_impulse(&from, &directions, &shifted)?))
         };
         // A margin at the cap means that the impulses are unbounded.
         let bounded = settled(least - T::from_f64(UNBOUNDED))?.is_lt();
