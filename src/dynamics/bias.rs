@@ -28,6 +28,8 @@ pub fn demands<T: Real>(plan: &Plan<T>, velocity: &[T], gravity: T, steady: &[bo
     spin.clear();
     squared_spin.clear();
     drift.clear();
+    demand.clear();
+    let weight = Vector { x: T::zero(), z: gravity };
     let turns = |index: usize| steady.get(index) != Some(&true);
     for (index, body) in plan.bodies.iter().enumerate() {
         let (turn, origin) = match body.parent {
@@ -45,22 +47,14 @@ pub fn demands<T: Real>(plan: &Plan<T>, velocity: &[T], gravity: T, steady: &[bo
                 }
             }
         };
+        let squared = if turns(index) { turn * turn } else { T::zero() };
         spin.push(turn);
-        squared_spin.push(if turns(index) { turn * turn } else { T::zero() });
+        squared_spin.push(squared);
         drift.push(origin);
+        let (first, lifted) = (rotation[index].apply(body.inertia.first), origin + weight);
+        let linear = lifted * body.inertia.mass - first * squared;
+        demand.push(Wrench { linear, moment: first.perpendicular().dot(lifted) });
     }
-
-    let weight = Vector { x: T::zero(), z: gravity };
-    demand.clear();
-    demand.extend(plan.bodies.iter().zip(&*rotation).zip(squared_spin.iter().zip(&*drift)).map(
-        |((body, turn), (&squared_spin, &drift))| {
-            let (first, lifted) = (turn.apply(body.inertia.first), drift + weight);
-            Wrench {
-                linear: lifted * body.inertia.mass - first * squared_spin,
-                moment: first.perpendicular().dot(lifted),
-            }
-        },
-    ));
 }
 
 /// Computes b (nv, columns of the plan; N, N m). It calls [`demands`] with the same arguments.

@@ -242,8 +242,7 @@ impl<T: Real> Plan<T> {
     fn turn<N: Trigonometry>(&self, body: &PlanBody<T>, position: &[f64]) -> Option<Rotation<N>> {
         let turns = match body.motion {
             JointMotion::Root => self.floating,
-            JointMotion::Revolute { .. } => true,
-            JointMotion::Prismatic { .. } | JointMotion::Fixed => false,
+            motion => matches!(motion, JointMotion::Revolute { .. }),
         };
         let value = position.get(body.coordinate).copied().unwrap_or(0.0);
         turns.then(|| body.mimic.map_or_else(|| Rotation::by(value), |mimic| mimic.turn(value)))

@@ -23,10 +23,7 @@ pub(super) fn cos_sin<N: Enclosure>(angle: f64, halvings: u32, bits: u32) -> [N;
     if !angle.is_finite() {
         return [N::from_f64(f64::NAN); 2];
     }
-    let mut angle = angle;
-    for _ in 0..halvings {
-        angle *= 0.5;
-    }
+    let angle = libm::scalbn(angle, -(halvings as i32));
     let square = N::from_f64(angle) * N::from_f64(angle);
     let fewer = f64::from(-libm::frexp(angle).1) * 2.0;
     let (mut order, mut reached) = (0.0, fewer);
