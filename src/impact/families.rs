@@ -32,16 +32,8 @@ impl FamiliesPass<'_, '_> {
         // The modes and the velocity of each known corner.
         let mut known: Vec<(Vec<Mode>, Vec<T>)> = Vec::new();
         for pending in &self.pending {
-            match self.family(pending, exact, &known) {
-                Ok(Some(family)) => {
-                    settled &= family.is_sharp;
-                    let places = family.places;
-                    for (modes, velocity, corner) in family.new {
-                        known.push((modes, velocity));
-                        found.corners.push(corner);
-                    }
-                    found.families.push((pending.clone(), family.dimension, places));
-                }
+            match self.family(pending, exact, &mut known, &mut found) {
+                Ok(Some(is_sharp)) => settled &= is_sharp,
                 open => {
                     settled &= open.is_ok();
                     found.open.push(pending.clone());
@@ -51,15 +43,18 @@ impl FamiliesPass<'_, '_> {
         (found, settled)
     }
 
+    /// Adds a family and its corners that are not `known` yet. Returns whether the outcomes at these have the promised
+    /// digits; `None` if there are too many corners.
     fn family<T: Ordered>(
         &self,
         pending: &Pending,
         exact: &ContactProblem<T>,
-        known: &[(Vec<Mode>, Vec<T>)],
-    ) -> Result<Option<FamilyCorners<T>>, Unsettled> {
+        known: &mut Vec<(Vec<Mode>, Vec<T>)>,
+        found: &mut FoundFamilies,
+    ) -> Result<Option<bool>, Unsettled> {
         let scale = &Scale::of(exact);
         let Some((dimension, corners)) = Equations::of(exact, scale, &pending.modes).family()? else { return Ok(None) };
-        let mut family = FamilyCorners { dimension, is_sharp: true, places: Vec::new(), new: Vec::new() };
+        let (mut is_sharp, mut places, mut new) = (true, Vec::new(), Vec::new());
         for velocity in corners {
             let modes = modes_of(&velocity, exact.laws())?;
             let mut place = None;
@@ -68,7 +63,7 @@ impl FamiliesPass<'_, '_> {
                     place = Some(at);
                 }
             }
-            family.places.push(place.unwrap_or(known.len() + family.new.len()));
+            places.push(place.unwrap_or(known.len() + new.len()));
             if place.is_some() {
                 continue;
             }
@@ -76,21 +71,17 @@ impl FamiliesPass<'_, '_> {
                 Corner::Isolated(place)
             } else {
                 let outcome = T::freeing(|| Equations::of(exact, scale, &modes).outcome_at(&velocity))?;
-                family.is_sharp &= outcome.numbers.are_sharp;
+                is_sharp &= outcome.numbers.are_sharp;
                 let own = self.pending.iter().find(|other| other.modes == modes).unwrap_or(pending);
                 Corner::OfFamily(own.number, outcome)
             };
-            family.new.push((modes, velocity, corner));
+            new.push(((modes, velocity), corner));
         }
-        Ok(Some(family))
+        for (velocity, corner) in new {
+            known.push(velocity);
+            found.corners.push(corner);
+        }
+        found.families.push((pending.clone(), dimension, places));
+        Ok(Some(is_sharp))
     }
-}
-
-/// The corners of one family: the places of all of them, and the new ones.
-struct FamilyCorners<T> {
-    dimension: usize,
-    /// Whether the outcomes at the new corners have the promised digits.
-    is_sharp: bool,
-    places: Vec<usize>,
-    new: Vec<(Vec<Mode>, Vec<T>, Corner)>,
 }
