@@ -41,7 +41,7 @@ pub use loops::{
     spent_energy,
 };
 pub use ltl::LtlFactor;
-pub use springs::{Spring, SpringLoad, SpringPoint};
+pub use springs::{SpringLoad, SpringPoint};
 pub use stretch::Arm;
 pub use workspace::{LoopRows, Workspace};
 
@@ -228,8 +228,8 @@ mod tests {
             let end = |(body, point): (Index, [f64; 2])| {
                 SpringPoint::Body(body.index(self.robot.bodies.len()), Vector::from(point).map(T::from_f64))
             };
-            let spring = Spring { ends: ends.map(end), laws };
-            let asked = spring.load(plan, &self.position, &velocity, &workspace).generalized;
+            let spring = (ends.map(end), laws);
+            let asked = SpringLoad::of(spring, plan, &self.position, &velocity, &workspace).generalized;
             let loads = plan.coordinates.iter().zip(&workspace.bias).map(|(&coordinate, &bias)| {
                 if coordinate < self.robot.base_dofs() { -bias } else { asked[coordinate] - bias }
             });

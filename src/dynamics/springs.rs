@@ -17,15 +17,6 @@ use crate::planar::Vector;
 use crate::scalar::Real;
 use crate::state::SpringLaw;
 
-/// A virtual spring between two points.
-#[derive(Debug, Clone, Copy)]
-pub struct Spring<T = f64> {
-    /// The ends a and b.
-    pub ends: [SpringPoint<T>; 2],
-    /// The laws along x, along z, and about the normal.
-    pub laws: [SpringLaw; 3],
-}
-
 /// An end of a virtual spring.
 #[derive(Debug, Clone, Copy)]
 pub enum SpringPoint<T> {
@@ -45,16 +36,21 @@ pub struct SpringLoad<T = f64> {
     pub generalized: Vec<T>,
 }
 
-impl<T: Real> Spring<T> {
-    /// Computes the load at `position` (q) and `velocity` (dq/dt). Requires the results of the kinematics.
-    pub fn load(&self, plan: &Plan<T>, position: &[f64], velocity: &[T], workspace: &Workspace<T>) -> SpringLoad<T> {
-        let [(place_a, rate_a), (place_b, rate_b)] =
-            self.ends.map(|end| end.motion(plan, position, velocity, workspace));
-        let force: [T; 3] = std::array::from_fn(|axis| {
-            self.laws[axis].force(place_a[axis] - place_b[axis], rate_a[axis] - rate_b[axis])
-        });
+impl<T: Real> SpringLoad<T> {
+    /// Computes the load of a spring with the ends a and b and the laws along x, along z, and about the normal, at
+    /// `position` (q) and `velocity` (dq/dt). Requires the results of the kinematics.
+    pub fn of(
+        (ends, laws): ([SpringPoint<T>; 2], [SpringLaw; 3]),
+        plan: &Plan<T>,
+        position: &[f64],
+        velocity: &[T],
+        workspace: &Workspace<T>,
+    ) -> Self {
+        let [(place_a, rate_a), (place_b, rate_b)] = ends.map(|end| end.motion(plan, position, velocity, workspace));
+        let force: [T; 3] =
+            std::array::from_fn(|axis| laws[axis].force(place_a[axis] - place_b[axis], rate_a[axis] - rate_b[axis]));
         let mut generalized = vec![T::zero(); velocity.len()];
-        for (end, [x, z, moment]) in self.ends.into_iter().zip([force, force.map(|entry| -entry)]) {
+        for (end, [x, z, moment]) in ends.into_iter().zip([force, force.map(|entry| -entry)]) {
             let SpringPoint::Body(body, point) = end else { continue };
             let own = Wrench::at(workspace.rotation[body].apply(point), Vector { x, z });
             let own = own.with(Wrench { moment, linear: Vector::zero() });
@@ -62,7 +58,7 @@ impl<T: Real> Spring<T> {
                 generalized[coordinate] = generalized[coordinate] + part;
             });
         }
-        SpringLoad { force, generalized }
+        Self { force, generalized }
     }
 }
 

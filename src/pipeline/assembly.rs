@@ -12,7 +12,7 @@
 use super::still::{Still, eliminate};
 use crate::dynamics::plan::{Configuration, Plan};
 use crate::dynamics::{
-    Closed, Constraints, ContactPoint, Loop, Motion, PointImpulse, Spring, SpringLoad, SpringPoint, Workspace,
+    Closed, Constraints, ContactPoint, Loop, Motion, PointImpulse, SpringLoad, SpringPoint, Workspace,
     add_articulated_impulse, add_impulse, articulated_acceleration, articulated_delassus, articulated_inertias, bias,
     close, contact_jacobian, delassus, demands, eliminate_loops, factorize, kinematics, loop_impulse, mass_matrix,
     orthogonalize, point_velocity,
@@ -219,8 +219,8 @@ impl<T: Real> Assembly<T> {
                 SpringEnd::Link(end) => point(end),
                 SpringEnd::World(place) => SpringPoint::World(place.map(T::from_f64)),
             };
-            let spring = Spring { ends: [point(own.a), b], laws: own.laws };
-            spring.load(&self.plan, loads.position, velocity, &self.workspace)
+            let spring = ([point(own.a), b], own.laws);
+            SpringLoad::of(spring, &self.plan, loads.position, velocity, &self.workspace)
         };
         loads.scene.springs.iter().map(load).collect()
     }
