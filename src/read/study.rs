@@ -121,9 +121,15 @@ impl<'t> Study<'t> {
         let seconds = time.as_secs_f64();
         // If there are few samples, their number is not the reason.
         let fewer = if *steps > 16 { format!("fewer than {steps} samples of {name}, ") } else { String::new() };
+        // Contacts that are close together have nearly the same equations, which takes many digits to decide.
+        let profile = ["state", "ground", "profile"].iter().try_fold(&self.tree, |value, field| value.get(field));
+        let closer = match profile {
+            Some(_) => ", a smaller `contact_tolerance`, so that fewer points of the profile touch at once",
+            None => "",
+        };
         self.refuse_steps(most, Reason::BeyondBudget).hint(format!(
             "{seconds} s of processor time were not enough: take {fewer}a narrower range of {name} than {from:?} to \
-             {to:?}, or `budget: {:?}`",
+             {to:?}{closer}, or `budget: {:?}`",
             10.0 * seconds.max(1.0)
         ))
     }

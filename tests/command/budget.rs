@@ -112,15 +112,22 @@ fn compliant_contact_ends_with_its_budget() {
 #[test]
 fn an_endless_range_is_refused_and_replaces_nothing() {
     let old = file("old.json", "old");
-    for (steps, fewer) in [(50, "fewer than 50 samples of alpha, "), (3, "")] {
-        let study = walker(json!({"alpha": {"from": 0, "to": 1e17, "steps": steps}})).to_string();
-        let run = ends(&["sweep", WALKER, "-", "--budget", "0.3", "-o", &old], &study);
+    let profile = json!({"profile": [[-9, 0], [9, 0]]});
+    let closer = ", a smaller --contact-tolerance, so that fewer points of the profile touch at once";
+    for (steps, ground, fewer, closer) in [
+        (50, json!({"slope": 0}), "fewer than 50 samples of alpha, ", ""),
+        (3, json!({"slope": 0}), "", ""),
+        (3, profile, "", closer),
+    ] {
+        let mut study = walker(json!({"alpha": {"from": 0, "to": 1e17, "steps": steps}}));
+        study["state"]["ground"] = ground;
+        let run = ends(&["sweep", WALKER, "-", "--budget", "0.3", "-o", &old], &study.to_string());
         let refusal = run.refusal(1);
         assert!(
             refusal.contains("the budget of work ended") && refusal.contains("parameters.alpha.steps"),
             "{refusal}"
         );
-        let remedy = format!("take {fewer}a narrower range of alpha than 0.0 to 1e17, or --budget 10.0");
+        let remedy = format!("take {fewer}a narrower range of alpha than 0.0 to 1e17{closer}, or --budget 10.0");
         assert!(refusal.contains(&remedy), "{refusal}");
     }
     assert_eq!(fs::read_to_string(&old).expect("a file"), "old");
