@@ -138,6 +138,15 @@ impl Surface {
         }
     }
 
+    /// Returns the number of the part of the ground that a contact touches: 0 for a plane; for a profile, that of the
+    /// segment or corner, counted together along x.
+    pub fn part(&self, contact: &Contact) -> usize {
+        match self {
+            Self::HalfPlane(_) => 0,
+            Self::Profile(terrain) => terrain.part(contact.ground, contact.point),
+        }
+    }
+
     /// Returns the distance of a foot from the ground \[m\], negative in it.
     pub fn clearance(&self, foot: &Foot, placement: &Placement) -> f64 {
         match self {

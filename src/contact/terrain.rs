@@ -135,6 +135,18 @@ impl Terrain {
         Touch { circle, ground, gap: height - circle.radius }
     }
 
+    /// Returns the number of the part at `point` where contacts have these `axes`: even for a segment, which gives its
+    /// own axes to all its contacts, and odd for a corner.
+    pub(super) fn part(&self, axes: Rotation<f64>, point: Vector<f64>) -> usize {
+        let segments = (1..self.faces.len() - 1).filter(|&at| self.faces[at].axes() == axes);
+        // The treads of stairs have the same axes.
+        let off = |face: &Face| face.past_end(point).max(-face.past_begin(point)).max(0.0) + face.height(point).abs();
+        let corners = 0..self.faces.len() - 1;
+        nearest_part(segments.map(|at| (2 * at, off(&self.faces[at]))))
+            .or_else(|| nearest_part(corners.map(|at| (2 * at + 1, (point - self.faces[at].to).length()))))
+            .unwrap_or_default()
+    }
+
     fn middle_normal(&self, corner: usize) -> Vector<f64> {
         let [before, after] = self.at_corner(corner);
         unit(before.normal + after.normal)
@@ -148,6 +160,11 @@ impl Terrain {
         let z = near.z - near.x * ((far.z - near.z) / (far.x - near.x));
         Some((face.axes(), Vector::new(0.0, z)))
     }
+}
+
+/// Returns the part of the least distance, from parts with their distances.
+fn nearest_part(parts: impl Iterator<Item = (usize, f64)>) -> Option<usize> {
+    parts.min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(part, _)| part)
 }
 
 /// Returns the points without those that lie, up to rounding, on the straight line between their neighbors.

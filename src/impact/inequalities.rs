@@ -4,8 +4,8 @@
 //!     slack s = N / det A      N and det A are as smooth as the problem; s changes its sign at N = 0 and det A = 0
 //! ```
 //!
-//! A set of outcomes changes only where some N passes zero. The numbers are f64 without error bounds: hints to search
-//! by.
+//! A set of outcomes changes only where some N passes zero. The numbers are hints to search by. Their error bounds show
+//! which of them are nothing but rounding: contacts that are close together make it large, and its sign means nothing.
 //!
 //! Cost: that of the enumeration, 4^n combinations of n contacts.
 
@@ -13,6 +13,8 @@ use super::enumerate::{Labels, Leaf, Tableau};
 use super::problem::{ContactProblem, Errors};
 use super::slack::{Scale, slacks};
 use crate::law::Impulse;
+use crate::planar::Pair;
+use crate::scalar::{Ordered, Rounded, Sign};
 
 /// The inequalities of all combinations of one problem.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -21,7 +23,7 @@ pub struct Inequalities {
     pub determinants: Vec<f64>,
     /// N of every inequality, grouped by combination.
     pub numerators: Vec<f64>,
-    /// Whether the slack of each inequality is zero up to rounding.
+    /// Whether the slack of each inequality is zero up to rounding: its sign means nothing.
     pub negligible: Vec<bool>,
     /// The end of each combination's range in `numerators`.
     pub ends: Vec<usize>,
@@ -30,16 +32,19 @@ pub struct Inequalities {
 /// Memory that is reused from problem to problem.
 #[derive(Debug, Clone, Default)]
 pub struct InequalityScratch {
-    tableau: Tableau<f64>,
+    tableau: Tableau<Rounded>,
     labels: Labels,
     scale: Scale,
+    /// Estimated errors of c_free, if no bounds are known.
+    estimated: Vec<Pair<f64>>,
 }
 
 impl Inequalities {
-    /// Computes the inequalities of `problem`. Their order is always the same as long as each friction stays zero,
-    /// finite or infinite. All numbers of a combination that is singular up to rounding are zero.
-    pub fn of(problem: &ContactProblem, scratch: &mut InequalityScratch) -> Self {
-        let InequalityScratch { tableau, labels, scale } = scratch;
+    /// Computes the inequalities of `problem`, whose numbers have these `errors`. Their order is always the same as
+    /// long as each friction stays zero, finite or infinite. All numbers of a combination that is singular up to
+    /// rounding are zero.
+    pub fn of(problem: &ContactProblem, errors: Errors<'_>, scratch: &mut InequalityScratch) -> Self {
+        let InequalityScratch { tableau, labels, scale, estimated } = scratch;
         let (contacts, combinations) = (problem.contacts(), 1 << (2 * problem.contacts()));
         let mut all = Self::default();
         // With Coulomb friction a contact has eight inequalities over its four modes.
@@ -47,15 +52,21 @@ impl Inequalities {
         all.negligible.reserve(2 * contacts * combinations);
         all.determinants.reserve(combinations);
         all.ends.reserve(combinations);
-        tableau.load(problem);
         scale.measure(problem, Errors::NONE);
-        tableau.visit(&mut |leaf: &Leaf<'_, f64>| {
-            let determinant = if is_singular(leaf, problem) { 0.0 } else { leaf.pivots.iter().product::<f64>() };
+        let errors = if errors.delassus.is_finite() { errors } else { scale.estimate(estimated) };
+        tableau.load_entries(problem.laws(), scale.delassus(problem, errors), scale.free(problem, errors));
+        tableau.visit(&mut |leaf: &Leaf<'_, Rounded>| {
+            let determinant = match is_singular(leaf, problem) {
+                true => 0.0,
+                false => leaf.pivots.iter().map(|pivot| pivot.value).product::<f64>(),
+            };
             labels.visit(leaf.modes, problem.laws(), true, |modes| {
                 slacks(leaf, modes, problem.laws(), |slack| {
-                    let scaled = scale.scaled(&slack, slack.number);
-                    all.numerators.push(if determinant == 0.0 { 0.0 } else { slack.number * determinant });
-                    all.negligible.push(determinant == 0.0 || scaled.abs() < NEGLIGIBLE);
+                    let Rounded { value, .. } = slack.number;
+                    let is_rounding = slack.number.sign() == Sign::Undecided;
+                    all.numerators.push(if determinant == 0.0 { 0.0 } else { value * determinant });
+                    let is_small = scale.scaled(&slack, value).abs() < NEGLIGIBLE;
+                    all.negligible.push(determinant == 0.0 || is_rounding || is_small);
                 });
                 all.determinants.push(determinant);
                 all.ends.push(all.numerators.len());
@@ -77,7 +88,7 @@ const NEGLIGIBLE: f64 = 1e-10;
 const SINGULAR: f64 = 1e-10;
 
 /// Whether a pivot is zero up to rounding, because contacts depend on each other or an inequality is at a pole.
-fn is_singular(leaf: &Leaf<'_, f64>, problem: &ContactProblem) -> bool {
+fn is_singular(leaf: &Leaf<'_, Rounded>, problem: &ContactProblem) -> bool {
     (0..problem.contacts()).any(|contact| {
         let entry = |row: usize, column: usize| problem.delassus(2 * contact + row, 2 * contact + column);
         let size = match problem.laws()[contact].impulse(leaf.modes[contact]) {
@@ -85,7 +96,8 @@ fn is_singular(leaf: &Leaf<'_, f64>, problem: &ContactProblem) -> bool {
             Impulse::Along([t, n]) => t.abs() * entry(0, 1).abs() + n * entry(1, 1),
             Impulse::Free => entry(0, 0) * entry(1, 1),
         };
-        leaf.pivots[contact].abs() <= SINGULAR * size
+        let pivot = leaf.pivots[contact];
+        pivot.sign() == Sign::Undecided || pivot.value.abs() <= SINGULAR * size
     })
 }
 
@@ -101,7 +113,7 @@ mod tests {
         for mu in [Friction::Finite(0.4), Friction::Finite(6.0), Friction::Infinite] {
             for before in [[1.0, -1.0], [-3.0, -1.0], [0.5, 0.2], [2.5, -0.5]] {
                 let problem = ContactProblem::new(vec![2.0, 1.0, 1.0, 2.0], vec![before], vec![mu], vec![0.0]).unwrap();
-                let all = Inequalities::of(&problem, &mut InequalityScratch::default());
+                let all = Inequalities::of(&problem, Errors::NONE, &mut InequalityScratch::default());
                 let valid = |combination: &usize| {
                     let determinant = all.determinants[*combination];
                     all.numerators[all.of_combination(*combination)].iter().all(|number| number * determinant > 0.0)

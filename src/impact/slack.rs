@@ -49,6 +49,9 @@ pub struct Scale {
 /// The relative rounding of a few operations.
 const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 
+/// The estimated errors of G and c_free, free of units: measured below 3e-15 for G.
+const ESTIMATED: f64 = 64.0 * f64::EPSILON;
+
 impl Scale {
     /// Measures a problem, reusing the memory; `errors` are the error bounds of its numbers.
     pub fn measure(&mut self, problem: &ContactProblem, errors: Errors<'_>) {
@@ -92,6 +95,15 @@ impl Scale {
         let mut scale = Self::default();
         scale.measure(&problem.map(T::to_f64), Errors::NONE);
         scale
+    }
+
+    /// Estimates the errors of a problem about whose rounding nothing is known; `velocity` is memory for those of
+    /// c_free.
+    pub fn estimate<'a>(&self, velocity: &'a mut Vec<Pair<f64>>) -> Errors<'a> {
+        velocity.clear();
+        let error = |mobility: f64| ESTIMATED * mobility * self.speed;
+        velocity.extend(self.mobility.as_chunks().0.iter().map(|&[t, n]| [error(t), error(n)]));
+        Errors { delassus: ESTIMATED, velocity: Some(velocity), likely: [1.0; 2] }
     }
 
     /// Returns the entries of G with their error bounds, by row and column \[1/kg\].

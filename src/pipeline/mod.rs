@@ -26,7 +26,7 @@ pub(crate) use self::prepared::Prepared;
 use self::response::Unstruck;
 pub(crate) use self::resting::AT_REST;
 pub use self::springs::{Driven, SpringForce, Unrealized};
-pub use self::unsolved::Unsolved;
+pub use self::unsolved::{Touching, Unsolved};
 use crate::budget::{Budget, is_spent, within};
 use crate::contact::{Contact, Feet, Merged, Placement};
 use crate::dynamics::plan::Plan;

@@ -3,7 +3,8 @@
 use super::{Aspect, Impact, Pipeline};
 use crate::contact::{Contact, Surface};
 use crate::error::Result;
-use crate::impact::ContactProblem;
+use crate::impact::{ContactProblem, Errors};
+use crate::planar::Pair;
 use crate::state::State;
 
 /// A state's contact problem, not yet analyzed.
@@ -15,9 +16,31 @@ pub struct Unsolved {
     pub problem: ContactProblem,
     /// Height of each foot above the ground \[m\]; empty if the state names its contacts.
     pub clearance: Vec<f64>,
-    /// For each contact, the index of its corner among all corners of its link's feet; `None` if it is at none, as on a
-    /// corner of the ground. Empty if the state names its contacts.
-    pub corners: Vec<Option<usize>>,
+    /// What touches at each contact.
+    pub touching: Vec<Touching>,
+    /// [`Errors::delassus`] of the problem.
+    pub delassus_error: f64,
+    /// [`Errors::velocity`] of the problem; `None` if they are unknown.
+    pub velocity_errors: Option<Vec<Pair<f64>>>,
+}
+
+/// The parts of a foot and of the ground that meet at a contact. Where a foot rolls on or slides on they change, but
+/// the contact's name does not.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Touching {
+    /// The index of the contact's corner among all corners of its link's feet; `None` if it is at none, as on a corner
+    /// of the ground, or if the state names its contacts.
+    pub corner: Option<usize>,
+    /// The number of the ground's segment or corner, counted together along x; 0 for a plane.
+    pub ground: usize,
+}
+
+impl Unsolved {
+    /// Returns the error bounds of the problem.
+    pub fn errors(&self) -> Errors<'_> {
+        let delassus = self.delassus_error;
+        Errors { delassus, velocity: self.velocity_errors.as_deref(), likely: [1.0; 2] }
+    }
 }
 
 impl Pipeline<'_> {
@@ -32,16 +55,22 @@ impl Pipeline<'_> {
             Aspect::Forces => self.prepare_forces(state)?,
         };
         let Impact { placement, contacts, problem, .. } = *prepared.impact;
-        if state.scene.contacts.is_some() {
-            return Ok(Unsolved { contacts, problem, clearance: Vec::new(), corners: Vec::new() });
-        }
         let surface = Surface::new(&state.scene.ground);
-        let clearance = self.feet.iter().map(|foot| surface.clearance(foot, &placement)).collect();
+        let is_named = state.scene.contacts.is_some();
+        let feet = || self.feet.iter().filter(|_| !is_named);
         let corner = |contact: &Contact| {
-            let own = self.feet.iter().filter(|foot| foot.link == contact.link);
+            let own = feet().filter(|foot| foot.link == contact.link);
             own.flat_map(|foot| foot.outline.corners()).position(|corner| *corner == contact.center)
         };
-        let corners = contacts.iter().map(corner).collect();
-        Ok(Unsolved { contacts, problem, clearance, corners })
+        let touching = |contact| Touching { corner: corner(contact), ground: surface.part(contact) };
+        Ok(Unsolved {
+            clearance: feet().map(|foot| surface.clearance(foot, &placement)).collect(),
+            touching: contacts.iter().map(touching).collect(),
+            delassus_error: self.bounds.delassus,
+            // The bounds at hand are those of contact velocities, not of accelerations.
+            velocity_errors: (self.options.aspect == Aspect::Impact).then(|| self.bounds.velocity.clone()),
+            contacts,
+            problem,
+        })
     }
 }

@@ -5,7 +5,8 @@
 //!     N at five points --quartic--> sign changes, least |N| --bisected on N itself--> places to ask
 //! ```
 //!
-//! A link that rolls from one corner to another closes both for a moment: these places are bisected and asked, too.
+//! Both sides of each change of contacts are asked, too, and the numbers are followed only between two changes: a foot
+//! that rolls from one corner to another stands on both for a moment.
 //!
 //! A combination is not followed where one clearly violated inequality excludes it, on the whole interval or near a
 //! zero. This search decides nothing: wherever a zero may be, the regime itself is asked for. It does not see changes
@@ -13,6 +14,7 @@
 //!
 //! If the regimes of two points differ, [`decisive_zero`] returns the likely place of the border between them.
 
+use super::contact_changes::{Seen, are_alike, contact_changes};
 use super::model::Watched;
 use crate::budget::is_spent;
 use std::sync::Arc;
@@ -29,6 +31,9 @@ const NODE_RESOLUTION: f64 = 1e-9;
 /// An interval is halved up to `HALVINGS` times while fourth differences exceed this fraction of the numbers.
 const SMOOTH: f64 = 0.05;
 const HALVINGS: usize = 5;
+
+/// The number of times that an interval is divided where contacts change; then the nodes between are asked.
+const DIVISIONS: usize = 3;
 
 /// A minimum of |N| is searched for if the quartic comes as near to zero as this fraction of the numbers.
 const NEAR: f64 = 0.05;
@@ -62,6 +67,11 @@ impl Tracked {
     fn is_negligible(self, watched: &Watched) -> bool {
         let negligible = &watched.inequalities.negligible;
         matches!(self, Self::Numerator(at) if negligible.get(at).is_some_and(|&negligible| negligible))
+    }
+
+    /// Returns whether it is the same quantity as in `node`, but only rounding.
+    fn is_rounding_in(self, watched: &Watched, node: &Watched) -> bool {
+        self.is_in(watched, node) && self.is_negligible(watched)
     }
 
     fn values(self, nodes: &[Arc<Watched>]) -> [f64; NODES] {
@@ -114,9 +124,9 @@ fn same_combinations(one: &Watched, other: &Watched) -> bool {
 
 /// Returns the places between `a` and `b`, in ascending order, at which the regime may differ from the one at both
 /// ends. Zeros with a distance of less than `resolution` count as one.
-pub fn suspects(watch: &mut impl FnMut(f64) -> Option<Arc<Watched>>, a: f64, b: f64, resolution: f64) -> Vec<f64> {
+pub fn suspects(watch: &mut impl FnMut(f64) -> Seen, a: f64, b: f64, resolution: f64) -> Vec<f64> {
     let mut search = Search { watch, resolution, found: Vec::new() };
-    search.interval(a, b, HALVINGS);
+    search.interval(a, b, HALVINGS, DIVISIONS);
     let mut found = search.found;
     found.sort_by(f64::total_cmp);
     found.dedup();
@@ -126,12 +136,7 @@ pub fn suspects(watch: &mut impl FnMut(f64) -> Option<Arc<Watched>>, a: f64, b: 
 
 /// Returns the zero of the quantity that decides between `a` and `b`: whether a foot is down, or whether a combination
 /// is an outcome. `None` if no quantity of this kind differs in sign.
-pub fn decisive_zero(
-    watch: &mut impl FnMut(f64) -> Option<Arc<Watched>>,
-    a: f64,
-    b: f64,
-    resolution: f64,
-) -> Option<f64> {
+pub fn decisive_zero(watch: &mut impl FnMut(f64) -> Seen, a: f64, b: f64, resolution: f64) -> Option<f64> {
     let ends = [watch(a)?, watch(b)?];
     let [first, last] = &ends;
     let feet = (0..first.clearance.len()).map(Tracked::Clearance);
@@ -158,8 +163,8 @@ struct Zeros {
     touched: Vec<f64>,
 }
 
-impl<W: FnMut(f64) -> Option<Arc<Watched>>> Search<'_, W> {
-    fn interval(&mut self, a: f64, b: f64, halvings: usize) {
+impl<W: FnMut(f64) -> Seen> Search<'_, W> {
+    fn interval(&mut self, a: f64, b: f64, halvings: usize, divisions: usize) {
         if is_spent() {
             return;
         }
@@ -167,20 +172,15 @@ impl<W: FnMut(f64) -> Option<Arc<Watched>>> Search<'_, W> {
         // The same numbers as the places of the interval's halves.
         let middle = 0.5 * (a + b);
         let places: [f64; NODES] = [a, 0.5 * (a + middle), middle, 0.5 * (middle + b), b];
-        let nodes: Option<Vec<Arc<Watched>>> = places.iter().map(|&at| (self.watch)(at)).collect();
-        let alike = |one: &Watched, other: &Watched| {
-            same_combinations(one, other) && one.clearance.len() == other.clearance.len()
-        };
-        let Some(nodes) = nodes.filter(|nodes| nodes.iter().all(|node| alike(node, &nodes[0]))) else {
+        let seen = places.map(|at| (self.watch)(at));
+        if seen.iter().any(|own| !are_alike(own, &seen[0])) && divisions > 0 {
+            return self.divided(&places, &seen, halvings, divisions - 1);
+        }
+        let nodes: Option<Vec<Arc<Watched>>> = seen.iter().cloned().collect();
+        let Some(nodes) = nodes.filter(|_| seen.iter().all(|own| are_alike(own, &seen[0]))) else {
             self.found.extend(&places[1..NODES - 1]);
             return;
         };
-        // The halves of an interval would find nothing more.
-        if halvings == HALVINGS {
-            for (at, ends) in places.windows(2).zip(nodes.windows(2)) {
-                self.rolls([(at[0], &ends[0]), (at[1], &ends[1])]);
-            }
-        }
         let mut followed = followed(&nodes);
         followed.retain(|(quantity, values)| {
             let known = values.iter().all(|value| value.is_finite());
@@ -188,9 +188,9 @@ impl<W: FnMut(f64) -> Option<Arc<Watched>>> Search<'_, W> {
         });
         let rough = followed.iter().any(|(_, values)| fourth_difference(values).abs() > SMOOTH * largest(values));
         if rough && halvings > 0 && b - a > self.resolution {
-            self.interval(a, middle, halvings - 1);
+            self.interval(a, middle, halvings - 1, divisions);
             self.found.push(middle);
-            self.interval(middle, b, halvings - 1);
+            self.interval(middle, b, halvings - 1, divisions);
             return;
         }
         let mut zeros = Zeros::default();
@@ -212,23 +212,20 @@ impl<W: FnMut(f64) -> Option<Arc<Watched>>> Search<'_, W> {
         self.found.extend(touched.into_iter().chain(crossed));
     }
 
-    /// Adds the places between two others at which a link rolls from one corner to another: both may be closed there.
-    fn rolls(&mut self, [(mut a, first), (mut b, last)]: [(f64, &Arc<Watched>); 2]) {
-        while first.corners != last.corners && b - a > self.resolution && !is_spent() {
-            let middle = 0.5 * (a + b);
-            // Numbers far from zero may be farther apart than the resolution.
-            if middle <= a || middle >= b {
-                return;
+    /// Adds both sides of every change of contacts between the nodes, and searches the intervals between the changes.
+    fn divided(&mut self, places: &[f64; NODES], seen: &[Seen; NODES], halvings: usize, divisions: usize) {
+        let mut changes = Vec::new();
+        for (at, ends) in places.windows(2).zip(seen.windows(2)) {
+            let ends = [(at[0], &ends[0]), (at[1], &ends[1])];
+            contact_changes(self.watch, ends, self.resolution, &mut changes);
+        }
+        let mut from = places[0];
+        for [before, beyond] in changes.into_iter().chain([[places[NODES - 1]; 2]]) {
+            if before - from > self.resolution {
+                self.interval(from, before, halvings, divisions);
             }
-            match (self.watch)(middle).filter(|watched| same_combinations(watched, first)) {
-                Some(watched) if watched.corners == first.corners => a = middle,
-                Some(watched) if watched.corners == last.corners => b = middle,
-                Some(watched) => {
-                    self.rolls([(a, first), (middle, &watched)]);
-                    return self.rolls([(middle, &watched), (b, last)]);
-                }
-                None => return self.found.push(middle),
-            }
+            self.found.extend([before, beyond]);
+            from = beyond;
         }
     }
 
@@ -242,9 +239,15 @@ impl<W: FnMut(f64) -> Option<Arc<Watched>>> Search<'_, W> {
         Zeros { crossed, touched }: &mut Zeros,
     ) {
         let resolution = self.resolution;
-        let mut real = |x: f64| {
-            let watched = (self.watch)(x).filter(|watched| quantity.is_in(watched, &nodes[0]));
+        let watch = &mut *self.watch;
+        let real = |watch: &mut W, x: f64| {
+            let watched = watch(x).filter(|watched| quantity.is_in(watched, &nodes[0]));
             watched.map_or(f64::NAN, |watched| quantity.value(&watched))
+        };
+        // Its sign means nothing between two places where it is only rounding.
+        let is_skipped = |watch: &mut W, window: [f64; 2]| {
+            let mut is_rounding = |x: f64| watch(place(x)).is_some_and(|own| quantity.is_rounding_in(&own, &nodes[0]));
+            quantity.is_excluded(nodes, window) || window.into_iter().all(&mut is_rounding)
         };
         let curve = Quartic::through(values);
         let turns = curve.turns();
@@ -259,8 +262,8 @@ impl<W: FnMut(f64) -> Option<Arc<Watched>>> Search<'_, W> {
             let [(from, first), (to, last)] = [pair[0], pair[1]];
             if (first < 0.0) != (last < 0.0) {
                 let window = beside(zero(&mut |x| curve.at(x), from, to, NODE_RESOLUTION), [from, to]);
-                if !quantity.is_excluded(nodes, window) {
-                    crossed.push(zero(&mut real, place(window[0]), place(window[1]), resolution));
+                if !is_skipped(watch, window) {
+                    crossed.push(zero(&mut |x| real(watch, x), place(window[0]), place(window[1]), resolution));
                 }
             }
         }
@@ -269,14 +272,15 @@ impl<W: FnMut(f64) -> Option<Arc<Watched>>> Search<'_, W> {
             let sign = if here < 0.0 { -1.0 } else { 1.0 };
             let least = sign * before.1 > sign * here && sign * after.1 > sign * here;
             let window = beside(turn, [before.0, after.0]);
-            if !least || here.abs() > near_zero || quantity.is_excluded(nodes, window) {
+            if !least || here.abs() > near_zero || is_skipped(watch, window) {
                 continue;
             }
             let ends = window.map(|x| (place(x), sign * curve.at(x)));
-            let Some(bottom) = least_place(&mut |x| sign * real(x), ends, resolution) else { continue };
+            let Some(bottom) = least_place(&mut |x| sign * real(watch, x), ends, resolution) else { continue };
             touched.push(bottom);
-            if sign * real(bottom) < 0.0 {
-                crossed.extend(window.map(|x| zero(&mut real, bottom.min(place(x)), bottom.max(place(x)), resolution)));
+            if sign * real(watch, bottom) < 0.0 {
+                let sides = window.map(|x| [bottom.min(place(x)), bottom.max(place(x))]);
+                crossed.extend(sides.map(|[from, to]| zero(&mut |x| real(watch, x), from, to, resolution)));
             }
         }
     }
@@ -446,6 +450,7 @@ fn least_place(
 mod tests {
     use super::*;
     use crate::impact::Inequalities;
+    use crate::pipeline::Touching;
 
     #[test]
     fn a_quartic_is_what_it_interpolates() {
@@ -469,11 +474,12 @@ mod tests {
     fn a_roll_far_from_zero_is_bisected_to_its_end() {
         let start = 1.7e9;
         let mut watch = |x: f64| {
-            let corners = vec![Some(usize::from(x > start + 0.3))];
+            let touching = vec![Touching { corner: Some(usize::from(x > start + 0.3)), ground: 0 }];
             let inequalities = Inequalities::default();
-            Some(Arc::new(Watched { contacts: vec!["foot".into()], inequalities, clearance: Vec::new(), corners }))
+            Some(Arc::new(Watched { contacts: vec!["foot".into()], inequalities, clearance: Vec::new(), touching }))
         };
-        assert!(suspects(&mut watch, start, start + 1.0, 1e-12).is_empty());
+        let found = suspects(&mut watch, start, start + 1.0, 1e-12);
+        assert!(matches!(found[..], [before, beyond] if before <= start + 0.3 && beyond > start + 0.3), "{found:?}");
     }
 
     #[test]
@@ -484,7 +490,7 @@ mod tests {
             let numerators = vec![-1.0 - 0.1 * x, libm::sin(40.0 * x)];
             let inequalities =
                 Inequalities { determinants: vec![1.0], ends: vec![2], numerators, ..Inequalities::default() };
-            Some(Arc::new(Watched { contacts: Vec::new(), inequalities, clearance: Vec::new(), corners: Vec::new() }))
+            Some(Arc::new(Watched { contacts: Vec::new(), inequalities, clearance: Vec::new(), touching: Vec::new() }))
         };
         let places = suspects(&mut watch, 0.0, 1.0, 1e-12);
         assert_eq!((places, asked), (Vec::new(), NODES));

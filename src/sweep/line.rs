@@ -196,7 +196,7 @@ mod tests {
             let (determinants, ends) = (vec![1.0], vec![numerators.len()]);
             let inequalities = Inequalities { determinants, ends, numerators, ..Inequalities::default() };
             let contacts = if closed { vec!["foot".to_owned()] } else { Vec::new() };
-            Some(Arc::new(Watched { contacts, inequalities, clearance, corners: Vec::new() }))
+            Some(Arc::new(Watched { contacts, inequalities, clearance, touching: Vec::new() }))
         }
     }
 

@@ -13,6 +13,7 @@ mod parallel;
 mod regime;
 mod model;
 mod unit;
+mod contact_changes;
 mod border_search;
 mod line;
 mod transition;

@@ -6,7 +6,7 @@ use crate::budget::is_spent;
 use crate::description::Description;
 use crate::impact::{Analysis, Inequalities, InequalityScratch, Verdict};
 use crate::law::Mode;
-use crate::pipeline::{Aspect, Impact, Options, Pipeline, Unsolved};
+use crate::pipeline::{Aspect, Impact, Options, Pipeline, Touching, Unsolved};
 use crate::robot::Reduction;
 use crate::state::{Defaults, Scene, State};
 use crate::{Error, Reason, Result, Robot};
@@ -53,8 +53,8 @@ pub struct Watched {
     pub inequalities: Inequalities,
     /// Height of each foot above the contact tolerance \[m\].
     pub clearance: Vec<f64>,
-    /// For each contact, the corner of its link's feet, which its name does not tell apart; empty for a map.
-    pub corners: Vec<Option<usize>>,
+    /// What touches at each contact, which its name does not show; empty for a map.
+    pub touching: Vec<Touching>,
 }
 
 /// Properties of a region, from a point in it.
@@ -260,16 +260,18 @@ impl<'a> Solver<'a> {
 
     fn find_watched(&mut self, point: &[f64]) -> Option<Watched> {
         let unsolved = self.at(point, |_, state, pipeline| Ok((pipeline.unsolved(&state)?, pipeline.tolerance())));
-        let (Unsolved { contacts, problem, clearance, corners }, tolerance) = unsolved.ok()?;
+        let (unsolved, tolerance) = unsolved.ok()?;
+        let inequalities = match unsolved.contacts.len() <= WATCHED_CONTACTS {
+            true => Inequalities::of(&unsolved.problem, unsolved.errors(), &mut self.scratch),
+            false => Inequalities::default(),
+        };
+        let Unsolved { contacts, clearance, touching, .. } = unsolved;
         Some(Watched {
-            inequalities: match contacts.len() <= WATCHED_CONTACTS {
-                true => Inequalities::of(&problem, &mut self.scratch),
-                false => Inequalities::default(),
-            },
+            inequalities,
             contacts: contacts.into_iter().map(|contact| contact.name.to_string()).collect(),
             clearance: clearance.into_iter().map(|height| height - tolerance).collect(),
             // In a map, the band in which a foot stands on both corners is thinner than the curves that are drawn.
-            corners: if self.model.study.parameters().len() == 1 { corners } else { Vec::new() },
+            touching: if self.model.study.parameters().len() == 1 { touching } else { Vec::new() },
         })
     }
 }

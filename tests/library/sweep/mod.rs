@@ -11,3 +11,4 @@ mod paper;
 pub mod studies;
 mod thin;
 mod transitions;
+mod work;
