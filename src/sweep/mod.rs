@@ -27,9 +27,9 @@ mod map;
 
 pub use crate::read::{Parameter, Study};
 pub use curves::{CurvePoint, RegionCurves};
-pub use line::RESOLUTION;
+pub use line::{Bracket, Landscape, Probe, RESOLUTION, brackets};
 pub use map::{Area, BorderCurve, CELLS, Map};
-pub use model::{RobotStudy, Solver, WATCHED_CONTACTS};
+pub use model::{RobotStudy, Solver, WATCHED_CONTACTS, Watched};
 pub use parallel::Workers;
 pub use regime::Regime;
 pub use survey::{Region, RegionBorder, Survey};
