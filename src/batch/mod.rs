@@ -25,7 +25,7 @@ use crate::draw::{Keyframe, ListedKeyframe};
 use crate::error::Location;
 use crate::error::excerpt::Excerpt;
 use crate::gait::{Landing, Sample, Sampled};
-use crate::pipeline::{AT_REST, Options, Pipeline};
+use crate::pipeline::{AT_REST, Impact, Options, Pipeline};
 use crate::read::documents::utf8;
 use crate::read::lines::StateLines;
 #[cfg(feature = "columnar")]
@@ -57,6 +57,10 @@ pub struct Question<'r> {
     pub keyframes: bool,
 }
 
+/// Rows whose states are answered before their results are written: what each of the two steps needs stays in the
+/// processor's caches, which takes 4 % less time.
+const TOGETHER: usize = 8;
+
 /// Limit of the memory that is reserved for the answers to a chunk \[bytes\].
 const ROOM: usize = 1 << 20;
 
@@ -64,8 +68,8 @@ const ROOM: usize = 1 << 20;
 pub struct Batch<'q> {
     reader: Reader<'q>,
     answerer: Answerer<'q>,
-    /// The state of the last row.
-    state: State,
+    /// The states of the last rows.
+    states: [State; TOGETHER],
     /// The size of the largest answers to a chunk so far, up to [`ROOM`] \[bytes\].
     most: usize,
 }
@@ -111,17 +115,19 @@ impl<'q> Batch<'q> {
     pub fn new(question: &'q Question<'q>) -> Self {
         // Keyframes need what a brief result omits.
         let brief = question.detail.brief && !question.keyframes;
-        let options = Options { brief, ..question.options.clone() };
+        // The share of the total budget limits an answer.
+        let budget = question.options.budget.filter(|_| question.total.is_none());
+        let options = Options { brief, budget, ..question.options.clone() };
         let pipeline = Pipeline::new(question.robot, options);
         let lines = || Reader::Lines(Box::new(StateLines::new(question.robot, &question.defaults)));
         let reader = question.header.map_or_else(lines, |header| Reader::Rows(header.rows()));
-        let state = State::zero(question.robot);
-        Self { reader, answerer: Answerer { question, pipeline }, state, most: 0 }
+        let states = std::array::from_fn(|_| State::zero(question.robot));
+        Self { reader, answerer: Answerer { question, pipeline }, states, most: 0 }
     }
 
     /// Answers records that are independent of each other.
     pub fn records(&mut self, chunk: &Chunk) -> Block {
-        let Self { reader, answerer, state, most } = self;
+        let Self { reader, answerer, states: [state, ..], most } = self;
         let mut block = Block { out: Vec::with_capacity(*most), ..answerer.block(chunk.records().count()) };
         for (line, record) in chunk.records() {
             let around = Around { line, record, ..Around::default() };
@@ -144,12 +150,28 @@ impl<'q> Batch<'q> {
     /// Answers the rows of a part of a table with typed columns.
     #[cfg(feature = "columnar")]
     pub fn part(&mut self, part: &Part) -> Block {
-        let Self { answerer, state, .. } = self;
+        let Self { answerer, states, .. } = self;
         let mut block = answerer.block(part.count());
-        for row in answerer.question.header.into_iter().flat_map(|header| part.rows(header)) {
-            answerer.row(Ok(row), state, Around { line: row.line(), ..Around::default() }, &mut block);
+        let Question { robot, defaults, header, .. } = answerer.question;
+        let mut rows = header.into_iter().flat_map(|header| part.rows(header));
+        let mut answers = Vec::with_capacity(TOGETHER);
+        loop {
+            answers.extend(states.iter_mut().zip(&mut rows).map(|(state, row)| {
+                let read = row.read(robot, defaults, state);
+                (row, read.map(|()| answerer.impact(state)))
+            }));
+            if answers.is_empty() {
+                return block;
+            }
+            for (state, (row, answer)) in states.iter().zip(answers.drain(..)) {
+                let carried = row.carried();
+                let around = Around { line: row.line(), carried: carried.as_ref(), ..Around::default() };
+                match answer {
+                    Ok(answer) => answerer.write(state, answer, around, &mut block),
+                    Err(error) => answerer.refuse(error, row.id(), around, &mut block),
+                }
+            }
         }
-        block
     }
 
     /// Answers the samples of a recording.
@@ -222,25 +244,41 @@ impl Answerer<'_> {
     ) {
         match state {
             Ok(state) => {
-                if let Err(error) = self.result(state, around, block) {
-                    self.refuse(error, state.id.clone(), around, block);
-                }
+                let answer = self.impact(state);
+                self.write(state, answer, around, block);
             }
             Err(error) => self.refuse(error, unread(), around, block),
         }
     }
 
+    /// Answers a state within its share of the total budget.
+    fn impact(&mut self, state: &State) -> Result<Box<Impact>> {
+        match &self.question.total {
+            Some(total) => total.within(|| self.pipeline.answer(state)),
+            None => self.pipeline.answer(state),
+        }
+    }
+
+    /// Appends the answer to a state, or its refusal.
+    fn write(&mut self, state: &State, answer: Result<Box<Impact>>, around: Around<'_>, block: &mut Block) {
+        if let Err(error) = self.result(state, answer, around, block) {
+            self.refuse(error, state.id.clone(), around, block);
+        }
+    }
+
     /// Appends the result of a state.
-    fn result(&mut self, state: &State, around: Around<'_>, block: &mut Block) -> Result<()> {
+    fn result(
+        &mut self,
+        state: &State,
+        answer: Result<Box<Impact>>,
+        around: Around<'_>,
+        block: &mut Block,
+    ) -> Result<()> {
         let Question { robot, ref options, detail, header, columns, .. } = *self.question;
         block.summary.own_friction += u64::from(state.scene.has_own_friction(self.question.defaults.friction));
         // The contacts of a touchdown are found, not named by the input.
         let own_contacts = state.scene.contacts.is_some() && around.landing.is_none();
         block.summary.own_contacts += u64::from(own_contacts && !options.feet.is_empty());
-        let answer = match &self.question.total {
-            Some(total) => total.within(|| self.pipeline.answer(state)),
-            None => self.pipeline.answer(state),
-        };
         // The error is only borrowed, because it is large.
         let impact = answer.as_ref().map_err(|error| match error.reason() {
             Reason::Missing(_) if header.is_some() && error.place() == Some("friction") => {

@@ -71,13 +71,15 @@ pub struct Pending {
     pub modes: Vec<Mode>,
 }
 
-/// The number of outcomes whose memory is kept; few states have more.
-const RECYCLED: usize = 16;
+/// The number of answers, and of their outcomes, whose memory is kept.
+pub const RECYCLED: usize = 16;
 
 /// Memory of outcomes that is reused.
 #[derive(Debug, Clone, Default)]
 pub struct OutcomeMemory {
     outcomes: Vec<Outcome>,
+    /// Lists without outcomes.
+    spare: Vec<Vec<Outcome>>,
     /// The number of the combination of each outcome.
     numbers: Vec<u64>,
     lists: Vec<OutcomeLists>,
@@ -102,7 +104,9 @@ impl OutcomeMemory {
             OutcomeLists { modes: take(&mut own.modes), motion, friction_needed: take(&mut own.friction_needed) }
         }));
         outcomes.clear();
-        self.outcomes = outcomes;
+        if self.spare.len() < RECYCLED {
+            self.spare.push(outcomes);
+        }
     }
 }
 
@@ -161,7 +165,7 @@ impl<'a> Collected<'a> {
         name: &'a dyn Fn(usize) -> String,
         memory: &'a mut OutcomeMemory,
     ) -> Self {
-        memory.outcomes.clear();
+        memory.outcomes = memory.spare.pop().unwrap_or_default();
         memory.numbers.clear();
         Self {
             problem,

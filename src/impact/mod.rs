@@ -32,6 +32,7 @@ mod analysis;
 
 pub use crate::law::{Friction, Inequality, Law, Mode};
 pub use analysis::{CONTACT_LIMIT, Scratch, analyze, too_many_contacts};
+pub(crate) use collected::RECYCLED;
 pub use collected::{AnalysisOptions, EXPLAINED, ListedRejections};
 pub(crate) use digits::{DIGITS, is_known};
 #[cfg(feature = "plot")]

@@ -33,7 +33,7 @@ use crate::dynamics::plan::Plan;
 use crate::dynamics::{Closed, RoundingBounds};
 use crate::error::{Error, Result, finite, from_zero};
 use crate::impact::{
-    Analysis, AnalysisOptions, ContactProblem, Errors, ListedRejections, Scratch, Verdict, too_many_contacts,
+    Analysis, AnalysisOptions, ContactProblem, Errors, ListedRejections, RECYCLED, Scratch, Verdict, too_many_contacts,
 };
 use crate::law::{Friction, Law, Mode};
 use crate::planar::Pair;
@@ -260,9 +260,9 @@ pub struct Pipeline<'r> {
     /// The sums of magnitudes of the terms in a state's accelerations, for their rounding bounds.
     stretched: Assembly<Magnitude>,
     scratch: Scratch,
-    /// Memory for the next state and for its answer.
+    /// Memory for the next state and for the next answers.
     spare: Option<Box<Prepared>>,
-    recycled: Option<Box<Impact>>,
+    recycled: Vec<Box<Impact>>,
 }
 
 impl<'r> Pipeline<'r> {
@@ -287,7 +287,7 @@ impl<'r> Pipeline<'r> {
             stretched: Assembly::new(Plan::new(robot, &[], &[])),
             scratch: Scratch::default(),
             spare: None,
-            recycled: None,
+            recycled: Vec::new(),
         }
     }
 
@@ -414,14 +414,16 @@ impl<'r> Pipeline<'r> {
 
     /// Moves the impact, still without its analysis, out of `prepared`, and leaves recycled memory in its place.
     fn unanswered(&mut self, prepared: &mut Prepared) -> Box<Impact> {
-        replace(&mut prepared.impact, self.recycled.take().unwrap_or_default())
+        replace(&mut prepared.impact, self.recycled.pop().unwrap_or_default())
     }
 
     /// Takes back the memory of an answer that is no longer needed. A brief answer to a state with up to three contacts
     /// that f64 decides completely then allocates nothing.
     pub fn recycle(&mut self, mut impact: Box<Impact>) {
         self.scratch.recycle(impact.analysis.take().map_or(Vec::new(), |analysis| analysis.outcomes));
-        self.recycled = Some(impact);
+        if self.recycled.len() < RECYCLED {
+            self.recycled.push(impact);
+        }
     }
 
     /// Lists the parts of the scene that were left out.
