@@ -50,6 +50,9 @@ pub enum Solved<F = ()> {
     Family(F),
 }
 
+/// The dimension of a family, and the velocities at the corners of its closure, `[c_t, xi_n]` by rows \[m/s\].
+pub type FamilyCorners<T> = (usize, Vec<Vec<T>>);
+
 /// An inequality as a function on the solutions, scaled free of units.
 struct Constraint<T> {
     contact: usize,
@@ -202,9 +205,9 @@ impl<'a, T: Ordered> Equations<'a, T> {
         Ok(Some(Solutions { origin, directions: all }))
     }
 
-    /// The dimension of a family, and the velocities at the corners of its closure, `[c_t, xi_n]` by rows \[m/s\];
-    /// `None` if there are too many corners. Returns an error if the combination is not shown to be a family.
-    pub fn family(&self) -> Result<Option<(usize, Vec<Vec<T>>)>, Unsettled> {
+    /// The corners of the combination's family; `None` if there are too many. Returns an error if the combination is not
+    /// shown to be a family.
+    pub fn family(&self) -> Result<Option<FamilyCorners<T>>, Unsettled> {
         let Solved::Family(Space { solutions, velocity: rows, inequalities }) = self.solve()? else {
             return Err(Unsettled);
         };
