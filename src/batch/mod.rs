@@ -57,8 +57,8 @@ pub struct Question<'r> {
     pub keyframes: bool,
 }
 
-/// Rows whose states are answered before their results are written: what each of the two steps needs stays in the
-/// processor's caches, which takes 4 % less time.
+/// Rows whose states are read before they are answered, and answered before their results are written: the processor's
+/// caches keep what each of these steps needs, which saves 6 % of the time.
 const TOGETHER: usize = 8;
 
 /// Limit of the memory that is reserved for the answers to a chunk \[bytes\].
@@ -154,15 +154,14 @@ impl<'q> Batch<'q> {
         let mut block = answerer.block(part.count());
         let Question { robot, defaults, header, .. } = answerer.question;
         let mut rows = header.into_iter().flat_map(|header| part.rows(header));
-        let mut answers = Vec::with_capacity(TOGETHER);
+        let (mut group, mut answers) = (Vec::with_capacity(TOGETHER), Vec::with_capacity(TOGETHER));
         loop {
-            answers.extend(states.iter_mut().zip(&mut rows).map(|(state, row)| {
-                let read = row.read(robot, defaults, state);
-                (row, read.map(|()| answerer.impact(state)))
-            }));
-            if answers.is_empty() {
+            group.extend(states.iter_mut().zip(&mut rows).map(|(state, row)| (row, row.read(robot, defaults, state))));
+            if group.is_empty() {
                 return block;
             }
+            let read = states.iter().zip(group.drain(..));
+            answers.extend(read.map(|(state, (row, read))| (row, read.map(|()| answerer.impact(state)))));
             for (state, (row, answer)) in states.iter().zip(answers.drain(..)) {
                 let carried = row.carried();
                 let around = Around { line: row.line(), carried: carried.as_ref(), ..Around::default() };

@@ -20,7 +20,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
 /// The greatest number of rows of a part; they are answered together.
-const TOGETHER: usize = 512;
+const TOGETHER: usize = 1024;
 
 /// The fault of a file that contains more than one stream.
 const JOINED: &str = "more follows the end of the stream: are several joined?";
@@ -31,9 +31,8 @@ type Batch = std::result::Result<RecordBatch, ArrowError>;
 pub struct Parts {
     batches: Box<dyn Iterator<Item = Batch> + Send>,
     schema: SchemaRef,
-    /// The columns of the header, and the number of coordinates of a state; empty until the header is read.
+    /// The columns of the header; empty until it is read.
     columns: Arc<[TableColumn]>,
-    dofs: usize,
     /// Columns that were read, and the first of their rows that was not returned yet.
     ready: Option<(Arc<Typed>, usize)>,
     /// The number of the next row, from 1.
@@ -44,8 +43,6 @@ pub struct Parts {
 #[derive(Debug, Clone)]
 pub struct Part {
     columns: Arc<Typed>,
-    /// The result of [`Typed::states`].
-    states: Vec<f64>,
     /// The first row in `columns`, and the number of rows.
     start: usize,
     count: usize,
@@ -62,7 +59,7 @@ impl Parts {
         if form == Form::Parquet {
             let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(unreadable)?;
             let schema = Arc::clone(builder.schema());
-            let batches = builder.with_batch_size(8 * TOGETHER).build().map_err(unreadable)?;
+            let batches = builder.with_batch_size(4 * TOGETHER).build().map_err(unreadable)?;
             return Ok(Self::new(batches, schema));
         }
         // The first bytes distinguish Arrow's file and stream.
@@ -103,7 +100,7 @@ impl Parts {
     }
 
     fn new(batches: impl Iterator<Item = Batch> + Send + 'static, schema: SchemaRef) -> Self {
-        Self { batches: Box::new(batches), schema, columns: Arc::new([]), dofs: 0, ready: None, next: 1 }
+        Self { batches: Box::new(batches), schema, columns: Arc::new([]), ready: None, next: 1 }
     }
 
     /// Reads the columns' names, as [`Header::read`] does, and checks their types.
@@ -137,7 +134,7 @@ impl Parts {
         let carried = self.schema.project(&carried).map_err(unreadable)?;
         let id = header.id.map(|at| kind(self.schema.field(at).data_type()));
         header.types = Some((Arc::new(carried), id == Some(DataType::Int64)));
-        (self.columns, self.dofs) = (header.columns.clone().into(), robot.dofs());
+        self.columns = header.columns.clone().into();
         Ok(header)
     }
 
@@ -149,7 +146,7 @@ impl Parts {
         while self.ready.is_none() {
             let Some(batch) = guarded(|| self.batches.next().transpose())? else { return Ok(true) };
             if batch.num_rows() > 0 {
-                self.ready = Some((Arc::new(Typed::new(&batch, &self.columns, self.dofs)?), 0));
+                self.ready = Some((Arc::new(Typed::new(&batch, &self.columns)?), 0));
             }
         }
         Ok(false)
@@ -168,8 +165,7 @@ impl Parts {
         if start + count < rows {
             self.ready = Some((Arc::clone(&columns), start + count));
         }
-        let states = columns.states(start..start + count, self.dofs);
-        Ok(Some(Part { columns, states, start, count, first }))
+        Ok(Some(Part { columns, start, count, first }))
     }
 }
 
@@ -187,10 +183,6 @@ impl Part {
 
     /// Returns the rows of the part.
     pub fn rows<'p>(&'p self, header: &'p Header) -> impl Iterator<Item = Row<'p>> {
-        let width = self.states.len() / self.count.max(1);
-        (0..self.count).map(move |at| {
-            let state = &self.states[width * at..][..width];
-            Row::of_columns(header, (&self.columns, self.start + at, state), self.first + at)
-        })
+        (0..self.count).map(move |at| Row::of_columns(header, (&self.columns, self.start + at), self.first + at))
     }
 }

@@ -48,9 +48,9 @@ pub struct Row<'r> {
 enum Source<'r> {
     /// Cells, and the bytes from which they were read.
     Text(&'r ByteRecord, &'r [u8]),
-    /// Columns, the row in them, and its part of [`Typed::states`].
+    /// Columns, and the row in them.
     #[cfg(feature = "columnar")]
-    Columns(&'r Typed, usize, &'r [f64]),
+    Columns(&'r Typed, usize),
 }
 
 /// The cells of a row that are copied to the result; they outlive the chunk of input.
@@ -193,13 +193,9 @@ fn reader(form: Form) -> csv::Reader<Cursor<Vec<u8>>> {
 
 #[cfg(feature = "columnar")]
 impl<'r> Row<'r> {
-    /// Creates the row with number `line` in the table from a row of these columns and its part of [`Typed::states`].
-    pub(super) fn of_columns(
-        header: &'r Header,
-        (columns, row, state): (&'r Typed, usize, &'r [f64]),
-        line: usize,
-    ) -> Self {
-        Self { header, source: Source::Columns(columns, row, state), line }
+    /// Creates the row with number `line` in the table from a row of these columns.
+    pub(super) fn of_columns(header: &'r Header, (columns, row): (&'r Typed, usize), line: usize) -> Self {
+        Self { header, source: Source::Columns(columns, row), line }
     }
 }
 
@@ -231,7 +227,7 @@ impl Row<'_> {
         let text = match self.source {
             Source::Text(cells, _) => cells.get(at).and_then(|text| std::str::from_utf8(text).ok()),
             #[cfg(feature = "columnar")]
-            Source::Columns(columns, row, _) => columns.text(at, row),
+            Source::Columns(columns, row) => columns.text(at, row),
         };
         match (text, id.as_mut()) {
             (Some(""), _) => *id = None,
@@ -241,7 +237,7 @@ impl Row<'_> {
             (None, _) => {
                 *id = None;
                 #[cfg(feature = "columnar")]
-                if let Source::Columns(columns, row, _) = self.source {
+                if let Source::Columns(columns, row) = self.source {
                     *id = columns.integer(at, row).map(Value::from);
                 }
             }
@@ -254,7 +250,7 @@ impl Row<'_> {
             Source::Text(cells, _) if cells.len() == self.header.columns.len() => cells,
             Source::Text(..) => return None,
             #[cfg(feature = "columnar")]
-            Source::Columns(columns, row, _) => {
+            Source::Columns(columns, row) => {
                 let some = columns.carried.num_columns() > 0;
                 return some.then(|| Carried::Columns(Arc::clone(&columns.carried), row));
             }
@@ -300,18 +296,17 @@ impl Row<'_> {
         state.scene.restitution.default = None;
         (state.scene.stance, state.scene.place_lowest) = (stance, place_lowest);
         state.scene.loops.clone_from(&defaults.loops);
+        if self.header.stance.is_some() {
+            // Otherwise every row gives the same coordinates, and the others stay 0.
+            state.position.fill(0.0);
+            state.velocity.fill(0.0);
+        }
         let mut friction = None;
         match self.source {
-            Source::Text(..) => {
-                state.position.fill(0.0);
-                state.velocity.fill(0.0);
-                (0..columns).try_for_each(|at| self.read_cell(at, state, &mut friction))?;
-            }
+            Source::Text(..) => (0..columns).try_for_each(|at| self.read_cell(at, state, &mut friction))?,
             #[cfg(feature = "columnar")]
-            Source::Columns(typed, _, whole) => {
-                let (position, velocity) = whole.split_at(whole.len() / 2);
-                state.position.copy_from_slice(position);
-                state.velocity.copy_from_slice(velocity);
+            Source::Columns(typed, row) => {
+                typed.read(row, state);
                 typed.open.iter().try_for_each(|&at| self.read_cell(at, state, &mut friction))?;
             }
         }
@@ -417,7 +412,7 @@ impl Row<'_> {
     #[inline]
     fn number(&self, at: usize) -> Result<f64> {
         #[cfg(feature = "columnar")]
-        if let Source::Columns(columns, row, _) = self.source
+        if let Source::Columns(columns, row) = self.source
             && let Some(value) = columns.number(at, row)
             && value.is_finite()
         {
@@ -465,7 +460,7 @@ impl Row<'_> {
         let field = match self.source {
             Source::Text(cells, _) => cells.get(at).unwrap_or_default().trim_ascii(),
             #[cfg(feature = "columnar")]
-            Source::Columns(columns, row, _) => return Ok(columns.cell(at, row)),
+            Source::Columns(columns, row) => return Ok(columns.cell(at, row)),
         };
         let Ok(text) = std::str::from_utf8(field) else {
             return Err(self.refuse(at, Reason::Syntax("the cell is not UTF-8".into())));

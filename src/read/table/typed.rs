@@ -2,21 +2,20 @@
 
 use super::header::TableColumn;
 use super::records::Cell;
-use crate::{Error, Reason, Result};
+use crate::{Error, Reason, Result, State};
 use arrow_array::cast::AsArray;
 use arrow_array::types::{Float64Type, Int64Type};
 use arrow_array::{Array, ArrayRef, Float64Array, Int64Array, RecordBatch, StringArray};
 use arrow_cast::cast::{CastOptions, cast_with_options};
 use arrow_schema::DataType;
-use std::ops::Range;
 use std::sync::Arc;
 
 /// The columns of a batch, cast to the types that states are read from.
 #[derive(Debug)]
 pub(super) struct Typed {
     columns: Vec<Column>,
-    /// The coordinates' columns that hold finite numbers only, each with its index into a list of q and then v.
-    whole: Vec<(usize, Float64Array)>,
+    /// The coordinates of q, and those of v, whose columns hold finite numbers only, with these columns.
+    whole: [Vec<(usize, Float64Array)>; 2],
     /// The indices of all other columns.
     pub open: Vec<usize>,
     /// The columns that are carried through.
@@ -53,8 +52,8 @@ pub(super) fn kind(own: &DataType) -> DataType {
 }
 
 impl Typed {
-    /// Casts the columns of a batch, for a robot with `dofs` coordinates.
-    pub fn new(batch: &RecordBatch, columns: &[TableColumn], dofs: usize) -> Result<Self> {
+    /// Casts the columns of a batch.
+    pub fn new(batch: &RecordBatch, columns: &[TableColumn]) -> Result<Self> {
         let places = (0..columns.len()).filter(|&at| columns[at] == TableColumn::Carried).collect::<Vec<_>>();
         let carried = batch.project(&places).map_err(unreadable)?;
         let fields = columns.iter().zip(batch.columns()).zip(batch.schema_ref().fields());
@@ -83,11 +82,11 @@ impl Typed {
         let typed = typed.collect::<Result<Vec<_>>>()?;
         // With a stance, x and z of the base must be empty: these columns are checked cell by cell.
         let least = if columns.contains(&TableColumn::Stance) { 2 } else { 0 };
-        let (mut whole, mut open) = (Vec::new(), Vec::new());
+        let (mut whole, mut open) = ([Vec::new(), Vec::new()], Vec::new());
         for (at, (&column, typed)) in columns.iter().zip(&typed).enumerate() {
             let coordinate = match column {
-                TableColumn::Position(to) => Some((to, to)),
-                TableColumn::Velocity(to) => Some((to, dofs + to)),
+                TableColumn::Position(to) => Some((0, to)),
+                TableColumn::Velocity(to) => Some((1, to)),
                 _ => None,
             };
             // The fold has no branch per value.
@@ -96,8 +95,8 @@ impl Typed {
                 numbers.null_count() == 0 && finite()
             };
             match (coordinate, typed) {
-                (Some((coordinate, cell)), Column::Numbers(numbers)) if coordinate >= least && is_whole(numbers) => {
-                    whole.push((cell, numbers.clone()));
+                (Some((part, to)), Column::Numbers(numbers)) if to >= least && is_whole(numbers) => {
+                    whole[part].push((to, numbers.clone()));
                 }
                 _ => open.push(at),
             }
@@ -105,19 +104,12 @@ impl Typed {
         Ok(Self { columns: typed, whole, open, carried: Arc::new(carried) })
     }
 
-    /// Returns q and v row by row, `dofs` coordinates each, with 0 for the columns that are not in `whole`. This puts a
-    /// state into one piece of memory, not into as many as the table has columns.
-    pub fn states(&self, rows: Range<usize>, dofs: usize) -> Vec<f64> {
-        let mut states = vec![0.0; rows.len() * 2 * dofs];
-        // A few rows at a time stay in the fastest cache.
-        for (block, states) in states.chunks_mut(8 * 2 * dofs.max(1)).enumerate() {
-            for (cell, numbers) in &self.whole {
-                let numbers = &numbers.values()[rows.start + 8 * block..];
-                let states = states.chunks_exact_mut(2 * dofs).zip(numbers);
-                states.for_each(|(state, &number)| state[*cell] = number);
-            }
+    /// Reads the coordinates whose columns hold finite numbers only, without a check per cell.
+    #[inline]
+    pub fn read(&self, row: usize, state: &mut State) {
+        for (numbers, columns) in [&mut state.position, &mut state.velocity].into_iter().zip(&self.whole) {
+            columns.iter().for_each(|(to, column)| numbers[*to] = column.value(row));
         }
-        states
     }
 
     pub fn rows(&self) -> usize {
