@@ -226,8 +226,8 @@ impl Description {
         let misspelt = misspelt.map(|name| format!("not read, and perhaps misspelt: {name}"));
         let foreign = description.has_foreign_joints().then(|| FOREIGN_JOINTS.to_owned());
         description.root = root.map_err(|error: Error| {
-            let remedy = error.remedy().map(str::to_owned);
-            let hints: Vec<String> = remedy.into_iter().chain(misspelt).chain(foreign).collect();
+            let Some(remedy) = error.remedy().map(str::to_owned) else { return error };
+            let hints: Vec<String> = [remedy].into_iter().chain(misspelt).chain(foreign).collect();
             error.hint(hints.join("; "))
         })?;
         Ok(description)

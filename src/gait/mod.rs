@@ -17,8 +17,9 @@
 //! ```
 //!
 //! The toe of a flat foot therefore touches down even if the heel is recorded a little lower, but the upper side of a
-//! sole does not. The thresholds are lengths, because the floating of feet depends on the recording and not on the
-//! robot; a robot smaller than [`SMALL`] lifts its feet less, and has smaller ones.
+//! sole or points inside a round foot do not. The thresholds are lengths ([`Touchdowns::with`]), because the floating of
+//! feet depends on the recording and not on the robot. A robot smaller than [`SMALL`] lifts its feet less, so its
+//! thresholds are proportionally smaller.
 //!
 //! The *noise* of a point's height is measured on the last rows of the clip. It is the median distance of a row from
 //! the polynomial through the six rows before it, divided by 0.67 and by the factor by which this distance amplifies a
@@ -198,7 +199,10 @@ pub enum At {
 impl At {
     /// Returns the name on the command line and in results.
     pub fn name(self) -> &'static str {
-        ["crossing", "row"][self as usize]
+        match self {
+            Self::Crossing => "crossing",
+            Self::Row => "row",
+        }
     }
 }
 

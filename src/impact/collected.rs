@@ -71,7 +71,7 @@ pub struct Pending {
     pub modes: Vec<Mode>,
 }
 
-/// The number of answers, and of their outcomes, whose memory is kept.
+/// The number of answers whose memory is kept.
 pub const RECYCLED: usize = 16;
 
 /// Memory of outcomes that is reused.
@@ -97,8 +97,8 @@ pub struct OutcomeLists {
 impl OutcomeMemory {
     /// Takes the memory of outcomes that are no longer needed.
     pub fn recycle(&mut self, mut outcomes: Vec<Outcome>) {
-        let room = RECYCLED.saturating_sub(self.lists.len());
-        // Only the lists are moved, because an outcome is large.
+        let room = (4 * RECYCLED).saturating_sub(self.lists.len());
+        // Few states have more than four. Only the lists are moved, because an outcome is large.
         self.lists.extend(outcomes.iter_mut().take(room).map(|own| {
             let motion = Motion { impulse: take(&mut own.impulse), velocity_after: take(&mut own.velocity_after) };
             OutcomeLists { modes: take(&mut own.modes), motion, friction_needed: take(&mut own.friction_needed) }
@@ -257,14 +257,20 @@ impl<'a> Collected<'a> {
     pub fn finish(mut self) -> Findings {
         let found = &mut self.found;
         found.effort.bound = found.visited - found.effort.ball - found.effort.double_double - found.effort.precise;
-        let numbered = |found: usize| (self.memory.numbers[found], found);
-        let place =
-            |found: usize| (0..self.memory.numbers.len()).filter(|&own| numbered(own) < numbered(found)).count();
-        for (_, family) in &mut self.families {
-            family.corners.iter_mut().for_each(|corner| *corner = place(*corner));
-            family.corners.sort_unstable();
+        if !self.families.is_empty() {
+            let numbers = &self.memory.numbers;
+            let mut order: Vec<usize> = (0..numbers.len()).collect();
+            order.sort_by_key(|&found| numbers[found]);
+            let mut places = vec![0; order.len()];
+            for (place, found) in order.into_iter().enumerate() {
+                places[found] = place;
+            }
+            for (_, family) in &mut self.families {
+                family.corners.iter_mut().for_each(|corner| *corner = places[*corner]);
+                family.corners.sort_unstable();
+            }
+            self.families.sort_by_key(|(number, _)| *number);
         }
-        self.families.sort_by_key(|(number, _)| *number);
         let mut outcomes = take(&mut self.memory.outcomes);
         if !self.memory.numbers.is_sorted() {
             let mut numbered: Vec<_> = self.memory.numbers.iter().zip(outcomes.drain(..)).collect();
@@ -276,7 +282,7 @@ impl<'a> Collected<'a> {
         Findings { outcomes, families, rejected, ..self.found }
     }
 
-    /// Adds a decided outcome. It is built in place, because a large value that was just written is slow to move.
+    /// Adds an outcome. It is built in place, because a large value that was just written is slow to move.
     pub fn push(&mut self, number: u64, Solution { modes, numbers, index, margin, range, mut at_zero }: Solution) {
         let Numbers { motion, energy_loss, friction_needed, are_sharp } = numbers;
         let border = match self.options.brief {

@@ -132,7 +132,7 @@ impl Numbers {
     }
 }
 
-/// A decided outcome, before it is listed.
+/// An outcome, before it is listed.
 #[derive(Debug)]
 pub struct Solution {
     /// The strict modes of the velocity.

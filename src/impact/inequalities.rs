@@ -23,7 +23,9 @@ pub struct Inequalities {
     pub determinants: Vec<f64>,
     /// N of every inequality, grouped by combination.
     pub numerators: Vec<f64>,
-    /// Whether the slack of each inequality is zero up to rounding: its sign means nothing.
+    /// Whether each inequality is within its error, so that its sign means nothing.
+    pub rounding: Vec<bool>,
+    /// Whether the slack of each inequality may be zero up to rounding and bad conditioning.
     pub negligible: Vec<bool>,
     /// The end of each combination's range in `numerators`.
     pub ends: Vec<usize>,
@@ -49,6 +51,7 @@ impl Inequalities {
         let mut all = Self::default();
         // With Coulomb friction a contact has eight inequalities over its four modes.
         all.numerators.reserve(2 * contacts * combinations);
+        all.rounding.reserve(2 * contacts * combinations);
         all.negligible.reserve(2 * contacts * combinations);
         all.determinants.reserve(combinations);
         all.ends.reserve(combinations);
@@ -63,10 +66,10 @@ impl Inequalities {
             labels.visit(leaf.modes, problem.laws(), true, |modes| {
                 slacks(leaf, modes, problem.laws(), |slack| {
                     let Rounded { value, .. } = slack.number;
-                    let is_rounding = slack.number.sign() == Sign::Undecided;
+                    let is_rounding = determinant == 0.0 || slack.number.sign() == Sign::Undecided;
                     all.numerators.push(if determinant == 0.0 { 0.0 } else { value * determinant });
-                    let is_small = scale.scaled(&slack, value).abs() < NEGLIGIBLE;
-                    all.negligible.push(determinant == 0.0 || is_rounding || is_small);
+                    all.rounding.push(is_rounding);
+                    all.negligible.push(is_rounding || scale.scaled(&slack, value).abs() < NEGLIGIBLE);
                 });
                 all.determinants.push(determinant);
                 all.ends.push(all.numerators.len());

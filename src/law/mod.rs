@@ -154,7 +154,9 @@ impl<T: Real> Law<T> {
             (Self::Unbounded, Mode::SlidePlus | Mode::SlideMinus) | (Self::Sliding(Friction::Infinite, _), _) => {
                 visit(Inequality::TangentialImpulse, Function::Second);
             }
-            _ => visit(Inequality::NormalImpulse, Function::Second),
+            (Self::Frictionless | Self::Coulomb(_) | Self::Unbounded | Self::Sliding(..), _) => {
+                visit(Inequality::NormalImpulse, Function::Second);
+            }
         }
         match (self, mode) {
             (&Self::Coulomb(mu), Mode::Stick) => {

@@ -18,10 +18,10 @@ pub struct Unsolved {
     pub clearance: Vec<f64>,
     /// What touches at each contact.
     pub touching: Vec<Touching>,
-    /// [`Errors::delassus`] of the problem.
+    /// [`Errors::delassus`] of the problem; infinite if no errors are known.
     pub delassus_error: f64,
-    /// [`Errors::velocity`] of the problem; `None` if they are unknown.
-    pub velocity_errors: Option<Vec<Pair<f64>>>,
+    /// [`Errors::velocity`] of the problem; empty if no errors are known.
+    pub velocity_errors: Vec<Pair<f64>>,
 }
 
 /// The parts of a foot and of the ground that meet at a contact. Where a foot rolls on or slides on they change, but
@@ -38,8 +38,7 @@ pub struct Touching {
 impl Unsolved {
     /// Returns the error bounds of the problem.
     pub fn errors(&self) -> Errors<'_> {
-        let delassus = self.delassus_error;
-        Errors { delassus, velocity: self.velocity_errors.as_deref(), likely: [1.0; 2] }
+        Errors { delassus: self.delassus_error, velocity: Some(&self.velocity_errors), likely: [1.0; 2] }
     }
 }
 
@@ -63,12 +62,16 @@ impl Pipeline<'_> {
             own.flat_map(|foot| foot.outline.corners()).position(|corner| *corner == contact.center)
         };
         let touching = |contact| Touching { corner: corner(contact), ground: surface.part(contact) };
+        // The bounds at hand are those of contact velocities, not of accelerations.
+        let (delassus_error, velocity_errors) = match self.options.aspect {
+            Aspect::Impact => (self.bounds.delassus, self.bounds.velocity.clone()),
+            Aspect::Forces => (f64::INFINITY, Vec::new()),
+        };
         Ok(Unsolved {
             clearance: feet().map(|foot| surface.clearance(foot, &placement)).collect(),
             touching: contacts.iter().map(touching).collect(),
-            delassus_error: self.bounds.delassus,
-            // The bounds at hand are those of contact velocities, not of accelerations.
-            velocity_errors: (self.options.aspect == Aspect::Impact).then(|| self.bounds.velocity.clone()),
+            delassus_error,
+            velocity_errors,
             contacts,
             problem,
         })

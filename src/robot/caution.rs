@@ -227,7 +227,7 @@ fn about_lengths(description: &Description) -> Vec<String> {
     large.into_iter().chain(small).collect()
 }
 
-/// Returns the caution about a mass \[kg\] that is too large for the robot's size \[m\], as of grams.
+/// Returns the caution about a mass \[kg\] too large for the robot's size \[m\], as grams taken for kilograms are.
 pub(super) fn about_mass(mass: f64, size: f64) -> Option<String> {
     (mass > DENSEST * size * size * size).then(|| {
         let [mass, size] = [mass, size].map(rounded);
@@ -528,7 +528,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Returns whether this rotation of a hinge aligns all joints beyond that `stays` marks, up to the file's digits.
+/// Returns whether this rotation of a hinge aligns all joints beyond it that `stays` marks, up to the file's digits.
 fn serves_all(seen: &Seen, (hinge, angle): (usize, f64), stays: &[bool]) -> bool {
     let Seen { description, pose, .. } = seen;
     let turned = turn(pose.axes[hinge], angle);
@@ -539,7 +539,8 @@ fn serves_all(seen: &Seen, (hinge, angle): (usize, f64), stays: &[bool]) -> bool
     })
 }
 
-/// Returns the angle \[rad\] by which a rotation about the unit vector `hinge` aligns `axis` with the plane's normal.
+/// Returns the angle \[rad\] by which a rotation about `hinge` aligns `axis`, both of length 1, with the plane's normal;
+/// `None` if none does.
 fn angle_into_line(axis: [f64; 3], hinge: [f64; 3], plane: Plane, tolerance: f64) -> Option<f64> {
     let [_, normal, _] = plane.axes();
     let cross =

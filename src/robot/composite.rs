@@ -16,7 +16,8 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 const ROUNDED: f64 = 1e-3;
 
 /// Returns whether a rigid body can have this inertia about its center of mass: no principal moment exceeds the sum of
-/// the other two (Featherstone 2008, section 2.13). Equivalently, no principal minor of `tr(I) / 2 - I` is negative.
+/// the other two, so that none is negative (Featherstone 2008, section 2.13). Equivalently, no principal minor of
+/// `tr(I) / 2 - I` is negative.
 pub(super) fn is_physical(inertia: &Matrix) -> bool {
     let largest = inertia.as_flattened().iter().map(|entry| entry.abs()).fold(0.0, f64::max);
     if largest == 0.0 {

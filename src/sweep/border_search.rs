@@ -65,13 +65,7 @@ impl Tracked {
     }
 
     fn is_negligible(self, watched: &Watched) -> bool {
-        let negligible = &watched.inequalities.negligible;
-        matches!(self, Self::Numerator(at) if negligible.get(at).is_some_and(|&negligible| negligible))
-    }
-
-    /// Returns whether it is the same quantity as in `node`, but only rounding.
-    fn is_rounding_in(self, watched: &Watched, node: &Watched) -> bool {
-        self.is_in(watched, node) && self.is_negligible(watched)
+        matches!(self, Self::Numerator(at) if watched.inequalities.negligible[at])
     }
 
     fn values(self, nodes: &[Arc<Watched>]) -> [f64; NODES] {
@@ -246,8 +240,12 @@ impl<W: FnMut(f64) -> Seen> Search<'_, W> {
         };
         // Its sign means nothing between two places where it is only rounding.
         let is_skipped = |watch: &mut W, window: [f64; 2]| {
-            let mut is_rounding = |x: f64| watch(place(x)).is_some_and(|own| quantity.is_rounding_in(&own, &nodes[0]));
-            quantity.is_excluded(nodes, window) || window.into_iter().all(&mut is_rounding)
+            let mut is_rounding = |at: usize, x: f64| {
+                let watched = watch(place(x)).filter(|watched| quantity.is_in(watched, &nodes[0]));
+                watched.is_some_and(|watched| watched.inequalities.rounding[at])
+            };
+            quantity.is_excluded(nodes, window)
+                || matches!(quantity, Tracked::Numerator(at) if window.into_iter().all(|x| is_rounding(at, x)))
         };
         let curve = Quartic::through(values);
         let turns = curve.turns();

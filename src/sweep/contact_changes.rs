@@ -27,6 +27,7 @@ pub fn are_alike(one: &Seen, other: &Seen) -> bool {
             one.contacts == other.contacts
                 && one.touching == other.touching
                 && one.inequalities.ends == other.inequalities.ends
+                && one.clearance.len() == other.clearance.len()
         }
         (one, other) => one.is_none() && other.is_none(),
     }

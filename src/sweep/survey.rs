@@ -77,7 +77,7 @@ impl Survey {
         let mut kinds: Vec<Arc<Regime>> = Vec::new();
         let mut dependent = false;
         let mut region = |(index, [Probe { at: begin, regime }, _]): (usize, Stretch)| {
-            let from = index.checked_sub(1).map_or(parameter.from, |before| brackets[before].at());
+            let from = index.checked_sub(1).map_or(samples[0].at, |before| brackets[before].at());
             let to = brackets.get(index).map_or(parameter.to, Bracket::at);
             let kind = kinds.iter().position(|known| *known == regime).unwrap_or_else(|| {
                 kinds.push(Arc::clone(&regime));
