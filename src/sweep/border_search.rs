@@ -65,7 +65,7 @@ impl Tracked {
     }
 
     fn is_negligible(self, watched: &Watched) -> bool {
-        matches!(self, Self::Numerator(at) if watched.inequalities.negligible[at])
+        matches!(self, Self::Numerator(at) if watched.inequalities.negligible.get(at) == Some(&true))
     }
 
     fn values(self, nodes: &[Arc<Watched>]) -> [f64; NODES] {
@@ -242,7 +242,7 @@ impl<W: FnMut(f64) -> Seen> Search<'_, W> {
         let is_skipped = |watch: &mut W, window: [f64; 2]| {
             let mut is_rounding = |at: usize, x: f64| {
                 let watched = watch(place(x)).filter(|watched| quantity.is_in(watched, &nodes[0]));
-                watched.is_some_and(|watched| watched.inequalities.rounding[at])
+                watched.is_some_and(|watched| watched.inequalities.rounding.get(at) == Some(&true))
             };
             quantity.is_excluded(nodes, window)
                 || matches!(quantity, Tracked::Numerator(at) if window.into_iter().all(|x| is_rounding(at, x)))
