@@ -159,7 +159,7 @@ impl Parts {
     pub fn part(&mut self) -> Result<Option<Part>> {
         self.is_empty()?;
         let Some((columns, start)) = self.ready.take() else { return Ok(None) };
-        let rows = columns.rows();
+        let rows = columns.rows;
         let (count, first) = (TOGETHER.min(rows - start), self.next);
         self.next += count;
         if start + count < rows {

@@ -250,10 +250,7 @@ impl Row<'_> {
             Source::Text(cells, _) if cells.len() == self.header.columns.len() => cells,
             Source::Text(..) => return None,
             #[cfg(feature = "columnar")]
-            Source::Columns(columns, row) => {
-                let some = columns.carried.num_columns() > 0;
-                return some.then(|| Carried::Columns(Arc::clone(&columns.carried), row));
-            }
+            Source::Columns(columns, row) => return Some(Carried::Columns(columns.carried.clone()?, row)),
         };
         self.header.place(TableColumn::Carried)?;
         let cells = self.header.places(TableColumn::Carried).filter_map(|at| cells.get(at)).collect();

@@ -18,8 +18,9 @@ pub(super) struct Typed {
     whole: [Vec<(usize, Float64Array)>; 2],
     /// The indices of all other columns.
     pub open: Vec<usize>,
-    /// The columns that are carried through.
-    pub carried: Arc<RecordBatch>,
+    /// The columns that are carried through, if there are any.
+    pub carried: Option<Arc<RecordBatch>>,
+    pub rows: usize,
 }
 
 #[derive(Debug)]
@@ -101,7 +102,8 @@ impl Typed {
                 _ => open.push(at),
             }
         }
-        Ok(Self { columns: typed, whole, open, carried: Arc::new(carried) })
+        let carried = (carried.num_columns() > 0).then(|| Arc::new(carried));
+        Ok(Self { columns: typed, whole, open, carried, rows: batch.num_rows() })
     }
 
     /// Reads the coordinates whose columns hold finite numbers only, without a check per cell.
@@ -110,10 +112,6 @@ impl Typed {
         for (numbers, columns) in [&mut state.position, &mut state.velocity].into_iter().zip(&self.whole) {
             columns.iter().for_each(|(to, column)| numbers[*to] = column.value(row));
         }
-    }
-
-    pub fn rows(&self) -> usize {
-        self.carried.num_rows()
     }
 
     pub fn cell(&self, at: usize, row: usize) -> Cell<'_> {
