@@ -58,7 +58,7 @@ pub struct Question<'r> {
 }
 
 /// Rows whose states are read before they are answered, and answered before their results are written: the processor's
-/// caches keep what each of these steps needs, which saves 6 % of the time.
+/// caches keep what each of these steps needs, which saves 4 % of the time.
 const TOGETHER: usize = 8;
 
 /// Limit of the memory that is reserved for the answers to a chunk \[bytes\].

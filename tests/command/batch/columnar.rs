@@ -253,6 +253,42 @@ fn many_rows_are_read_together_and_none_is_lost() {
 }
 
 #[test]
+fn a_row_takes_nothing_from_the_rows_before() {
+    // Rows that give x and z, rows whose stance places the base, and one that does both.
+    let placed = |row: usize| row % 3 == 1 || row == 11;
+    let numbers = |number: fn(usize) -> f64, is_empty: fn(usize) -> bool| -> ArrayRef {
+        Arc::new((0..24).map(|row| (!is_empty(row)).then(|| number(row))).collect::<Float64Array>())
+    };
+    let columns: [(&str, ArrayRef); 6] = [
+        ("q_base_x", numbers(|row| row as f64, |row| row % 3 == 1)),
+        ("q_base_z", numbers(|_| 0.9, |row| row % 3 == 1 || row == 11)),
+        ("v_base_x", numbers(|_| 0.3, |row| row % 3 == 1)),
+        ("v_base_z", numbers(|_| -1.0, |row| row % 3 == 1)),
+        ("q_left_hip", numbers(|row| 0.01 * row as f64, |_| false)),
+        ("stance", texts(&(0..24).map(|row| placed(row).then_some("left_foot")).collect::<Vec<_>>())),
+    ];
+    let run = |input: &str| {
+        let run = heelstrike(&["batch", RAMONE, input, "--friction", "0.5", "--refused", "ok"]).well();
+        let without_line = |mut answer: Value| {
+            answer.as_object_mut().expect("an answer").remove("line");
+            answer
+        };
+        run.lines().into_iter().map(without_line).collect::<Vec<_>>()
+    };
+    let found = run(&written("placed.parquet", &columns));
+    let refused = found.iter().filter(|answer| answer["error"].is_object()).count();
+    assert!((1..20).contains(&refused), "{refused}");
+    let table = file("placed.csv", as_csv(&written("placed.arrow", &columns)));
+    for (row, found) in found.iter().enumerate() {
+        let columns = columns.each_ref().map(|(name, column)| (*name, column.slice(row, 1)));
+        let alone = run(&written("alone.parquet", &columns));
+        assert_eq!(json!(alone), json!([found]), "row {row}");
+    }
+    let verdicts = |answers: &[Value]| answers.iter().map(|answer| answer["verdict"].clone()).collect::<Vec<_>>();
+    assert_eq!(verdicts(&run(&table)), verdicts(&found));
+}
+
+#[test]
 fn columns_that_do_not_fit_are_refused_as_a_whole() {
     let numbers: ArrayRef = Arc::new(Float64Array::from(vec![0.5, 0.5]));
     let words = texts(&[Some("0.5"), None]);
