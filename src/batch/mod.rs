@@ -153,7 +153,7 @@ impl<'q> Batch<'q> {
         let Self { answerer, states, .. } = self;
         let mut block = answerer.block(part.count());
         let Question { robot, defaults, header, .. } = answerer.question;
-        let mut rows = header.into_iter().flat_map(|header| part.rows(header));
+        let mut rows = header.iter().flat_map(|header| part.rows(header));
         let (mut group, mut answers) = (Vec::with_capacity(TOGETHER), Vec::with_capacity(TOGETHER));
         loop {
             group.extend(states.iter_mut().zip(&mut rows).map(|(state, row)| (row, row.read(robot, defaults, state))));

@@ -262,6 +262,7 @@ pub struct Pipeline<'r> {
     scratch: Scratch,
     /// Memory for the next state and for the next answers.
     spare: Option<Box<Prepared>>,
+    #[expect(clippy::vec_box, reason = "an answer is large, and moved as a box")]
     recycled: Vec<Box<Impact>>,
 }
 
