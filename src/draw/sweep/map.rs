@@ -79,8 +79,14 @@ fn letters(x: &PlotAxis, y: &PlotAxis, map: &Map) -> Vec<PlotShape> {
         if fitting.is_empty() {
             small.push((index, area));
         }
+        // Several middles may lie in one part of the area, which has one letter.
+        let first = lettered.len();
         for (text, room) in fitting {
-            lettered.push((part(text.middle), room));
+            let own = part(text.middle);
+            if lettered[first..].iter().any(|(part, _)| *part == own) {
+                continue;
+            }
+            lettered.push((own, room));
             shapes.push(label(index, &text));
             taken.push(outline(&text));
             texts.push(text);
@@ -203,6 +209,14 @@ mod tests {
                 "{name}"
             );
         }
+    }
+
+    #[test]
+    fn a_part_with_two_middles_has_one_letter() {
+        let axis = PlotAxis { range: Some((0.0, 1.0)), ..PlotAxis::default() };
+        let mut map = strips(&[0.5, 0.5]);
+        map.areas[0].middles.push(([0.25, 0.1], 0.1));
+        assert_eq!(letters(&axis, &axis, &map).len(), 2);
     }
 
     #[test]
