@@ -44,7 +44,7 @@ pub(super) fn only_document(input: &InputFile) -> crate::Result<Document<'_>> {
 }
 
 /// Returns the error for a text without a `what`: it is empty, or an empty list.
-fn nothing(what: &str, text: &str) -> Error {
+pub(super) fn nothing(what: &str, text: &str) -> Error {
     let hint = if text.trim().is_empty() { "the input is empty" } else { "the list is empty" };
     Error::new(Reason::Missing(format!("a {what}"))).hint(hint)
 }

@@ -10,6 +10,7 @@ use super::output::{Output, writable};
 use super::picture::{MirrorOptions, PlotOptions};
 use super::progress;
 use super::robot::RobotOptions;
+use super::stream::nothing;
 use super::{Answered, Completion, Failure};
 use crate::budget::SharedBudget;
 use crate::draw::page::{Page, Stops};
@@ -111,7 +112,8 @@ pub(super) fn run(args: &Args) -> Completion {
     let feet = args.robot.feet(&robot)?;
     let input = InputFile::read(&args.study, InputFile::LARGE)?;
     let refuse = |error: Error| input.refuse(error);
-    let study = input.text().and_then(Study::from_json).map_err(refuse)?;
+    let read = |text| if str::trim(text).is_empty() { Err(nothing("study", text)) } else { Study::from_json(text) };
+    let study = input.text().and_then(read).map_err(refuse)?;
     Findings::check_memory(&study).map_err(refuse)?;
     let model = RobotStudy {
         study: &study,

@@ -16,6 +16,7 @@ fn what_cannot_be_read_is_refused() {
     let endless = "more than 64 MiB are not accepted here\n";
     let state = "a state is missing\nhint: the input is empty\n";
     let problem = "a problem is missing\nhint: the input is empty\n";
+    let study = "a study is missing\nhint: the input is empty\n";
     for (arguments, stdin, place, reason) in [
         (&["inspect", "urdf/nobody.urdf"][..], &b""[..], "urdf/nobody.urdf", missing),
         (&["inspect", "urdf"], b"", "urdf", folder),
@@ -32,6 +33,7 @@ fn what_cannot_be_read_is_refused() {
         #[cfg(target_os = "linux")]
         (&["inspect", "/dev/zero"], b"", "/dev/zero", endless),
         (&["impact", RAMONE, "/dev/null"], b"", "/dev/null", state),
+        (&["sweep", RAMONE, "-"], b" \n", "<stdin>", study),
         (IMPACT, b"", "<stdin>", state),
         (&["solve", "-"], b" \n", "<stdin>", problem),
         (IMPACT, b" [ ]\n", "<stdin>", "a state is missing\nhint: the list is empty\n"),
