@@ -5,7 +5,7 @@ use super::feet::Feet;
 use super::merge::{Merged, merge};
 use super::outline::Outline;
 use super::placement::Placement;
-use super::point::{Point, Touch};
+use super::point::{Circle, Point, Touch};
 use super::profile::{Closeness, left_behind};
 use super::surface::{Sunk, Surface};
 use crate::error::{Error, Reason, Result};
@@ -38,20 +38,10 @@ impl Footing<'_> {
     }
 
     /// Returns the contact that a link makes, with the link's name.
-    pub(super) fn contact(&self, link: usize, Touch { circle, ground, gap }: Touch) -> Contact {
-        let mut contact = Contact {
-            link,
-            name: self.feet.name(link),
-            body: circle.body,
-            center: circle.center,
-            offset: circle.offset,
-            radius: circle.radius,
-            point: self.placement.world(circle.body, circle.center),
-            ground,
-            gap,
-        };
-        contact.point = contact.point - contact.normal() * circle.radius;
-        contact
+    pub(super) fn contact(&self, link: usize, touch: Touch) -> Contact {
+        let Touch { circle: Circle { body, center, offset, radius }, ground, gap } = touch;
+        let (name, point) = (self.feet.name(link), self.placement.touched(&touch));
+        Contact { link, name, body, center, offset, radius, point, ground, gap }
     }
 
     /// Returns the contacts that the scene names, which replace those of the feet; `None` if it names none.

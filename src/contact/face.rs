@@ -30,14 +30,14 @@ impl Face {
     /// Creates the face between two different points. Its solid is to the right of the direction from `from` to `to`,
     /// where forward points right and up points up.
     pub fn of_ground(from: Vector<f64>, to: Vector<f64>) -> Self {
-        let Vector { x, z } = unit(to - from);
-        Self { from, to, tangent: Vector::new(x, z), normal: Vector::new(-z, x) }
+        let tangent = unit(to - from);
+        Self { from, to, tangent, normal: -tangent.perpendicular() }
     }
 
     /// Does the same as [`Face::of_ground`] with the solid to the left.
     pub fn of_foot(from: Vector<f64>, to: Vector<f64>) -> Self {
-        let Self { tangent: Vector { x, z }, .. } = Self::of_ground(from, to);
-        Self { from, to, tangent: Vector::new(x, z), normal: Vector::new(z, -x) }
+        let tangent = unit(to - from);
+        Self { from, to, tangent, normal: tangent.perpendicular() }
     }
 
     /// Returns the rotation from the world's axes to (tangent, normal) of a contact with this normal.

@@ -1,6 +1,6 @@
 //! Where the bodies are in the world.
 
-use super::point::{Circle, Point};
+use super::point::{Circle, Point, Touch};
 use crate::dynamics::plan::{Configuration, Plan};
 use crate::dynamics::{Workspace, kinematics};
 use crate::planar::{Rotation, Vector};
@@ -58,6 +58,11 @@ impl Placement {
     /// Returns the world coordinates of the point `local` in the frame of `body`; both in \[m\].
     pub fn world(&self, body: usize, local: Vector<f64>) -> Vector<f64> {
         self.origins[body] + self.turned(body, local)
+    }
+
+    /// Returns the material point of a contact in the world \[m\].
+    pub(super) fn touched(&self, Touch { circle, ground, .. }: &Touch) -> Vector<f64> {
+        self.world(circle.body, circle.center) - ground.apply(Vector::new(0.0, 1.0)) * circle.radius
     }
 
     /// Returns a vector of a body's frame in the world's axes.

@@ -103,14 +103,11 @@ impl Contact {
 
     /// Returns the arm of the contact for bounds of rounding.
     pub fn arm(&self, robot: &Robot) -> Arm {
-        Arm { body: self.body, length: self.stretch(robot) + self.radius }
-    }
-
-    /// Returns the sum of the magnitudes of all terms in the center's coordinates \[m\].
-    fn stretch(&self, robot: &Robot) -> f64 {
-        match self.offset {
+        // The sum of the magnitudes of all terms in the center's coordinates.
+        let stretch = match self.offset {
             Some(offset) => robot.links[self.link].stretch(offset),
             None => self.center.x.abs() + self.center.z.abs(),
-        }
+        };
+        Arm { body: self.body, length: stretch + self.radius }
     }
 }

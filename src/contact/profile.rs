@@ -64,14 +64,14 @@ pub(super) fn touching(
             let height = if stands(corner) { places[corner].z } else { tolerance };
             on_segment(terrain, segment, &outline, corner, Closeness { tolerance: tolerance.max(height), rounding })
         });
-        touches.extend(outer(found.collect(), |touch| face.tangent.dot(place(placement, touch)), foot.bumps));
+        touches.extend(outer(found.collect(), |touch| face.tangent.dot(placement.touched(touch)), foot.bumps));
     }
     let on_segments = touches.len();
     for corner in corners_of(&near).filter(|&corner| terrain.is_convex(corner)) {
         // A contact at this end of an adjacent segment, up to rounding, already stands for the ground corner.
         let known = |touch: &Touch| {
             let [before, after] = terrain.at_corner(corner);
-            let place = place(placement, touch);
+            let place = placement.touched(touch);
             touch.ground == before.axes() && before.past_end(place).abs() <= 2.0 * rounding
                 || touch.ground == after.axes() && after.past_begin(place).abs() <= 2.0 * rounding
         };
@@ -82,7 +82,7 @@ pub(super) fn touching(
         let found = corner_on_corner(terrain, corner, &outline, close).or_else(beneath);
         touches.extend(found);
     }
-    touches.sort_by(|a, b| place(placement, a).x.total_cmp(&place(placement, b).x));
+    touches.sort_by(|a, b| placement.touched(a).x.total_cmp(&placement.touched(b).x));
     Ok(touches)
 }
 
@@ -111,12 +111,6 @@ pub(super) fn within_reach(terrain: &Terrain, foot: &Foot, outline: &Outline, to
 
 fn all(terrain: &Terrain) -> Vec<usize> {
     (1..=terrain.segments().len()).collect()
-}
-
-/// Returns the material point of a contact in the world \[m\].
-fn place(placement: &Placement, touch: &Touch) -> Vector<f64> {
-    let normal = touch.ground.apply(Vector::new(0.0, 1.0));
-    placement.world(touch.circle.body, touch.circle.center) - normal * touch.circle.radius
 }
 
 /// Bounds the rounding of heights \[m\], which are sums of a few terms of this size.

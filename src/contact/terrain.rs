@@ -123,11 +123,11 @@ impl Terrain {
         let inner = corner.filter(|&corner| corner > 0 && corner + 2 < self.faces.len() && self.is_convex(corner));
         let (ground, height) = match inner {
             Some(corner) if !self.is_inside(center) => {
-                let at = self.faces[corner].to;
-                let way = center - at;
+                let [before, after] = self.at_corner(corner);
+                let way = center - before.to;
                 let far = way.length();
                 let meets = far == 0.0 || circle.radius == 0.0 && far <= tolerance;
-                let normal = if meets { self.middle_normal(corner) } else { unit(way) };
+                let normal = unit(if meets { before.normal + after.normal } else { way });
                 (upright(normal), normal.dot(way))
             }
             _ => (self.faces[face].axes(), self.faces[face].height(center)),
@@ -145,11 +145,6 @@ impl Terrain {
         nearest_part(segments.map(|at| (2 * at, off(&self.faces[at]))))
             .or_else(|| nearest_part(corners.map(|at| (2 * at + 1, (point - self.faces[at].to).length()))))
             .unwrap_or_default()
-    }
-
-    fn middle_normal(&self, corner: usize) -> Vector<f64> {
-        let [before, after] = self.at_corner(corner);
-        unit(before.normal + after.normal)
     }
 
     /// Returns the ground's axes and point at x = 0, which define the plane of a stance; `None` if there is no ground.
