@@ -7,12 +7,12 @@
 
 use super::header::{Header, Rates, TableColumn};
 use super::records::{Form, Record};
-use super::rows::Row;
+use super::rows::{Row, Source};
 use super::typed::{Typed, kind, unreadable};
 use crate::{Error, Reason, Result, Robot};
-use arrow_array::RecordBatch;
+use arrow_array::{RecordBatchIterator, RecordBatchReader};
 use arrow_ipc::reader::{FileReader, StreamReader};
-use arrow_schema::{ArrowError, DataType, SchemaRef};
+use arrow_schema::{ArrowError, DataType};
 use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 use std::fs::File;
 use std::io::{BufReader, Read, Seek};
@@ -25,12 +25,9 @@ const TOGETHER: usize = 1024;
 /// The fault of a file that contains more than one stream.
 const JOINED: &str = "more follows the end of the stream: are several joined?";
 
-type Batch = std::result::Result<RecordBatch, ArrowError>;
-
 /// A table with typed columns, read part by part.
 pub struct Parts {
-    batches: Box<dyn Iterator<Item = Batch> + Send>,
-    schema: SchemaRef,
+    batches: Box<dyn RecordBatchReader + Send>,
     /// The columns of the header; empty until it is read.
     columns: Arc<[TableColumn]>,
     /// Columns that were read, and the first of their rows that was not returned yet.
@@ -58,9 +55,7 @@ impl Parts {
     pub fn open(mut file: File, form: Form) -> Result<Self> {
         if form == Form::Parquet {
             let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(unreadable)?;
-            let schema = Arc::clone(builder.schema());
-            let batches = builder.with_batch_size(4 * TOGETHER).build().map_err(unreadable)?;
-            return Ok(Self::new(batches, schema));
+            return builder.with_batch_size(4 * TOGETHER).build().map(Self::new).map_err(unreadable);
         }
         // The first bytes distinguish Arrow's file and stream.
         let mut magic = Vec::new();
@@ -68,9 +63,7 @@ impl Parts {
         if magic != b"ARROW1" {
             return Self::arrow_stream_of(file);
         }
-        let reader = guarded(|| FileReader::try_new_buffered(file, None))?;
-        let schema = reader.schema();
-        Ok(Self::new(reader, schema))
+        guarded(|| FileReader::try_new_buffered(file, None)).map(Self::new)
     }
 
     /// Reads Arrow's stream; what follows its end is not read.
@@ -78,9 +71,7 @@ impl Parts {
     /// # Errors
     /// Returns an error if the input is not such a stream.
     pub fn arrow_stream(input: impl Read + Send + 'static) -> Result<Self> {
-        let reader = guarded(|| StreamReader::try_new(input, None))?;
-        let schema = reader.schema();
-        Ok(Self::new(reader, schema))
+        guarded(|| StreamReader::try_new(input, None)).map(Self::new)
     }
 
     /// Reads a file that contains one stream and nothing else.
@@ -96,11 +87,11 @@ impl Parts {
             },
             next => next,
         });
-        Ok(Self::new(batches, schema))
+        Ok(Self::new(RecordBatchIterator::new(batches, schema)))
     }
 
-    fn new(batches: impl Iterator<Item = Batch> + Send + 'static, schema: SchemaRef) -> Self {
-        Self { batches: Box::new(batches), schema, columns: Arc::new([]), ready: None, next: 1 }
+    fn new(batches: impl RecordBatchReader + Send + 'static) -> Self {
+        Self { batches: Box::new(batches), columns: Arc::new([]), ready: None, next: 1 }
     }
 
     /// Reads the columns' names, as [`Header::read`] does, and checks their types.
@@ -108,10 +99,11 @@ impl Parts {
     /// # Errors
     /// Returns the errors of [`Header::read`], and an error for a column of the wrong type; they have no line.
     pub fn header(&mut self, robot: &Robot, rates: Rates, foreign: &[String]) -> Result<Header> {
-        let names = self.schema.fields().iter().map(|field| field.name().trim().to_owned()).collect();
+        let schema = self.batches.schema();
+        let names = schema.fields().iter().map(|field| field.name().trim().to_owned()).collect();
         let record = Record { bytes: b"", form: Form::Parquet };
         let mut header = Header::named(names, record, robot, rates, foreign).map_err(Error::nowhere)?;
-        for (at, (&column, field)) in header.columns.iter().zip(self.schema.fields()).enumerate() {
+        for (at, (&column, field)) in header.columns.iter().zip(schema.fields()).enumerate() {
             let expected = match (column, kind(field.data_type())) {
                 (TableColumn::Carried | TableColumn::Ignored, _) | (_, DataType::Null) => continue,
                 (TableColumn::Id | TableColumn::Stance | TableColumn::Friction, DataType::Utf8) => continue,
@@ -131,8 +123,8 @@ impl Parts {
             return Err(Error::new(reason).at(format!("column {}", at + 1)).hint("convert the column"));
         }
         let carried: Vec<usize> = header.places(TableColumn::Carried).collect();
-        let carried = self.schema.project(&carried).map_err(unreadable)?;
-        let id = header.id.map(|at| kind(self.schema.field(at).data_type()));
+        let carried = schema.project(&carried).map_err(unreadable)?;
+        let id = header.id.map(|at| kind(schema.field(at).data_type()));
         header.types = Some((Arc::new(carried), id == Some(DataType::Int64)));
         self.columns = header.columns.clone().into();
         Ok(header)
@@ -183,6 +175,7 @@ impl Part {
 
     /// Returns the rows of the part.
     pub fn rows<'p>(&'p self, header: &'p Header) -> impl Iterator<Item = Row<'p>> {
-        (0..self.count).map(move |at| Row::of_columns(header, (&self.columns, self.start + at), self.first + at))
+        let source = move |at: usize| Source::Columns(&self.columns, self.start + at);
+        (0..self.count).map(move |at| Row { header, source: source(at), line: self.first + at })
     }
 }

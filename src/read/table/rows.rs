@@ -39,13 +39,13 @@ pub struct Rows<'h> {
 /// One record, with its header.
 #[derive(Debug, Clone, Copy)]
 pub struct Row<'r> {
-    header: &'r Header,
-    source: Source<'r>,
-    line: usize,
+    pub(super) header: &'r Header,
+    pub(super) source: Source<'r>,
+    pub(super) line: usize,
 }
 
 #[derive(Debug, Clone, Copy)]
-enum Source<'r> {
+pub(super) enum Source<'r> {
     /// Cells, and the bytes from which they were read.
     Text(&'r ByteRecord, &'r [u8]),
     /// Columns, and the row in them.
@@ -189,14 +189,6 @@ impl<'h> Rows<'h> {
 
 fn reader(form: Form) -> csv::Reader<Cursor<Vec<u8>>> {
     form.csv().from_reader(Cursor::default())
-}
-
-#[cfg(feature = "columnar")]
-impl<'r> Row<'r> {
-    /// Creates the row with number `line` in the table from a row of these columns.
-    pub(super) fn of_columns(header: &'r Header, (columns, row): (&'r Typed, usize), line: usize) -> Self {
-        Self { header, source: Source::Columns(columns, row), line }
-    }
 }
 
 /// Returns whether values of this type are numbers or truth values in JSON.
