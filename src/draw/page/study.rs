@@ -134,7 +134,7 @@ fn look(model: &RobotStudy, solver: &mut Solver, point: &[f64]) -> (Keyframe, Re
 fn along(sweep: Sweep, survey: &Survey) -> (Vec<PageRegion>, Vec<String>) {
     let border = |at: Option<usize>, side: &str| {
         let border = sweep.borders.get(at?)?;
-        let sides = [at?, at? + 1].map(|at| sweep.regions[at].side());
+        let sides = [at?, at? + 1].map(|at| (&*sweep.regions[at].letter, &sweep.regions[at].happening));
         let at = sweep.place(border.at, |at| significant(at, 9).to_string());
         Some([format!("{side}, at {at}"), border.transition.in_words(sides)])
     };
@@ -150,13 +150,13 @@ fn along(sweep: Sweep, survey: &Survey) -> (Vec<PageRegion>, Vec<String>) {
 fn areas(sweep: MapSweep, map: &Map) -> (Vec<PageRegion>, Vec<String>) {
     let region = |(region, fill): (&MapRegion, Color)| {
         let border = |border: &BorderCurve| {
-            let [left, right] = border.sides.map(|at| sweep.regions[at].side());
-            let beyond = match (left.letter == region.letter, right.letter == region.letter) {
-                (true, _) => right,
-                (_, true) => left,
+            let sides = border.sides.map(|at| (&*sweep.regions[at].letter, &sweep.regions[at].happening));
+            let beyond = match sides.map(|(letter, _)| letter) {
+                [left, right] if left == region.letter => right,
+                [left, right] if right == region.letter => left,
                 _ => return None,
             };
-            Some([format!("toward {}", beyond.letter), border.transition.in_words([left, right])])
+            Some([format!("toward {beyond}"), border.transition.in_words(sides)])
         };
         let borders = different(sweep.borders.iter().filter_map(border));
         PageRegion { name: region.letter.clone(), fill: fill.hex(), borders }

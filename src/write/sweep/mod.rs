@@ -96,25 +96,6 @@ pub struct Happening<'a> {
     pub has_depth: bool,
 }
 
-/// A region on one side of a border.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct RegionSide<'r> {
-    pub letter: &'r str,
-    pub happening: &'r Happening<'r>,
-}
-
-impl RegionRecord<'_> {
-    pub(crate) fn side(&self) -> RegionSide<'_> {
-        RegionSide { letter: &self.letter, happening: &self.happening }
-    }
-}
-
-impl MapRegion<'_> {
-    pub(crate) fn side(&self) -> RegionSide<'_> {
-        RegionSide { letter: &self.letter, happening: &self.happening }
-    }
-}
-
 impl<'a> Regions<'a> {
     /// Creates the record of a `study`.
     pub fn new(study: &'a Study, findings: &'a Findings) -> Self {

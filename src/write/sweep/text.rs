@@ -1,6 +1,6 @@
 //! The regions of a study as text for people.
 
-use super::{Happening, MapSweep, RegionSide, Regions, Sweep};
+use super::{Happening, MapSweep, Regions, Sweep};
 use crate::error::visible;
 use crate::sweep::{BorderCurve, EndedOutcome, RESOLUTION, Side, Transition};
 use crate::write::{Palette, words, written};
@@ -45,7 +45,7 @@ impl Sweep<'_> {
                 writeln!(out, "{strong}{letter:letters$}{plain}  {place:width$}  {words}")?;
             }
             if let Some(border) = self.borders.get(index) {
-                let sides = [index, index + 1].map(|at| self.regions[at].side());
+                let sides = [index, index + 1].map(|at| (&*self.regions[at].letter, &self.regions[at].happening));
                 let at = self.place(border.at, |at| format!("{at:?}"));
                 let transition = border.transition.in_words(sides);
                 writeln!(out, "{:letters$}  {faint}at {at}: {transition}{plain}", "")?;
@@ -73,8 +73,9 @@ impl MapSweep<'_> {
         writeln!(out)?;
         let mut written: Vec<String> = Vec::new();
         for BorderCurve { sides, transition, .. } in self.borders {
-            let [left, right] = sides.map(|at| self.regions[at].side());
-            let line = format!("between {} and {}: {}", left.letter, right.letter, transition.in_words([left, right]));
+            let sides = sides.map(|at| (&*self.regions[at].letter, &self.regions[at].happening));
+            let [left, right] = sides.map(|(letter, _)| letter);
+            let line = format!("between {left} and {right}: {}", transition.in_words(sides));
             if !written.contains(&line) {
                 writeln!(out, "{faint}{line}{plain}")?;
                 written.push(line);
@@ -117,16 +118,16 @@ impl Happening<'_> {
 }
 
 impl Transition {
-    /// Describes what changes between these regions, as a sentence without its period.
-    pub(crate) fn in_words(&self, [below, above]: [RegionSide<'_>; 2]) -> String {
+    /// Describes what changes between these regions, each with its letter, as a sentence without its period.
+    pub(crate) fn in_words(&self, [below, above]: [(&str, &Happening<'_>); 2]) -> String {
         match self.refused {
-            [Some(_), None] => return format!("from {} on states are answered", above.letter),
-            [None, Some(_)] => return format!("from {} on states are refused", above.letter),
+            [Some(_), None] => return format!("from {} on states are answered", above.0),
+            [None, Some(_)] => return format!("from {} on states are refused", above.0),
             [Some(_), Some(_)] => return "states are refused for another reason".to_owned(),
             [None, None] => {}
         }
         let ends = |EndedOutcome { contact, inequality, modes, side }: &EndedOutcome| {
-            let RegionSide { letter, happening } = if *side == Side::Below { below } else { above };
+            let (letter, happening) = if *side == Side::Below { below } else { above };
             let names = happening.contacts.unwrap_or_default();
             let own = names.iter().position(|name| name == contact).and_then(|at| modes.get(at));
             let ended = own.map_or("an outcome", |&mode| words::verb(mode)[1]);
@@ -141,10 +142,9 @@ impl Transition {
             }
             sentence
         };
-        let alone =
-            |contact: &String, side: RegionSide<'_>| format!("{contact} touches the ground in {} only", side.letter);
-        let opening = self.opening.iter().map(|contact| alone(contact, below));
-        let closing = self.closing.iter().map(|contact| alone(contact, above));
+        let alone = |contact: &String, letter: &str| format!("{contact} touches the ground in {letter} only");
+        let opening = self.opening.iter().map(|contact| alone(contact, below.0));
+        let closing = self.closing.iter().map(|contact| alone(contact, above.0));
         let all: Vec<String> = self.ended.iter().map(ends).chain(opening).chain(closing).collect();
         if all.is_empty() {
             return "the outcomes change, but no inequality of either side is seen to pass zero".to_owned();
