@@ -158,9 +158,7 @@ impl Welded {
             link = description.joints[*joint].child;
         }
         // Two of the three joints are prismatic, so one is revolute.
-        match slides[..] {
-            [a, b] if (a.x * b.z - a.z * b.x).abs() > PARALLEL => Some(chain),
-            _ => None,
-        }
+        let [a, b] = slides[..] else { return None };
+        ((a.x * b.z - a.z * b.x).abs() > PARALLEL).then_some(chain)
     }
 }

@@ -131,10 +131,8 @@ impl Gait {
 
     /// Returns the friction of all contacts; `None` if it differs between contacts, is infinite or is not positive.
     fn friction(&self) -> Option<f64> {
-        match self.frictions[..] {
-            [Friction::Finite(mu)] if mu > 0.0 => Some(mu),
-            _ => None,
-        }
+        let [Friction::Finite(mu)] = self.frictions[..] else { return None };
+        (mu > 0.0).then_some(mu)
     }
 
     /// Returns the names of the feet, and a mark for each contact in each outcome of every impact. The marks of one

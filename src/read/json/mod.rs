@@ -181,10 +181,8 @@ impl<'n> Node<'n> {
 
     /// Returns the string; `None` if the value is none.
     pub(crate) fn as_text(&self) -> Option<&'n str> {
-        match self.value {
-            Value::Text(text) => Some(text),
-            _ => None,
-        }
+        let Value::Text(text) = self.value else { return None };
+        Some(text)
     }
 
     pub(crate) fn is_object(&self) -> bool {

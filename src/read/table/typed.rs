@@ -129,25 +129,19 @@ impl Typed {
     /// Returns the number in a cell of a column of numbers.
     #[inline]
     pub fn number(&self, at: usize, row: usize) -> Option<f64> {
-        match &self.columns[at] {
-            Column::Numbers(numbers) if numbers.is_valid(row) => Some(numbers.value(row)),
-            _ => None,
-        }
+        let Column::Numbers(numbers) = &self.columns[at] else { return None };
+        numbers.is_valid(row).then(|| numbers.value(row))
     }
 
     /// Returns the text in a cell of a column of text, as it is.
     pub fn text(&self, at: usize, row: usize) -> Option<&str> {
-        match &self.columns[at] {
-            Column::Texts(texts) if texts.is_valid(row) => Some(texts.value(row)),
-            _ => None,
-        }
+        let Column::Texts(texts) = &self.columns[at] else { return None };
+        texts.is_valid(row).then(|| texts.value(row))
     }
 
     /// Returns the number in a cell of a column of whole numbers.
     pub fn integer(&self, at: usize, row: usize) -> Option<i64> {
-        match &self.columns[at] {
-            Column::Integers(numbers) if numbers.is_valid(row) => Some(numbers.value(row)),
-            _ => None,
-        }
+        let Column::Integers(numbers) = &self.columns[at] else { return None };
+        numbers.is_valid(row).then(|| numbers.value(row))
     }
 }
