@@ -4,8 +4,7 @@
 
 use heelstrike::impact::Friction;
 use heelstrike::pipeline::{Options, Pipeline};
-use heelstrike::state::State;
-use heelstrike::state::{ByLink, Scene};
+use heelstrike::state::{ByLink, Scene, State};
 use heelstrike::{Result, Robot};
 
 fn main() -> Result<()> {

@@ -18,8 +18,7 @@ use heelstrike::impact::enumerate::{Leaf, Tableau};
 use heelstrike::impact::{AnalysisOptions, ContactProblem, Mode, Scratch};
 use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::planar::{Rotation, Vector};
-use heelstrike::state::NamedContact;
-use heelstrike::state::{Defaults, State};
+use heelstrike::state::{Defaults, NamedContact, State};
 
 const STATE: &str = r#"{"position": {"base": {"z": 0.4, "pitch": 0.05},
     "joints": {"left_hip": 1.2, "left_knee": -1.5, "right_hip": 0.3, "right_knee": -1.6}},

@@ -8,8 +8,7 @@ use crate::impact::ContactProblem;
 use crate::law::Friction;
 use crate::planar::Vector;
 use crate::robot::Robot;
-use crate::state::State;
-use crate::state::{ByLink, NamedContact, Scene};
+use crate::state::{ByLink, NamedContact, Scene, State};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, FRAC_PI_6, PI};
 
 /// A case of the suite.

@@ -1,7 +1,6 @@
 //! `heelstrike batch`: the answers to many states, in order.
 
 use super::diagnostic::{is_quiet, note, note_all, with_flags};
-use super::format;
 use super::options::{
     BudgetOptions, Choices, CsvOptions, DetailOptions, NextOption, SceneOptions, Seconds, ThreadOptions, choice,
     pipeline_options, seconds,
@@ -13,7 +12,7 @@ use super::recording::RecordingOptions;
 use super::resume::BatchOutput;
 use super::robot::RobotOptions;
 use super::sink::{OutputSink, note_part};
-use super::{Answered, Completion, Failure, input, progress};
+use super::{Answered, Completion, Failure, format, input, progress};
 use crate::batch::{self, AHEAD, Batch, Question, States, Summary};
 use crate::contact::Feet;
 use crate::draw::page::Gait;

@@ -1,17 +1,15 @@
 //! `heelstrike sweep`: outcomes against one or two parameters.
 
 use super::diagnostic::{note_all, report};
-use super::format;
 use super::input::InputFile;
 use super::options::{
     BudgetOptions, Choices, CsvOptions, DetailOptions, SceneOptions, ThreadOptions, choice, pipeline_options,
 };
 use super::output::{Output, writable};
 use super::picture::{MirrorOptions, PlotOptions};
-use super::progress;
 use super::robot::RobotOptions;
 use super::stream::nothing;
-use super::{Answered, Completion, Failure};
+use super::{Answered, Completion, Failure, format, progress};
 use crate::budget::SharedBudget;
 use crate::draw::page::{Page, Stops};
 use crate::draw::sweep as picture;

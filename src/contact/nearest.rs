@@ -1,15 +1,14 @@
 //! Finds the open foot nearest to the ground, and the rise along z that puts a robot's lowest foot on the ground.
 
-use super::Contact;
 use super::detect::Footing;
 use super::face::Face;
 use super::feet::Foot;
 use super::outline::Outline;
 use super::placement::Placement;
 use super::point::{Point, Touch, points};
-use super::profile;
 use super::surface::Surface;
 use super::terrain::Terrain;
+use super::{Contact, profile};
 use crate::error::{Error, Reason, Result};
 use crate::planar::Vector;
 

@@ -1,7 +1,6 @@
 //! Reads studies: parameters, and a state and a robot whose numbers are expressions of them.
 
-use super::state as read;
-use super::variation;
+use super::{state as read, variation};
 use crate::budget::BudgetSpent;
 use crate::description::Description;
 use crate::pipeline::Aspect;

@@ -2,8 +2,7 @@
 
 use super::result::{ContactRecord, ErrorObject, LeftOutRecord, NearestRecord, Rejected, Report};
 use crate::Mode;
-use crate::impact::Range;
-use crate::impact::{Border, Family, OpenCombinations, Outcome, Verdict};
+use crate::impact::{Border, Family, OpenCombinations, Outcome, Range, Verdict};
 use crate::pipeline::{SpringForce, Unrealized};
 use crate::planar::{Pair, Vector};
 use crate::read::table::CarriedValue;

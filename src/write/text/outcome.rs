@@ -4,9 +4,8 @@ use super::Writer;
 use crate::impact::{Family, Next, Verdict};
 use crate::pipeline::{Driven, Sustained, Unrealized};
 use crate::planar::Vector;
-use crate::write::Palette;
 use crate::write::table::{Table, number, scale};
-use crate::write::words;
+use crate::write::{Palette, words};
 use crate::{Mode, Outcome};
 use std::fmt::Write;
 

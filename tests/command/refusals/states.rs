@@ -1,8 +1,7 @@
 //! States and problems that are refused.
 
 use super::{assert_refused, lines};
-use crate::RAMONE;
-use crate::schema;
+use crate::{RAMONE, schema};
 use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::read::Problem;
 use heelstrike::state::{Defaults, State};

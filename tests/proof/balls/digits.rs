@@ -1,10 +1,9 @@
 //! Every printed number of a proven outcome against balls of 832 bits, relative to its scale. `HEELSTRIKE_DIGITS`
 //! sets the number of states.
 
-use super::environment;
 use super::loads::imbalance;
-use super::oracle;
 use super::states::{Model, chain, models, tied_models, tree};
+use super::{environment, oracle};
 use crate::support::digits::{PROMISED, Truth};
 use crate::support::parallel::total;
 use crate::support::random::Random;
