@@ -219,17 +219,19 @@ impl Description {
         // Some programs append zero bytes to a file.
         let text = text.strip_prefix('\u{feff}').unwrap_or(text).trim_end_matches('\0');
         let mut description = draft::read(text)?;
-        let root = tree::connect(&mut description.links, &description.joints);
+        let tree = tree::connect(&description.links, &description.joints);
         // For example, <Joint> in place of <joint>.
         let of_robot = |name: &&String| name.starts_with('<') && name.contains(" in <robot>");
         let misspelt = description.misspelt.iter().find(of_robot);
         let misspelt = misspelt.map(|name| format!("not read, and perhaps misspelt: {name}"));
         let foreign = description.has_foreign_joints().then(|| FOREIGN_JOINTS.to_owned());
-        description.root = root.map_err(|error: Error| {
+        let (inward, root) = tree.map_err(|error: Error| {
             let Some(remedy) = error.remedy().map(str::to_owned) else { return error };
             let hints: Vec<String> = [remedy].into_iter().chain(misspelt).chain(foreign).collect();
             error.hint(hints.join("; "))
         })?;
+        description.root = root;
+        description.links.iter_mut().zip(inward).for_each(|(link, joint)| link.joint = joint);
         Ok(description)
     }
 

@@ -5,16 +5,14 @@ use crate::law::Friction;
 use crate::planar::Vector;
 use crate::robot::Base;
 use crate::state::{
-    AppliedImpulse, ByLink, Defaults, Ground, LinkPoint, NamedContact, NamedLoop, PLACED_BY_JOINTS, Profile, SpringEnd,
-    SpringLaw, State, Uncertainty, VirtualSpring, bolted, check_restitution, check_slope, placed_twice,
+    AppliedImpulse, ByLink, Defaults, Ground, LOOP_LIMIT, LinkPoint, NamedContact, NamedLoop, PLACED_BY_JOINTS,
+    Profile, SpringEnd, SpringLaw, State, Uncertainty, VirtualSpring, bolted, check_restitution, check_slope,
+    placed_twice,
 };
 use crate::{Reason, Result, Robot};
 
 /// The entries of a floating base in the order of q.
 pub(super) const BASE: [&str; 3] = ["x", "z", "pitch"];
-
-/// The greatest number of loops of a state: each costs as much as a contact, and no robot has a tenth of this number.
-const LOOP_LIMIT: usize = 256;
 
 /// Reads loops of `robot` from a JSON list in the format of a state's field `loops`.
 pub fn loops_from_json(text: &str, robot: &Robot) -> Result<Vec<NamedLoop>> {

@@ -59,13 +59,12 @@ impl Robot {
     ///
     /// # Errors
     /// Returns [`Reason::Inconsistent`] if mimic joints form a cycle, if a joint cannot be frozen at a value or does not
-    /// exist, or if nothing that moves has mass. Returns [`Reason::OutOfRange`] for a negative moment of inertia about the normal,
-    /// and for an axis tolerance beyond [`Reduction::WIDEST_TOLERANCE`]. Returns [`Reason::NotFinite`] if sums of sizes
-    /// or masses exceed the range of f64.
-    ///
-    /// # Panics
-    /// May panic if links or joints of the description were changed such that they no longer form one tree.
+    /// exist, or if nothing that moves has mass. Returns [`Reason::NotATree`] if links or joints of the description were
+    /// changed such that they do not form one tree. Returns [`Reason::OutOfRange`] for a negative moment of inertia about
+    /// the normal, and for an axis tolerance beyond [`Reduction::WIDEST_TOLERANCE`]. Returns [`Reason::NotFinite`] if
+    /// sums of sizes or masses exceed the range of f64.
     pub fn reduce(description: &Description, reduction: &Reduction) -> Result<Self> {
+        description.check()?;
         let tolerance = reduction.axis_tolerance.unwrap_or(PARALLEL);
         if !(0.0..=Reduction::WIDEST_TOLERANCE).contains(&tolerance) {
             let (what, allowed) = ("`axis_tolerance`".to_owned(), "between 0 and 0.5 rad");

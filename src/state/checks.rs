@@ -11,6 +11,9 @@ use std::f64::consts::FRAC_PI_2;
 /// The remedy for a bolted robot that is to be placed.
 pub(crate) const PLACED_BY_JOINTS: &str = "put its foot on the ground by its joints, or give `base: floating`";
 
+/// The greatest number of loops of a state: each costs as much as a contact, and no robot has a tenth of this number.
+pub(crate) const LOOP_LIMIT: usize = 256;
+
 impl State {
     /// Refuses wrong lengths, unknown indices, numbers out of range, and a base that cannot be placed or is twice.
     pub(crate) fn check(&self, robot: &Robot) -> Result<()> {
@@ -39,7 +42,13 @@ impl Scene {
             check_finite(&point.offset, || format!("{list}[{at}]{end}.offset"))
         };
         self.stance.map_or(Ok(()), |link| index("stance", link, links))?;
-        self.braked.iter().try_for_each(|&joint| index("held", joint, joints))?;
+        for (at, &joint) in self.braked.iter().enumerate() {
+            index("held", joint, joints)?;
+            if self.braked[..at].contains(&joint) {
+                let twice = Reason::Duplicate { what: "joint", name: robot.joints[joint].name.clone() };
+                return Err(Error::new(twice).at(format!("held[{at}]")));
+            }
+        }
         if robot.base != Base::Floating && self.stance.is_some() {
             return Err(bolted("a stance cannot place it").at("stance"));
         }
@@ -62,6 +71,9 @@ impl Scene {
             check_slope(slope).map_err(|error| error.at("ground.slope"))?;
         }
         check_contacts(robot, "contacts", self.contacts.as_deref().unwrap_or_default())?;
+        if self.loops.len() > LOOP_LIMIT {
+            return Err(Error::new(Reason::TooMany { what: "loops", limit: LOOP_LIMIT }).at("loops"));
+        }
         for (at, own) in self.loops.iter().enumerate() {
             point("loops", at, ".a", own.a)?;
             point("loops", at, ".b", own.b)?;

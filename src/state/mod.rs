@@ -7,7 +7,8 @@ mod oddities;
 mod checks;
 
 pub(crate) use checks::{
-    PLACED_BY_JOINTS, bolted, check_contacts, check_restitution, check_slope, coordinate_place, placed_twice,
+    LOOP_LIMIT, PLACED_BY_JOINTS, bolted, check_contacts, check_restitution, check_slope, coordinate_place,
+    placed_twice,
 };
 pub use ground::{Ground, Profile};
 pub(crate) use named::Entries;

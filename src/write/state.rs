@@ -2,7 +2,7 @@
 
 use crate::pipeline::robust::Robustness;
 use crate::state::{ByLink, Ground, LinkPoint, Named, SpringEnd, State, Uncertainty, VirtualSpring};
-use crate::{Friction, Mode, Robot, Verdict};
+use crate::{Friction, Mode, Result, Robot, Verdict};
 use serde::ser::{SerializeMap, Serializer};
 use serde::{Deserialize, Serialize};
 use serde_json::value::{RawValue, to_raw_value};
@@ -13,17 +13,19 @@ impl State {
     /// Returns the state as the JSON object that [`State::from_json`] reads, without the fields that follow from
     /// others.
     ///
-    /// # Panics
-    /// Panics if an index of the state is not one of `robot`.
-    pub fn to_json(&self, robot: &Robot) -> String {
+    /// # Errors
+    /// Returns an error for what [`Pipeline::impact`](crate::Pipeline::impact) refuses of a state of `robot` before any
+    /// work: indices that the robot does not have, wrong lengths and numbers out of range.
+    pub fn to_json(&self, robot: &Robot) -> Result<String> {
+        self.check(robot)?;
         // This cannot fail, because all keys of a state are strings.
-        serde_json::to_string(&StateRecord { robot, state: self }).unwrap_or_default()
+        Ok(serde_json::to_string(&StateRecord { robot, state: self }).unwrap_or_default())
     }
 }
 
-/// Returns the state as JSON, for a field of a result.
+/// Returns the state as JSON, for a field of a result; `None` if it is no state of `robot`.
 pub(super) fn raw_state(robot: &Robot, state: &State) -> Option<Box<RawValue>> {
-    to_raw_value(&StateRecord { robot, state }).ok()
+    state.check(robot).ok().and_then(|()| to_raw_value(&StateRecord { robot, state }).ok())
 }
 
 /// A state that is written with the names of its robot's links and joints.
@@ -100,7 +102,7 @@ impl StateRecord<'_> {
 }
 
 impl Serialize for StateRecord<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
         let State { id, position, velocity, scene, uncertainty } = self.state;
         let mut map = serializer.serialize_map(None)?;
         entry(&mut map, "id", id.is_some(), id)?;
@@ -145,7 +147,12 @@ impl Serialize for StateRecord<'_> {
     }
 }
 
-fn entry<M: SerializeMap>(map: &mut M, name: &str, given: bool, value: &impl Serialize) -> Result<(), M::Error> {
+fn entry<M: SerializeMap>(
+    map: &mut M,
+    name: &str,
+    given: bool,
+    value: &impl Serialize,
+) -> std::result::Result<(), M::Error> {
     if given { map.serialize_entry(name, value) } else { Ok(()) }
 }
 
@@ -165,7 +172,7 @@ impl From<HoldsRecord> for Value {
 impl TryFrom<Value> for HoldsRecord {
     type Error = &'static str;
 
-    fn try_from(value: Value) -> Result<Self, Self::Error> {
+    fn try_from(value: Value) -> std::result::Result<Self, Self::Error> {
         let is_known = value.is_boolean() || value == "unknown";
         is_known.then_some(Self(value.as_bool())).ok_or("expected true, false or \"unknown\"")
     }

@@ -55,7 +55,8 @@ fn answer(bytes: &[u8], kept: &mut Pipeline, case: &str) -> bool {
     for document in documents(text) {
         let state = read(document.text).map_err(|error| document.locate(error));
         let Some(state) = accepted(state, case) else { continue };
-        let again = read(&state.to_json(&RAMONE));
+        let written = state.to_json(&RAMONE).unwrap_or_else(|error| panic!("not written: {error}\n{case}"));
+        let again = read(&written);
         assert_eq!(again.ok().as_ref(), Some(&state), "written, it reads as another state\n{case}");
         answered |= check_state(&state, &RAMONE, kept, &options(), case);
     }

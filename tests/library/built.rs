@@ -75,6 +75,24 @@ fn half_widths_built_in_code_are_checked() {
     assert_eq!(of(&|own| own.rotor_inertia = vec![0.1]), short);
 }
 
+#[test]
+fn an_index_that_the_robot_does_not_have_is_refused() {
+    let robot = ramone();
+    let of = |change: &dyn Fn(&mut State)| refused(&robot, change);
+    let none = |count: usize, what| format!("no index 99: the robot has {count} {what}, counted from 0");
+    let (link, joint) = (none(robot.links().len(), "links"), none(robot.joints().len(), "joints"));
+    let [base, point] = [0, 99].map(|link| LinkPoint { link, offset: [0.0; 3] });
+    let foreign = NamedContact { link: 99, ..contact(0.0, 0.0) };
+    assert_eq!(of(&|state| state.scene.stance = Some(99)), format!("stance: {link}"));
+    assert_eq!(of(&|state| state.scene.contacts = Some(vec![foreign])), format!("contacts: {link}"));
+    assert_eq!(of(&|state| state.scene.loops = vec![NamedLoop { a: base, b: point }]), format!("loops: {link}"));
+    assert_eq!(of(&|state| state.scene.braked = vec![99]), format!("held: {joint}"));
+    let friction = ByLink { default: None, links: [(99, Friction::ZERO)].into() };
+    assert_eq!(of(&|state| state.scene.friction = friction.clone()), format!("friction: {link}"));
+    let short = |state: &mut State| state.uncertainty.as_mut().expect("an uncertainty").velocity.clear();
+    assert!(of(&short).starts_with("uncertainty.velocity: "));
+}
+
 /// The same numbers in JSON are refused for the same reason at the same place.
 #[test]
 fn a_state_built_in_code_is_refused_as_in_json() {
@@ -89,6 +107,14 @@ fn a_state_built_in_code_is_refused_as_in_json() {
     });
     alike(r#"{"ground": {"slope": 10}}"#, &|state| state.scene.ground = Ground::Slope(10.0));
     alike(r#"{"stance": "left_foot", "place": "lowest"}"#, &|state| state.scene.stance = robot.link("left_foot"));
+    alike(r#"{"held": ["left_hip", "left_hip"]}"#, &|state| {
+        state.scene.braked = vec![robot.joint("left_hip").unwrap(); 2];
+    });
+    let torso = LinkPoint { link: 0, offset: [0.0; 3] };
+    let loops = vec![r#"{"a": {"link": "torso"}, "b": {"link": "torso"}}"#; 257].join(", ");
+    alike(&format!(r#"{{"loops": [{loops}]}}"#), &|state| {
+        state.scene.loops = vec![NamedLoop { a: torso, b: torso }; 257];
+    });
     alike(r#"{"friction": -0.5}"#, &|state| state.scene.friction = ByLink::everywhere(Friction::Finite(-0.5)));
     alike(r#"{"restitution": {"torso": 1.5}}"#, &|state| {
         state.scene.restitution.links.insert(0, 1.5);
@@ -175,11 +201,37 @@ fn options_built_in_code_are_checked() {
 }
 
 #[test]
-fn a_held_joint_that_does_not_exist_is_refused() {
-    let description = Description::from_urdf(include_str!("../../urdf/ramone.urdf")).expect("a description");
-    let reduction = Reduction { hold: vec![(99, 0.0)], ..Reduction::default() };
-    let error = Robot::reduce(&description, &reduction).expect_err("no such joint");
-    assert!(said(&error).starts_with("hold: no index 99: the robot has "), "{error}");
+fn a_description_that_fits_no_robot_is_refused() {
+    let refused = |reduction: &Reduction, change: &dyn Fn(&mut Description)| {
+        let mut description = Description::from_urdf(include_str!("../../urdf/ramone.urdf")).expect("a description");
+        change(&mut description);
+        Robot::reduce(&description, reduction).expect_err("no robot").reason().to_string()
+    };
+    let held = Reduction { hold: vec![(99, 0.0)], ..Reduction::default() };
+    assert!(refused(&held, &|_| {}).starts_with("no index 99: the robot has "));
+    let of = |change: &dyn Fn(&mut Description)| refused(&Reduction::default(), change);
+    assert!(of(&|own| own.joints[0].child = 99).starts_with("no index 99: the robot has "));
+    assert!(of(&|own| own.joints[0].parent = own.joints[1].child).contains("is its own ancestor"));
+    assert!(of(&|own| own.joints.truncate(1)).contains("are both roots"));
+    assert!(of(&|own| own.links.clear()).starts_with("no index "));
+    for change in [|own: &mut Description| own.root = 1, |own: &mut Description| own.links[1].joint = None] {
+        assert!(of(&change).starts_with("`root` and each link's `joint` are not those"));
+    }
+}
+
+/// What belongs to another robot is refused, not indexed.
+#[test]
+fn states_and_answers_of_other_robots_are_refused() {
+    let (robot, other) = (ramone(), reduced(include_str!("../../urdf/minimalistic.urdf"), &Reduction::default()));
+    let mut state = State { uncertainty: None, ..falling(&robot) };
+    state.scene.braked = vec![3];
+    state.scene.contacts = Some(vec![contact(0.0, 0.0)]);
+    let impact = Pipeline::new(&robot, Options::default()).impact(&state).expect("an impact");
+    let report = Report::of_state(&other, &state, &impact, Detail::default()).expect_err("another robot");
+    assert_eq!(report.to_string(), "no index 3: the robot has 1 joints, counted from 0");
+    assert!(state.to_json(&other).expect_err("another robot").to_string().contains("position"));
+    state.scene.friction.links.insert(99, Friction::ZERO);
+    assert!(state.to_json(&robot).expect_err("no such link").to_string().contains("no index 99"));
 }
 
 /// All ways of writing a report of forces give the names of forces.

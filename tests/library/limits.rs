@@ -3,10 +3,9 @@
 
 use crate::support::impact::{ramone, reduced, robot, try_impact};
 use crate::support::urdf::{self, Axis, HINGE, joint, link};
+use heelstrike::Robot;
 use heelstrike::pipeline::Options;
 use heelstrike::robot::{Base, Reduction};
-use heelstrike::state::{ByLink, LinkPoint, NamedContact, NamedLoop, Uncertainty};
-use heelstrike::{Friction, Pipeline, Robot, State};
 use serde_json::json;
 use std::fmt::Write;
 
@@ -64,18 +63,16 @@ fn doubtful_angles_and_limits_are_noted() {
 }
 
 #[test]
-fn a_deep_foot_of_a_pose_in_degrees_is_no_riddle() {
-    let state = json!({"position": {"base": {"z": -1, "pitch": 90}}});
-    let error = try_impact(&ramone(), Options::default(), state).expect_err("in the ground");
-    assert!(error.remedy().is_some_and(|remedy| remedy.ends_with("pitch = 90 rad is more than a turn; degrees?")));
-}
-
-#[test]
-fn a_bolted_robot_is_not_told_to_raise_its_base() {
+fn a_deep_foot_has_the_remedy_of_its_robot() {
+    let remedy = |robot: &Robot, state| {
+        let error = try_impact(robot, Options::default(), state).expect_err("in the ground");
+        error.remedy().expect("a remedy").to_owned()
+    };
+    let degrees = json!({"position": {"base": {"z": -1, "pitch": 90}}});
+    assert!(remedy(&ramone(), degrees).ends_with("pitch = 90 rad is more than a turn; degrees?"));
     let reduction = Reduction { base: Some(Base::Fixed), ..Reduction::default() };
-    let error = try_impact(&reduced(include_str!("../../urdf/ramone.urdf"), &reduction), Options::default(), json!({}))
-        .expect_err("in the ground");
-    assert!(error.remedy().is_some_and(|remedy| remedy.starts_with("the robot is bolted to the world: ")));
+    let bolted = reduced(include_str!("../../urdf/ramone.urdf"), &reduction);
+    assert!(remedy(&bolted, json!({})).starts_with("the robot is bolted to the world: "));
 }
 
 #[test]
@@ -109,33 +106,4 @@ fn strict_limits_refuse_with_place_and_remedy() {
         assert!(error.remedy().is_some_and(|remedy| remedy.contains("`strict_limits`")));
         assert!(try_impact(&robot, options, state(2.25)).is_ok());
     }
-}
-
-#[test]
-fn an_index_that_the_robot_does_not_have_is_refused() {
-    let robot = limited(HINGE, "");
-    let refused = |change: &dyn Fn(&mut State)| {
-        let mut state = State::zero(&robot);
-        change(&mut state);
-        let error = Pipeline::new(&robot, Options::default()).impact(&state).expect_err("no such index");
-        (error.place().expect("a place").to_owned(), error.reason().to_string())
-    };
-    let point = LinkPoint { link: 3, offset: [0.0; 3] };
-    let none = "no index 3: the robot has 3 links, counted from 0".to_owned();
-    assert_eq!(refused(&|state| state.scene.stance = Some(3)), ("stance".into(), none.clone()));
-    let contact = NamedContact { link: 3, offset: [0.0; 3], radius: 0.0 };
-    assert_eq!(refused(&|state| state.scene.contacts = Some(vec![contact])), ("contacts".into(), none.clone()));
-    let base = LinkPoint { link: 0, ..point };
-    assert_eq!(refused(&|state| state.scene.loops = vec![NamedLoop { a: base, b: point }]), ("loops".into(), none));
-    let (place, reason) = refused(&|state| state.scene.braked = vec![1]);
-    assert_eq!((&*place, &*reason), ("held", "no index 1: the robot has 1 joints, counted from 0"));
-    let of_fourth = || ByLink { default: None, links: [(3, Friction::ZERO)].into() };
-    assert_eq!(refused(&|state| state.scene.friction = of_fourth()).0, "friction");
-    let uncertainty = || Uncertainty {
-        position: vec![0.0; 4],
-        velocity: Vec::new(),
-        friction: ByLink::default(),
-        rotor_inertia: Vec::new(),
-    };
-    assert_eq!(refused(&|state| state.uncertainty = Some(uncertainty())).0, "uncertainty.velocity");
 }

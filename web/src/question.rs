@@ -151,7 +151,7 @@ impl Model {
             Base::Floating => r#"{"place": "lowest", "velocity": {"base": {"z": -1}}, "friction": 0.6}"#,
             Base::Fixed => r#"{"friction": 0.6}"#,
         };
-        let state = State::from_json(state, robot, &Defaults::default())?.to_json(robot);
+        let state = State::from_json(state, robot, &Defaults::default())?.to_json(robot)?;
         let text = inspection.text(&Palette::default(), false);
         let limits = robot.joints().iter().map(|joint| joint.limits).collect();
         Ok(Read { robot: inspection, text, limits, state: raw(state) })
@@ -179,7 +179,7 @@ impl Model {
         Ok(Answered {
             result: raw(String::from_utf8_lossy(result.trim_ascii_end()).into_owned()),
             text: text(&report, &Subject::of_state(robot, state, &impact), detail, &Palette::default()),
-            state: raw(state.to_json(robot)),
+            state: raw(state.to_json(robot)?),
             base: robot.bodies().first().map(|_| impact.placement.world(0, Vector::zero())),
             page,
         })

@@ -31,11 +31,13 @@ impl<'a> LeftOutRecord<'a> {
 
     /// Returns what the analysis of `impact` leaves out: first parts of the scene, then those of its `robot`.
     pub fn of_impact(robot: &'a Robot, impact: &Impact) -> Vec<Self> {
-        let contacts = |of: &[usize]| of.iter().map(|&at| &*impact.contacts[at].name).collect::<Vec<_>>().join(", ");
-        let of_scene = impact.left_out.iter().map(|left| {
+        let contacts = |of: &[usize]| {
+            of.iter().filter_map(|&at| Some(&*impact.contacts.get(at)?.name)).collect::<Vec<_>>().join(", ")
+        };
+        let of_scene = impact.left_out.iter().filter_map(|left| {
             let (what, why) = match left {
                 LeftOut::Column(joint) => (
-                    description::joint_place(&robot.joints[*joint].name),
+                    description::joint_place(&robot.joints.get(*joint)?.name),
                     "braked: it keeps its rate and has no column".into(),
                 ),
                 LeftOut::OutOfReach(count) => {
@@ -53,7 +55,7 @@ impl<'a> LeftOutRecord<'a> {
                 LeftOut::Tangential(of) => (format!("tangential impulse of {}", contacts(of)), "friction 0".into()),
                 LeftOut::Cone(of) => (format!("friction cone of {}", contacts(of)), "infinite friction".into()),
             };
-            Self { what: Cow::Owned(what), why }
+            Some(Self { what: Cow::Owned(what), why })
         });
         match impact.sustained {
             None => of_scene.chain(Self::all(robot)).collect(),

@@ -15,9 +15,10 @@ use super::Detail;
 #[cfg(feature = "schema")]
 use super::state::any_object;
 use super::state::{CounterexampleRecord, HoldsRecord, raw_state};
+use crate::error::check_index;
 use crate::gait::Landing;
 use crate::impact::{Analysis, Explanation, Family, OpenCombinations, Outcome, Rejection, Verdict};
-use crate::pipeline::{Aspect, Impact, NearestFoot, Sustained};
+use crate::pipeline::{Aspect, Impact, LeftOut, NearestFoot, Sustained};
 use crate::planar::{Pair, Vector};
 use crate::read::Problem;
 use crate::read::table::CarriedValue;
@@ -247,11 +248,16 @@ impl<'a> Report<'a> {
     /// Creates the result of a state. If the outcomes were refused, it has an `error` next to the requested matrices.
     ///
     /// # Errors
-    /// Returns the refusal of the outcomes as an error if no matrices were requested.
-    ///
-    /// # Panics
-    /// May panic if `impact` is the answer of another robot, whose indices this one may not have.
+    /// Returns the refusal of the outcomes as an error if no matrices were requested, and
+    /// [`Reason::Inconsistent`](crate::Reason::Inconsistent) if `impact` has contacts or joints that `robot` does not
+    /// have, because it is the answer of another robot.
     pub fn of_state(robot: &'a Robot, state: &'a State, impact: &'a Impact, detail: Detail) -> crate::Result<Self> {
+        impact.contacts.iter().try_for_each(|own| check_index(own.link, ("links", robot.links.len())))?;
+        for own in &impact.left_out {
+            if let LeftOut::Column(joint) = own {
+                check_index(*joint, ("joints", robot.joints.len()))?;
+            }
+        }
         let error = match impact.analyzed() {
             Err(error) if impact.matrices.is_none() => return Err(error),
             analysis => analysis.err(),

@@ -148,7 +148,7 @@ fn the_moment_is_that_of_the_motion() {
                 near(0, &touchdown.state.position, &q, 1e-6 * step * 10.0);
                 // Tolerance: the rate of a polynomial of fifth degree, up to one step beyond its points.
                 near(1, &touchdown.state.velocity, &v, 1e-6);
-                let state = touchdown.state.to_json(&motion.robot);
+                let state = touchdown.state.to_json(&motion.robot).expect("a state");
                 for contact in impact(&motion.robot, state).contacts {
                     assert!(contact.gap.abs() < 1e-9 * step, "{case}: {:e} m", contact.gap);
                 }
@@ -284,7 +284,7 @@ fn strike_with_a_toe(heel: f64) {
     };
     let found = motion.found(&motion.table(0.005, 0.4, true, 1.0), true, At::Crossing);
     let [touchdown] = &found[..] else { panic!("{} touchdowns", found.len()) };
-    let answer = impact(&motion.robot, touchdown.state.to_json(&motion.robot));
+    let answer = impact(&motion.robot, touchdown.state.to_json(&motion.robot).expect("a state"));
     assert_eq!(answer.contacts.len(), 2);
     for outcome in &answer.analysis.expect("an analysis").outcomes {
         assert!(outcome.velocity_after.iter().all(|[_, normal]| *normal >= -1e-12), "{outcome:?}");

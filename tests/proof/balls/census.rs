@@ -121,7 +121,7 @@ fn answer_block(model: &Model, block: u64) -> [u64; KINDS.len() * COLUMNS.len()]
     for (kind, state) in states.into_iter().chain(beside_a_border(model, &mut random).map(|state| ("near", state))) {
         let mut add = |column, count| counts[place(kind, column)] += count;
         let finding = answer_state(model, &mut pipeline, &state, &mut add);
-        let context = || format!("block {block}, {}\n{}", model.name, state.to_json(&model.robot));
+        let context = || format!("block {block}, {}", model.named(&state));
         assert!(!matches!(finding, Finding::Wrong(_) | Finding::Different(_)), "{finding:?}, {}", context());
     }
     counts
@@ -153,8 +153,8 @@ fn answer_state(
     let sum: Option<i32> = answer.outcomes.iter().map(sign).sum();
     assert!(
         answer.open > 0 || answer.dependent || border || sum == Some(1),
-        "the oracle's own indices do not add up to one: {answer:?}\n{}",
-        state.to_json(&model.robot)
+        "the oracle's own indices do not add up to one: {answer:?}, {}",
+        model.named(state)
     );
     let Ok(analysis) = found.and_then(|impact| impact.into_analysis()) else {
         add("refused", 1);

@@ -22,10 +22,10 @@ fn compare(model: &Model, random: &mut Random) -> [u64; 2] {
         let Some(truth) = oracle::truth(&model.robot, &state, None, &outcome.modes) else { continue };
         if outcome.proven {
             counts[0] += 1;
-            let fail = |difference: String| panic!("{}: {difference}\n{}", model.name, state.to_json(&model.robot));
+            let fail = |difference: String| panic!("{difference}, {}", model.named(&state));
             truth.check(outcome, &frictions(&state)).unwrap_or_else(fail);
             let worst = truth.worst_rate(outcome);
-            assert!(worst <= PROMISED, "{}: {worst:e}\n{}", model.name, state.to_json(&model.robot));
+            assert!(worst <= PROMISED, "{worst:e}, {}", model.named(&state));
         } else {
             counts[1] += 1;
         }
@@ -96,7 +96,7 @@ fn impulses_of_loops_balance_the_momentum() {
                 continue;
             }
             let (off, _) = imbalance(&model.robot, &still, &jump, 0.0).expect("a straight ground");
-            assert!(off < PROMISED, "{off:e} is not balanced\n{}", state.to_json(&model.robot));
+            assert!(off < PROMISED, "{off:e} is not balanced, {}", model.named(&state));
             balanced += 1;
         }
     }

@@ -193,6 +193,11 @@ impl Model {
         Self { name, robot, feet, touching, most: touching, loops: Vec::new(), closing: |_| {} }
     }
 
+    /// The model's name and the JSON of one of its states, for messages.
+    pub fn named(&self, state: &State) -> String {
+        format!("{}\n{}", self.name, state.to_json(&self.robot).expect("a state of the model"))
+    }
+
     /// A random state with one to four of the robot's feet as contacts.
     pub fn random(&self, random: &mut Random) -> State {
         let dofs = self.robot.dofs();

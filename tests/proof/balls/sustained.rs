@@ -39,7 +39,7 @@ fn check(model: &Model, random: &mut Random) -> [u64; COLUMNS.len()] {
         return [0; COLUMNS.len()];
     }
     let Some(answer) = oracle::forces(&model.robot, &state, slips) else { return [0; COLUMNS.len()] };
-    let place = || format!("{}\n{}", model.name, state.to_json(&model.robot));
+    let place = || model.named(&state);
     let finding = compare(&answer, analysis);
     assert!(!matches!(finding, Finding::Wrong(_) | Finding::Different(_)), "{finding:?}, {}", place());
     check_rounding(model, &state, &found.problem, sustained, place);
