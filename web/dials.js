@@ -49,7 +49,7 @@ class Dial {
 /** The entries of a robot's states that have dials, in groups. */
 function entries({ robot, limits }, state) {
   const floating = robot.base === "floating";
-  const base = floating ? (state.stance ? ["pitch"] : state.place ? ["x", "pitch"] : ["x", "z", "pitch"]) : [];
+  const base = floating ? (state.stance ? ["pitch"] : state.place === "lowest" ? ["x", "pitch"] : ["x", "z", "pitch"]) : [];
   const isTurn = (name) => robot.joints.find((joint) => joint.name === name)?.type !== "slide";
   const entry = (group, names, part, reach) => names.map((name) => {
     const turns = part === "joints" ? isTurn(name) : name === "pitch";

@@ -91,7 +91,7 @@ ready.then((ask) => {
     const feet = [...new Set(read.robot.feet.map((foot) => foot.link))];
     const choice = html("select", {}, html("option", { value: "" }, "where x and z say"), html("option", { value: "place" }, "on its lowest foot"),
       ...feet.map((link) => html("option", { value: `foot ${link}` }, `on ${link}, at rest`)));
-    choice.value = state.stance ? `foot ${state.stance}` : state.place ? "place" : "";
+    choice.value = state.stance ? `foot ${state.stance}` : state.place === "lowest" ? "place" : "";
     choice.addEventListener("change", () => {
       const { stance, place: lowest, ...rest } = structuredClone(state);
       const [x, z] = origin ?? [0, 0];

@@ -1,6 +1,7 @@
 //! A state as JSON in the format from which it is read, and whether its outcomes hold on the box of its uncertainty.
 
 use crate::pipeline::robust::Robustness;
+use crate::robot::Base;
 use crate::state::{ByLink, Ground, LinkPoint, Named, SpringEnd, State, Uncertainty, VirtualSpring};
 use crate::{Friction, Mode, Result, Robot, Verdict};
 use serde::ser::{SerializeMap, Serializer};
@@ -122,7 +123,9 @@ impl Serialize for StateRecord<'_> {
         entry(&mut map, "ground", !matches!(scene.ground, Ground::Slope(0.0)), &ground)?;
         let stance = scene.stance.map(|stance| self.link(stance));
         entry(&mut map, "stance", stance.is_some(), &stance)?;
-        entry(&mut map, "place", scene.place_lowest, &"lowest")?;
+        // Without the field, a reader that places states by default would move the base.
+        let is_placed = self.robot.base == Base::Floating && scene.stance.is_none();
+        entry(&mut map, "place", is_placed, if scene.place_lowest { &"lowest" } else { &"given" })?;
         let braked: Vec<_> = scene.braked.iter().map(|&joint| &self.robot.joints[joint].name).collect();
         entry(&mut map, "held", !braked.is_empty(), &braked)?;
         let rotors = self.by_joint(&scene.rotor_inertia);
