@@ -3,12 +3,12 @@
 use super::linear::solve;
 use super::problem::{ContactProblem, Precision, PrecisionTask, Remembered, escalate};
 use super::slack::Scale;
-use crate::budget::is_spent;
 use crate::reductions::Reductions;
 use crate::scalar::Ordered;
 use nalgebra::DMatrix;
 
-/// The rank of G and, if G is regular, its condition number at a unit diagonal; `None` if the budget ends first.
+/// The rank of G and, if G is regular, its condition number at a unit diagonal; `None` if no precision, within the
+/// budget, shows the rank.
 pub fn rank_and_condition(
     problem: &ContactProblem,
     remembered: &Remembered<'_>,
@@ -41,17 +41,13 @@ pub fn rank_and_condition(
     }
     let mut inverse = Inverse { mobility: mobility.clone(), ..Inverse::default() };
     escalate(remembered, Precision::Ball, &mut inverse);
-    Some(match inverse.rank {
-        Some(rank) if rank < rows => (rank, None),
-        Some(rank) => {
-            let inverse = DMatrix::from_fn(rows, rows, |i, j| 0.5 * (inverse.rows[i][j] + inverse.rows[j][i]));
-            let condition = greatest * inverse.symmetric_eigenvalues().max();
-            (rank, condition.is_finite().then_some(condition))
-        }
-        None if is_spent() => return None,
-        // No precision shows whether the rank is full, so it is reported as full.
-        None => (rows, None),
-    })
+    let rank = inverse.rank?;
+    if rank < rows {
+        return Some((rank, None));
+    }
+    let inverse = DMatrix::from_fn(rows, rows, |i, j| 0.5 * (inverse.rows[i][j] + inverse.rows[j][i]));
+    let condition = greatest * inverse.symmetric_eigenvalues().max();
+    Some((rank, condition.is_finite().then_some(condition)))
 }
 
 /// The least eigenvalue of a regular scaled G.
@@ -98,5 +94,36 @@ impl PrecisionTask for Inverse {
         }
         self.rank = Some(rank);
         true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::impact::{AnalysisOptions, ContactProblem, Errors, Scratch, Source};
+    use crate::law::Friction;
+    use crate::scalar::{Ordered, Trigonometry};
+
+    /// A problem none of whose numbers is known.
+    struct Unknown(ContactProblem);
+
+    impl Source for Unknown {
+        fn problem<T: Ordered + Trigonometry>(&self) -> ContactProblem<T> {
+            self.0.map(|_| T::one() / T::zero())
+        }
+
+        fn errors(&self) -> Errors<'_> {
+            Errors::UNKNOWN
+        }
+    }
+
+    #[test]
+    fn a_rank_that_no_precision_shows_is_not_known() {
+        let problem =
+            ContactProblem::new(vec![1.0; 4], vec![[0.5, -1.0]], vec![Friction::Infinite], vec![0.0]).unwrap();
+        let ranks = |source: &dyn crate::impact::Ladder| {
+            let options = AnalysisOptions::default();
+            Scratch::default().analyze(&problem, source, options).unwrap().rank
+        };
+        assert_eq!([ranks(&problem), ranks(&Unknown(problem.clone()))], [Some(1), None]);
     }
 }
