@@ -27,11 +27,12 @@ pub(crate) struct Still {
 }
 
 impl Still {
-    /// Keeps the contacts that have a new `place`, and renumbers their rows. All contacts at rest must have one.
+    /// Keeps the contacts that have a new `place`, and renumbers them and their rows. All contacts at rest must have one.
     pub fn keep(&mut self, place: impl Fn(usize) -> Option<usize>) {
         let mut at = 0..;
         self.contacts.retain(|_| at.next().and_then(&place).is_some());
         self.rows.iter_mut().for_each(|row| *row = place(*row / 2).map_or(*row, |at| 2 * at + *row % 2));
+        self.held = self.held.iter().filter_map(|&own| place(own)).collect();
     }
 
     /// Finds the rows and the held contacts from G, whose entries have the relative `error`; `scratch` is memory.
@@ -168,6 +169,13 @@ mod tests {
         // A row that is nearly the same is independent.
         let near = found([x, zero, [1.0, 1e-5, 0.0, 0.0], zero, [1.0, 0.0, 1e-5, 0.0], w]);
         assert!(near.rows.is_empty() && near.held.is_empty());
+    }
+
+    #[test]
+    fn contacts_that_stay_are_renumbered_everywhere() {
+        let mut still = Still { contacts: vec![false, false, true, true], rows: vec![4, 7], held: vec![0, 1, 3] };
+        still.keep(|at| at.checked_sub(1));
+        assert_eq!(still, Still { contacts: vec![false, true, true], rows: vec![2, 5], held: vec![0, 2] });
     }
 
     #[test]
