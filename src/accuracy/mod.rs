@@ -22,4 +22,4 @@ pub use computation::Factorization;
 pub use study::{AnswerSummary, CaseStudy, ConditionNumbers, Method, MethodErrors, Work, of_problem, of_state, study};
 pub use suite::{Case, CaseSubject, Expected, cases};
 pub(crate) use timing::quantile;
-pub use timing::{Budget, Spread};
+pub use timing::{Sampling, Spread};

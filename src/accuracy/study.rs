@@ -5,7 +5,7 @@ use super::condition::mass_matrix_condition;
 use super::number::Number;
 use super::reference::{PRECISION, Reference, distance, relative, with_precision, worst};
 use super::suite::CaseSubject;
-use super::timing::{Budget, Spread, time};
+use super::timing::{Sampling, Spread, time};
 use crate::Error;
 use crate::impact::enumerate::Tableau;
 use crate::impact::{Analysis, AnalysisOptions, ContactProblem, Scratch, Verdict};
@@ -130,15 +130,15 @@ pub struct MethodErrors {
 }
 
 /// Studies a case of the suite.
-pub fn study(name: &str, subject: &CaseSubject, options: &Options, budget: Budget) -> CaseStudy {
+pub fn study(name: &str, subject: &CaseSubject, options: &Options, sampling: Sampling) -> CaseStudy {
     match subject {
-        CaseSubject::State(case) => of_state(name, &case.0, &case.1, options, budget),
-        CaseSubject::Problem(problem) => of_problem(name, problem, !options.no_proof, budget),
+        CaseSubject::State(case) => of_state(name, &case.0, &case.1, options, sampling),
+        CaseSubject::Problem(problem) => of_problem(name, problem, !options.no_proof, sampling),
     }
 }
 
 /// Studies a robot's state.
-pub fn of_state(name: &str, robot: &Robot, state: &State, options: &Options, budget: Budget) -> CaseStudy {
+pub fn of_state(name: &str, robot: &Robot, state: &State, options: &Options, sampling: Sampling) -> CaseStudy {
     let coordinates = Some(robot.dofs());
     let mut study = CaseStudy { name: name.to_owned(), coordinates, ..CaseStudy::default() };
     let mut pipeline = Pipeline::new(robot, options.clone());
@@ -153,14 +153,14 @@ pub fn of_state(name: &str, robot: &Robot, state: &State, options: &Options, bud
     analysis.into_iter().for_each(|analysis| study.answered(analysis));
     with_precision(robot, || {
         let (problem, mut reference) = (&impact.problem, None);
-        let time = time(Budget { samples: 5, ..budget }, || reference = Some(Reference::new(&exact)));
+        let time = time(Sampling { samples: 5, ..sampling }, || reference = Some(Reference::new(&exact)));
         let Some(reference) = reference else { return };
-        let bench = Bench { state: &exact, problem, reference, analysis, budget, methods: Vec::new() };
+        let bench = Bench { state: &exact, problem, reference, analysis, sampling, methods: Vec::new() };
         (study.condition.mass_matrix, study.methods) = bench.every_method(time);
     });
     study.methods.extend(answers(!options.no_proof, |proves| {
         let mut pipeline = Pipeline::new(robot, Options { no_proof: !proves, ..options.clone() });
-        time(budget, || pipeline.impact(state))
+        time(sampling, || pipeline.impact(state))
     }));
     study
 }
@@ -172,7 +172,7 @@ fn answers(prove: bool, mut timed: impl FnMut(bool) -> Spread) -> Vec<Method> {
 }
 
 /// Studies a contact problem given as matrices, which are taken as exact.
-pub fn of_problem(name: &str, problem: &ContactProblem, prove: bool, budget: Budget) -> CaseStudy {
+pub fn of_problem(name: &str, problem: &ContactProblem, prove: bool, sampling: Sampling) -> CaseStudy {
     let contacts = problem.contacts();
     let mut study = CaseStudy { name: name.to_owned(), contacts, ..CaseStudy::default() };
     let mut scratch = Scratch::default();
@@ -193,7 +193,7 @@ pub fn of_problem(name: &str, problem: &ContactProblem, prove: bool, budget: Bud
         row("f64", outcome_error(&analysis, problem, &exact));
         row("double-double", outcome_error(&analysis, &problem.map(DoubleDouble::from_f64), &exact));
     });
-    study.methods.extend(answers(prove, |proves| time(budget, || analyze(proves))));
+    study.methods.extend(answers(prove, |proves| time(sampling, || analyze(proves))));
     study
 }
 
@@ -228,7 +228,7 @@ struct Bench<'a> {
     problem: &'a ContactProblem,
     reference: Reference<'a>,
     analysis: Option<&'a Analysis>,
-    budget: Budget,
+    sampling: Sampling,
     methods: Vec<Method>,
 }
 
@@ -277,7 +277,7 @@ impl<'a> Bench<'a> {
             return None;
         }
         let mut succeeds = true;
-        let spread = time(self.budget, || {
+        let spread = time(self.sampling, || {
             computation.place();
             succeeds &= delassus(&mut computation);
         });

@@ -5,14 +5,14 @@ use std::time::{Duration, Instant};
 
 /// Limits for measuring the run time of one method.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Budget {
+pub struct Sampling {
     /// The time for all runs but the first together; a first run that alone takes this long is the only sample.
     pub time: Duration,
     /// The greatest number of samples.
     pub samples: usize,
 }
 
-impl Default for Budget {
+impl Default for Sampling {
     fn default() -> Self {
         Self { time: Duration::from_millis(20), samples: 101 }
     }
@@ -55,14 +55,14 @@ pub fn quantile(sorted: &[f64], share: f64) -> f64 {
 const SAMPLE: Duration = Duration::from_micros(20);
 
 /// Measures the run time of `work` in repeated runs.
-pub fn time<R>(budget: Budget, mut work: impl FnMut() -> R) -> Spread {
+pub fn time<R>(sampling: Sampling, mut work: impl FnMut() -> R) -> Spread {
     let mut timed = |runs: u32| {
         let start = Instant::now();
         (0..runs).for_each(|_| drop(std::hint::black_box(work())));
         start.elapsed()
     };
     let first = timed(1);
-    if first >= budget.time {
+    if first >= sampling.time {
         return Spread::of(vec![first.as_secs_f64()]);
     }
     // Caches are warm now.
@@ -73,7 +73,7 @@ pub fn time<R>(budget: Budget, mut work: impl FnMut() -> R) -> Spread {
     };
     let start = Instant::now();
     let mut samples = Vec::new();
-    while samples.len() < budget.samples.max(1) && (samples.len() < 3 || start.elapsed() < budget.time) {
+    while samples.len() < sampling.samples.max(1) && (samples.len() < 3 || start.elapsed() < sampling.time) {
         samples.push(timed(runs).as_secs_f64() / f64::from(runs));
     }
     Spread::of(samples)
@@ -98,8 +98,8 @@ mod tests {
     #[test]
     fn long_work_is_run_only_a_few_times() {
         let mut runs = 0;
-        let budget = Budget { time: Duration::ZERO, samples: 7 };
-        let spread = time(budget, || runs += 1);
+        let sampling = Sampling { time: Duration::ZERO, samples: 7 };
+        let spread = time(sampling, || runs += 1);
         assert_eq!((spread.samples, runs), (1, 1));
     }
 }

@@ -10,7 +10,7 @@ use super::robot::RobotOptions;
 use super::stream::only_document;
 use super::{Completion, Failure, input};
 use crate::accuracy::compliant::compare;
-use crate::accuracy::{Budget, Case, CaseStudy, CaseSubject, cases, of_state, study};
+use crate::accuracy::{Case, CaseStudy, CaseSubject, Sampling, cases, of_state, study};
 use crate::pipeline::Options;
 use crate::state::{Defaults, State};
 use crate::write::{Accuracy, Compliant, titled};
@@ -69,12 +69,12 @@ pub(super) fn run(args: &Args) -> Completion {
         let names: Vec<String> = cases()?.into_iter().map(|case| case.name).collect();
         return args.output.write(&names, |_| names.iter().flat_map(|name| [name, "\n"]).collect());
     }
-    let budget = Budget { time: Duration::from_millis(args.time), ..Budget::default() };
+    let sampling = Sampling { time: Duration::from_millis(args.time), ..Sampling::default() };
     args.plot.claim(&[args.robot.as_ref(), args.state.as_ref()], args.output.path())?;
     let clock = Stopwatch::start();
     let accuracy = match (&args.robot, &args.state) {
-        (Some(robot), Some(state)) => own(args, robot, state, budget)?,
-        _ => suite(args.case.as_deref().unwrap_or_default(), args.no_proof, budget)?,
+        (Some(robot), Some(state)) => own(args, robot, state, sampling)?,
+        _ => suite(args.case.as_deref().unwrap_or_default(), args.no_proof, sampling)?,
     };
     drop(clock);
     args.plot.draw(&accuracy.picture(), "no method has both a time and an error here")?;
@@ -89,7 +89,7 @@ pub(super) fn run(args: &Args) -> Completion {
     }
 }
 
-fn own(args: &Args, robot: &Path, state: &Path, budget: Budget) -> Result<Accuracy, Failure> {
+fn own(args: &Args, robot: &Path, state: &Path, sampling: Sampling) -> Result<Accuracy, Failure> {
     let robot = RobotOptions { robot: robot.to_owned(), ..RobotOptions::default() }.load()?;
     let input = InputFile::read(state, InputFile::LARGE)?;
     let document = only_document(&input)?;
@@ -105,7 +105,7 @@ fn own(args: &Args, robot: &Path, state: &Path, budget: Budget) -> Result<Accura
         ..Options::default()
     };
     let called = titled(&robot.name, &state.id);
-    let study = of_state(&called, &robot, &state, &options, budget);
+    let study = of_state(&called, &robot, &state, &options, sampling);
     let compliant = match study.refused {
         Some(_) => None,
         None => compliant(&called, &robot, &state, &options)?,
@@ -116,14 +116,14 @@ fn own(args: &Args, robot: &Path, state: &Path, budget: Budget) -> Result<Accura
 /// The case whose compliant contact is shown with the suite.
 const WALKER: &str = "friction infinite, biped";
 
-fn suite(part: &str, no_proof: bool, budget: Budget) -> Result<Accuracy, Failure> {
+fn suite(part: &str, no_proof: bool, sampling: Sampling) -> Result<Accuracy, Failure> {
     let chosen: Vec<Case> = cases()?.into_iter().filter(|case| case.name.contains(part)).collect();
     if chosen.is_empty() {
         let hint = "`heelstrike accuracy --list` shows the names of all cases";
         return Err(Failure::usage("--case", format!("no case has \"{part}\" in its name"), hint));
     }
     let options = Options { no_proof, ..Options::default() };
-    let studies = chosen.iter().map(|case| study(&case.name, &case.subject, &options, budget)).collect();
+    let studies = chosen.iter().map(|case| study(&case.name, &case.subject, &options, sampling)).collect();
     let walker = chosen.iter().find(|case| case.name == WALKER);
     let compliant = match walker.map(|case| &case.subject) {
         Some(CaseSubject::State(case)) => compliant(WALKER, &case.0, &case.1, &options)?,

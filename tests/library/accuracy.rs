@@ -3,7 +3,7 @@
 
 use crate::support::impact::{outcomes, robot, velocities_after};
 use crate::support::urdf::{self, HINGE, joint, link};
-use heelstrike::accuracy::{Budget, Case, CaseStudy, CaseSubject, Expected, Factorization, cases, of_state, study};
+use heelstrike::accuracy::{Case, CaseStudy, CaseSubject, Expected, Factorization, Sampling, cases, of_state, study};
 use heelstrike::dynamics::plan::{Configuration, Plan};
 use heelstrike::dynamics::{Workspace, kinematics, kinetic_energy};
 use heelstrike::pipeline::{Impact, Options, Pipeline};
@@ -13,7 +13,7 @@ use std::collections::BTreeSet;
 use std::time::Duration;
 
 /// A single run of each method, because the tests look at errors and not at times.
-const ONCE: Budget = Budget { time: Duration::ZERO, samples: 1 };
+const ONCE: Sampling = Sampling { time: Duration::ZERO, samples: 1 };
 
 /// The error of an entry, relative to its scale, that f64 may have if M is well conditioned.
 const DIGITS: f64 = 1e-12;

@@ -40,8 +40,10 @@ const SETTLED: f64 = 1e-10;
 /// Integrates through the impact; the restitution of `problem` is not used.
 ///
 /// # Errors
-/// Returns an error for more than ten contacts, and [`Reason::Unsupported`] if the integrator gives up.
+/// Returns an error for more than ten contacts and for a `ground` out of range, and [`Reason::Unsupported`] if the
+/// integrator gives up.
 pub fn run(problem: &ContactProblem, ground: SoftGround, tolerance: f64) -> Result<CompliantRun> {
+    ground.check()?;
     let contacts = problem.contacts();
     if contacts > MOST_CONTACTS {
         return Err(Reason::TooManyContacts { contacts, limit: MOST_CONTACTS }.into());

@@ -9,18 +9,37 @@
 //! delta is the depth of a contact below the ground and s the stretch of its tangential spring; both start at zero.
 //! Source: Brogliato, *Nonsmooth Mechanics* (2016), section 2.1.
 
+use crate::error::{Reason, Result, finite, from_zero};
 use crate::law::Friction;
 use crate::planar::Pair;
+use std::cmp::Ordering;
 
 /// The ground's parameters that matter while the configuration is frozen; all contacts have the same.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SoftGround {
-    /// d_n / (2 sqrt(k_n m)), m the inverse of the contacts' mean mobility; infinite for dampers without springs.
+    /// d_n / (2 sqrt(k_n m)), m the inverse of the contacts' mean mobility; above 0, and infinite for dampers without
+    /// springs.
     pub damping_ratio: f64,
-    /// k_t / k_n.
+    /// k_t / k_n, from 0 on.
     pub stiffness_ratio: f64,
-    /// d_t / d_n.
+    /// d_t / d_n, above 0: without a damper, the spring has no rate while the contact slips.
     pub tangential_damping: f64,
+}
+
+impl SoftGround {
+    /// Refuses numbers out of their range.
+    pub(super) fn check(&self) -> Result<()> {
+        let Self { damping_ratio, stiffness_ratio, tangential_damping } = *self;
+        from_zero(stiffness_ratio, "stiffness_ratio")?;
+        finite(tangential_damping, || "tangential_damping".into())?;
+        for (what, value) in [("damping_ratio", damping_ratio), ("tangential_damping", tangential_damping)] {
+            // NaN is not greater either.
+            if !matches!(value.partial_cmp(&0.0), Some(Ordering::Greater)) {
+                return Err(Reason::OutOfRange { what: what.into(), allowed: "greater than 0", value }.into());
+            }
+        }
+        Ok(())
+    }
 }
 
 /// The friction coefficient that stands for infinite friction: without a normal force nothing holds spring and damper.

@@ -70,6 +70,24 @@ mod tests {
     }
 
     #[test]
+    fn a_ground_without_dampers_is_refused() {
+        let problem =
+            ContactProblem::new(vec![2.0, 1.0, 1.0, 2.0], vec![[0.5, -1.0]], vec![Friction::Infinite], vec![0.0])
+                .unwrap();
+        for (ratios, refused) in [
+            ([0.0, 1.0, 1.0], "damping_ratio must be greater than 0, not 0"),
+            ([f64::NAN, 1.0, 1.0], "damping_ratio must be greater than 0, not NaN"),
+            ([1.0, -1.0, 1.0], "stiffness_ratio must be 0 or more, not -1"),
+            ([1.0, 1.0, 0.0], "tangential_damping must be greater than 0, not 0"),
+            ([1.0, 1.0, f64::INFINITY], "tangential_damping must be a finite number, not inf"),
+        ] {
+            let [damping_ratio, stiffness_ratio, tangential_damping] = ratios;
+            let ground = SoftGround { damping_ratio, stiffness_ratio, tangential_damping };
+            assert_eq!(run(&problem, ground, TOLERANCE).unwrap_err().to_string(), refused);
+        }
+    }
+
+    #[test]
     fn moving_biped_converges_to_the_frozen_one() {
         let robot = robots::minimalistic().unwrap();
         let state = include_str!("../../../examples/minimalistic.json");
