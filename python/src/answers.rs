@@ -88,6 +88,33 @@ impl Table {
         let spare = if states <= FEW { locked(&self.spare).take() } else { None };
         spare.unwrap_or_else(|| Box::new(self.empty.for_states(states)))
     }
+
+    /// Whether arrays that were read back have the lengths and the indices that answers have.
+    fn fits(&self, arrays: &Arrays) -> bool {
+        let (states, outcomes) = (arrays.verdict.len(), arrays.margin.len());
+        let entries = |each: usize| outcomes.checked_mul(each);
+        let contacts = self.columns.contacts().len();
+        let matrices = [
+            (arrays.modes.len(), entries(contacts)),
+            (arrays.impulse.len(), entries(2 * contacts)),
+            (arrays.velocity_after.len(), entries(self.coordinates.len())),
+        ];
+        let lists = [arrays.index.len(), arrays.proven.len(), arrays.family.len()];
+        let offsets = &arrays.offsets;
+        let texts = |texts: &Texts, count: usize| {
+            texts.at.iter().all(|&(entry, text)| entry < count && text < texts.known.len())
+        };
+        matrices.into_iter().all(|(length, expected)| Some(length) == expected)
+            && lists == [outcomes; 3]
+            && arrays.all_proven.len() == states
+            && arrays.verdict.iter().all(|verdict| *verdict <= Arrays::REFUSED)
+            && (offsets.len(), offsets.first(), offsets.last()) == (states + 1, Some(&0), Some(&(outcomes as i64)))
+            && offsets.is_sorted()
+            && texts(&arrays.error, states)
+            && texts(&arrays.notes, states)
+            && texts(&arrays.border, outcomes)
+            && texts(&arrays.families, outcomes)
+    }
 }
 
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -333,6 +360,9 @@ impl Answers {
     fn _again(bytes: &[u8]) -> PyResult<Self> {
         let read: Result<(Table, Arrays), _> = postcard::from_bytes(bytes);
         let (table, arrays) = read.map_err(|error| PyValueError::new_err(error.to_string()))?;
+        if !table.fits(&arrays) {
+            return Err(PyValueError::new_err("these pickled answers are damaged"));
+        }
         Ok(Self::new(Arc::new(table), Box::new(arrays)))
     }
 
