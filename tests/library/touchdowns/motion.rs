@@ -5,7 +5,7 @@ use crate::support::impact::robot;
 use crate::support::urdf::{self, Axis, collision, joint, link};
 use heelstrike::Robot;
 use heelstrike::gait::{
-    At, Difference, Heights, Landing, SMALL, Sample, Sampled, Seen, Thresholds, Touching, find, rates, unwrapped,
+    At, Difference, Heights, Landing, Sample, Sampled, Seen, Thresholds, Touching, find, rates, unwrapped,
 };
 use heelstrike::read::table::Rates;
 use std::f64::consts::TAU;
@@ -20,11 +20,6 @@ pub fn lift(scale: f64) -> Robot {
         link(name, 1.0, [0.0; 2], 1.0, &ball) + &rail
     };
     robot(&urdf::robot(&[link("block", 1.0, [0.0; 2], 1.0, ""), foot("a", 0.0), foot("b", scale)]))
-}
-
-/// The height above its level up to which a foot counts as touching.
-fn above() -> f64 {
-    Thresholds::of(&lift(1.0), &[]).above
 }
 
 /// The samples of a table without velocities, which are computed as differences.
@@ -124,7 +119,8 @@ fn a_foot_that_slows_down_touches_above_its_level() {
     let few: Vec<[f64; 3]> = high.into_iter().chain(rows.into_iter().step_by(8)).collect();
     let short = lifted(&few, At::Crossing, Touching::Strike);
     assert!(short.iter().all(|touchdown| !landing(touchdown).is_early) && short.len() == 1, "{short:?}");
-    let level = 5.0 * 0.005_f64.powi(2) + above();
+    // 2 mm above its level a foot that slows down touches.
+    let level = 5.0 * 0.005_f64.powi(2) + 2e-3;
     assert_near(state.position[3], level + 0.003, 1e-12);
     // Tolerances: a line between rows is 1.25 um off the parabola, here at 0.2 m/s; backward differences are half a row
     // late.
@@ -227,10 +223,10 @@ fn small_robots_touch_down_as_large_ones_do() {
     for scale in [10.0, 1e3, 1e6] {
         assert_eq!(found(scale, 1.0), expected, "{scale}");
     }
-    // The robot's size, from the foot at x = 1 and its radius.
-    let size = 1.1;
+    // The robot's size, from the foot at x = 1 and its radius; feet of robots below 0.25 m are lifted less.
+    let (size, small) = (1.1, 0.25);
     for scale in [0.1, 1e-3, 1e-6] {
-        assert_eq!(found(scale, scale * size / SMALL), expected, "{scale}");
+        assert_eq!(found(scale, scale * size / small), expected, "{scale}");
     }
 }
 
