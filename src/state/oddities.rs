@@ -126,13 +126,27 @@ impl fmt::Display for OutsideLimits<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::description::Description;
+    use crate::reductions::Reductions;
+    use crate::robot::Reduction;
 
     #[test]
     fn only_what_may_turn_on_turns_fast() {
         let urdf = include_str!("../../urdf/ramone.urdf");
         let limited = urdf.replace("continuous", "revolute").replace("<axis", "<limit lower=\"-3\" upper=\"3\"/><axis");
-        for (urdf, expected) in [(urdf, ["left_hip"].as_slice()), (&limited, &["left_hip", "left_knee"])] {
-            let robot = Robot::from_urdf(urdf).unwrap();
+        // The thigh carries the knee by another link, whose fixed joint may be kept.
+        let mount = r#"<link name="mount"/><joint name="mount" type="fixed"><parent link="left_thigh"/><child link="mount"/>
+            </joint></robot>"#;
+        let mounted =
+            urdf.replace(r#"<parent link="left_thigh"/>"#, r#"<parent link="mount"/>"#).replace("</robot>", mount);
+        for (urdf, reductions, expected) in [
+            (urdf, Reductions::ALL, ["left_hip"].as_slice()),
+            (&limited, Reductions::ALL, &["left_hip", "left_knee"]),
+            (&mounted, Reductions::ALL, &["left_hip"]),
+            (&mounted, Reductions::NONE, &["left_hip"]),
+        ] {
+            let description = Description::from_urdf(urdf).unwrap();
+            let robot = Robot::reduce(&description, &Reduction { reductions, ..Reduction::default() }).unwrap();
             let mut state = State::zero(&robot);
             for (name, rate) in [("left_hip", -101.0), ("left_knee", 101.0), ("right_hip", 99.0)] {
                 state.set_velocity(&robot, name, rate).unwrap();
