@@ -56,7 +56,7 @@ def test_map_in_arrow_gives_what_one_process_gives(spark, ramone, rows, tmp_path
     states = spark.read.parquet(str(tmp_path / "states.parquet")).repartition(7)
     own.answer(spark, urdf, states).write.parquet(str(tmp_path / "results"))
     joined = pa.parquet.read_table(tmp_path / "results").sort_by([("id", "ascending"), ("outcome", "ascending")])
-    expected = own.table(urdf, table)
+    expected = ramone.impacts(*rows, friction=0.5, place="lowest").to_arrow(np.arange(STATES))
     assert joined.equals(expected.cast(joined.schema))
     assert sum(verdict == "refused" for verdict in joined["verdict"].to_pylist()) == STATES // 50
 

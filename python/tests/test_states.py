@@ -248,6 +248,25 @@ def test_problem_is_that_of_the_command():
         heelstrike.solve(matrix, velocity, -1.0)
 
 
+def test_budget_of_a_problem_leaves_it_undecided():
+    # Four contacts of a body in a row, each with small motions of its own.
+    own = 1e-8 * np.random.default_rng(1).uniform(-1, 1, (8, 8))
+    jacobian = np.hstack([np.array([row for x in range(4) for row in ([1, 0, 1], [0, 1, x])]), own])
+    problem = (jacobian @ jacobian.T, jacobian[:, :3] @ [0.3, -1, 0.2], 0.5)
+    assert heelstrike.solve(*problem)["verdict"] == "unique"
+    beyond = heelstrike.solve(*problem, budget=0)
+    assert beyond["verdict"] == "undecided" and beyond["open"]["beyond_budget"]
+
+
+def test_picture_of_a_sweep_has_its_budget_and_threads():
+    walker = heelstrike.Robot(ROOT / "urdf/minimalistic.urdf")
+    sweep = walker.sweep(ROOT / "examples/paper/figure_7.json", threads=2, budget=30)
+    assert sweep._drawn[-2:] == (2, 30.0)
+    sweep._drawn = (*sweep._drawn[:-1], 0.0)
+    with pytest.raises(heelstrike.Refused, match="0 s of processor time were not enough"):
+        heelstrike.plot(sweep)
+
+
 def test_pictures_are_those_of_the_command(ramone, tmp_path):
     for own, arguments in [
         (ramone.impact(STATE), ("impact", URDF, STATE)),
