@@ -5,9 +5,10 @@
 //! 2^-150 of its scale counts as zero, and its state as on a border. If equations depend on each other, the free
 //! impulses are eliminated from the inequalities one by one (Fourier-Motzkin).
 
-use crate::balls::dynamics::{Problem, problem};
+use crate::balls::dynamics::{Problem, Terms, problem, terms};
 use crate::balls::linear::{Affine, Inequality, Solution, Solved, Zero, feasible, solve};
 use crate::balls::number::{Ball, Number};
+use crate::balls::poses::dot;
 use crate::support::digits::{Truth, needed};
 use heelstrike::impact::{Friction, Mode};
 use heelstrike::robot::Robot;
@@ -130,8 +131,25 @@ pub fn truth(robot: &Robot, state: &State, slips: Option<&[Ordering]>, modes: &[
             *entry = entry.plus(&value.constant.times(&unknown.effect(&problem, row)));
         }
     }
-    let work = impulse.iter().zip(problem.free.iter().zip(&after)).map(|(l, (c, after))| l.times(&c.plus(after)));
-    let loss = work.fold(Ball::new(0.0, bits), |sum, work| sum.plus(&work)).times(&Ball::new(-0.5, bits));
+    let moved = (0..problem.velocity.len()).map(|coordinate| {
+        let parts = problem.responses.iter().zip(&impulse).map(|(response, l)| response[coordinate].times(l));
+        parts.fold(problem.velocity[coordinate].clone(), |sum, part| sum.plus(&part))
+    });
+    let moved: Vec<Ball> = moved.collect();
+    // The loss is that of kinetic energy, unless a brake or a loop takes part, too.
+    let loss = if slips.is_none() && state.scene.braked.is_empty() && state.scene.loops.is_empty() {
+        let position: Vec<Ball> = state.position.iter().map(|&entry| Ball::new(entry, bits)).collect();
+        let Terms { mass_matrix, .. } = terms::<Ball>(robot, state, &position, bits)?;
+        let entry = |i: usize, j: usize| &mass_matrix[i.max(j)][i.min(j)];
+        let twice = |v: &[Ball]| {
+            let row = |i: usize| dot((0..v.len()).map(|j| (entry(i, j), &v[j])), bits).times(&v[i]);
+            (0..v.len()).map(row).fold(Ball::new(0.0, bits), |sum, row| sum.plus(&row))
+        };
+        twice(&problem.velocity).minus(&twice(&moved)).times(&Ball::new(0.5, bits))
+    } else {
+        let work = impulse.iter().zip(problem.free.iter().zip(&after)).map(|(l, (c, after))| l.times(&c.plus(after)));
+        work.fold(Ball::new(0.0, bits), |sum, work| sum.plus(&work)).times(&Ball::new(-0.5, bits))
+    };
     // A number that 832 bits do not distinguish from zero becomes 0.
     let number = |ball: &Ball, scale: f64| match zero.sign(ball, scale) {
         Some(Ordering::Greater) => ball.size(),
@@ -146,12 +164,9 @@ pub fn truth(robot: &Robot, state: &State, slips: Option<&[Ordering]>, modes: &[
     // An upper bound on what the impulses do to a coordinate, whatever their signs: |(M^-1 J^T)_jr| <= sqrt((M^-1)_jj
     // G_rr).
     let pressed: f64 = (0..resting.len()).map(|r| impulse[r].size() * problem.delassus[r][r].size().sqrt()).sum();
-    let rates = (0..problem.velocity.len()).map(|coordinate| {
-        let parts = problem.responses.iter().zip(&impulse).map(|(response, l)| response[coordinate].times(l));
-        let before = &problem.velocity[coordinate];
-        let after = parts.fold(before.clone(), |sum, part| sum.plus(&part));
-        let scale = before.size().max(problem.ease[coordinate].size().sqrt() * pressed);
-        [number(&after, scale), scale]
+    let rates = moved.iter().zip(&problem.velocity).zip(&problem.ease).map(|((after, before), ease)| {
+        let scale = before.size().max(ease.size().sqrt() * pressed);
+        [number(after, scale), scale]
     });
     Some(Truth {
         of_robot: true,
