@@ -35,17 +35,6 @@ fn rows_are_answered_in_order_for_any_threads() {
 }
 
 #[test]
-fn a_row_takes_nothing_from_the_one_before() {
-    let rows = ["a,0,0.5,0.3,-1,0.1,0.5", ",0,0.5,0.3,-1,,", "b,1,0.5,2,oops,infinite,1", "c,0,0.5,0.3,-1,,"];
-    let answers = |rows: &[&str]| {
-        let table = format!("id,q_base_x,q_base_z,v_base_x,v_base_z,friction,restitution\n{}\n", rows.join("\n"));
-        let lines = batch(&["-", "--input-format", "csv", "--friction", "0.5"], table).lines();
-        lines.into_iter().map(|line| [line["id"].clone(), line["outcomes"].clone()]).collect::<Vec<_>>()
-    };
-    assert_eq!(answers(&rows), rows.map(|row| answers(&[row])).concat());
-}
-
-#[test]
 fn the_form_follows_the_ending_unless_it_is_given() {
     let rows = file("form.csv", "q_base_z,v_base_z,note\n0.5,-1,kept\n");
     let table = file("form-out.csv", "");
