@@ -335,7 +335,8 @@ impl Model {
             scene.braked = vec![random.whole(0, self.robot.joints().len() as i64 - 1) as usize];
         }
         if random.once_in(10) {
-            scene.rotor_inertia = self.robot.joints().iter().map(|_| random.decades(-4.0, -1.0)).collect();
+            let joints = self.robot.joints().len() + self.robot.mimic_joints().len();
+            scene.rotor_inertia = (0..joints).map(|_| random.decades(-4.0, -1.0)).collect();
         }
         if random.once_in(10) {
             scene.impulses = vec![AppliedImpulse {
