@@ -46,7 +46,7 @@ fn what_cannot_be_read_is_refused() {
 #[test]
 fn near_fields_and_odd_endings_are_refused() {
     let problem = |field: &str| {
-        let text = r#"{"delassus": [[2, 1], [1, 2]], "velocity_before": [[0.5, -1]], "friction": 0.9, "FIELD": "e"}"#;
+        let text = r#"{"delassus": [[2, 1], [1, 2]], "velocity_before": [[0.5, -1]], "friction": 0.9, "FIELD": {"a": 1, "a": 2}}"#;
         heelstrike_reads(&["solve", "-"], text.replace("FIELD", field))
     };
     let refused = problem("restituion").refusal(1);
@@ -54,8 +54,8 @@ fn near_fields_and_odd_endings_are_refused() {
         refused.contains("unknown field \"restituion\"") && refused.contains("did you mean restitution?"),
         "{refused}"
     );
-    // These fields are ignored: a comment, and short names that resemble known ones.
-    for field in ["notes", "named", "comment"] {
+    // These fields are ignored: a comment, where it comes from, and short names that resemble known ones.
+    for field in ["notes", "named", "comment", "source"] {
         problem(field).well();
     }
     for ending in ["csv.gz", "xls", "pq"] {

@@ -25,13 +25,6 @@ fn the_file_is_named_also_where_its_text_is_right() {
 }
 
 #[test]
-fn other_fields_of_a_problem_are_ignored() {
-    let problem =
-        r#"{"delassus": [[2, 1], [1, 2]], "velocity_before": [[0, -1]], "friction": 1, "source": {"a": 1, "a": 2}}"#;
-    heelstrike_reads(&["solve", "-"], problem).text();
-}
-
-#[test]
 fn a_refusal_shows_people_file_line_and_place() {
     // Only the part of a long line near the place is shown; line and column refer to the file.
     let long = &format!("{{\"id\": {}1, \"stanse\": 2}}", " ".repeat(200));
