@@ -366,8 +366,8 @@ pub struct Analysis {
     pub unlisted: u64,
     /// The sum of the outcomes' indices; `None` if an outcome has no index.
     pub index_sum: Option<i32>,
-    /// The rank of the Delassus matrix; `None` if it was not asked for, or if no precision, within
-    /// the budget, shows it.
+    /// The rank of the Delassus matrix; `None` if it was not asked for, or if no precision, within the budget, shows
+    /// it.
     pub rank: Option<usize>,
     /// The condition number of the Delassus matrix scaled to a unit diagonal; `None` if it is singular or not known.
     pub condition: Option<f64>,

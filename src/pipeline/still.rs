@@ -27,7 +27,8 @@ pub(crate) struct Still {
 }
 
 impl Still {
-    /// Keeps the contacts that have a new `place`, and renumbers them and their rows. All contacts at rest must have one.
+    /// Keeps the contacts that have a new `place`, and renumbers them and their rows. All contacts at rest must have
+    /// one.
     pub fn keep(&mut self, place: impl Fn(usize) -> Option<usize>) {
         let mut at = 0..;
         self.contacts.retain(|_| at.next().and_then(&place).is_some());

@@ -58,11 +58,11 @@ impl Robot {
     /// the analysis.
     ///
     /// # Errors
-    /// Returns [`Reason::Inconsistent`] if mimic joints form a cycle, if a joint cannot be frozen at a value or does not
-    /// exist, or if nothing that moves has mass. Returns [`Reason::NotATree`] if links or joints of the description were
-    /// changed such that they do not form one tree. Returns [`Reason::OutOfRange`] for a negative moment of inertia about
-    /// the normal, and for an axis tolerance beyond [`Reduction::WIDEST_TOLERANCE`]. Returns [`Reason::NotFinite`] if
-    /// sums of sizes or masses exceed the range of f64.
+    /// Returns [`Reason::Inconsistent`] if mimic joints form a cycle, if a joint cannot be frozen at a value or does
+    /// not exist, or if nothing that moves has mass. Returns [`Reason::NotATree`] if links or joints of the description
+    /// were changed such that they do not form one tree. Returns [`Reason::OutOfRange`] for a negative moment of
+    /// inertia about the normal, and for an axis tolerance beyond [`Reduction::WIDEST_TOLERANCE`]. Returns
+    /// [`Reason::NotFinite`] if sums of sizes or masses exceed the range of f64.
     pub fn reduce(description: &Description, reduction: &Reduction) -> Result<Self> {
         description.check()?;
         let tolerance = reduction.axis_tolerance.unwrap_or(PARALLEL);

@@ -135,8 +135,8 @@ mod tests {
         let urdf = include_str!("../../urdf/ramone.urdf");
         let limited = urdf.replace("continuous", "revolute").replace("<axis", "<limit lower=\"-3\" upper=\"3\"/><axis");
         // The thigh carries the knee by another link, whose fixed joint may be kept.
-        let mount = r#"<link name="mount"/><joint name="mount" type="fixed"><parent link="left_thigh"/><child link="mount"/>
-            </joint></robot>"#;
+        let mount = r#"<link name="mount"/><joint name="mount" type="fixed"><parent link="left_thigh"/>
+            <child link="mount"/></joint></robot>"#;
         let mounted =
             urdf.replace(r#"<parent link="left_thigh"/>"#, r#"<parent link="mount"/>"#).replace("</robot>", mount);
         for (urdf, reductions, expected) in [
