@@ -10,7 +10,7 @@
 
 mod value;
 
-pub(crate) use value::{Value, id_in, id_of, raw_fields};
+pub(crate) use value::{TOO_LARGE, Value, id_in, id_of, raw_fields};
 
 use crate::error::{Location, from_zero};
 use crate::read::expression::{CONSTANTS, FUNCTIONS, Fault, Names};

@@ -12,6 +12,9 @@ use serde_path_to_error::Segment;
 use std::borrow::Cow;
 use std::fmt;
 
+/// The remedy for digits beyond the range of f64.
+pub(crate) const TOO_LARGE: &str = "numbers go up to 1.8e308; friction without a bound is \"infinite\"";
+
 /// A JSON value that borrows from its text.
 #[derive(Debug, Clone)]
 pub(crate) enum Value<'t> {
@@ -174,6 +177,7 @@ fn refusal(text: &str, error: &serde_json::Error) -> Error {
     let lacks_comma = whole.starts_with("expected `,`") && begins(&["\"", "{", "["]);
     let hints = [
         (error.is_eof(), "the text ends too early: is it whole?"),
+        (whole.starts_with("number out of range"), TOO_LARGE),
         (is_infinite, "JSON has no NaN and no infinity: numbers are finite, and friction alone may be \"infinite\""),
         (begins(&["'"]), "JSON has double quotes, as in {\"friction\": 0.8}"),
         (whole.starts_with("trailing comma"), "leave out the comma before the closing bracket"),

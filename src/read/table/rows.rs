@@ -8,7 +8,7 @@ use super::typed::Typed;
 use crate::error::{Location, finite};
 use crate::gait::spatial::{Spatial, project};
 use crate::law::Friction;
-use crate::read::json::{self, id_in, id_of};
+use crate::read::json::{self, TOO_LARGE, id_in, id_of};
 use crate::robot::Base;
 use crate::state::{ByLink, Defaults, State, bolted, check_restitution};
 use crate::{Error, Reason, Result, Robot};
@@ -379,18 +379,24 @@ impl Row<'_> {
     }
 
     fn friction(&self, at: usize) -> Result<Option<Friction>> {
-        let value = match self.cell(at)? {
+        // Columns of numbers express infinite friction as an infinite number; digits that are infinite are a mistake.
+        let (value, in_digits) = match self.cell(at)? {
             Cell::Empty => return Ok(None),
             Cell::Text(text) if text == "infinite" => return Ok(Some(Friction::Infinite)),
-            Cell::Number(value) => value,
-            Cell::Text(text) => text.parse().map_err(|_| {
-                let reason = Reason::Syntax(format!("expected a number or infinite, found \"{}\"", short(&text)));
-                self.refuse(at, reason).did_you_mean(&text, ["infinite"])
-            })?,
+            Cell::Number(value) => (value, self.header.form == Form::Ndjson),
+            Cell::Text(text) => match text.parse() {
+                Ok(value) => (value, text.contains(|letter: char| letter.is_ascii_digit())),
+                Err(_) => {
+                    let reason = Reason::Syntax(format!("expected a number or infinite, found \"{}\"", short(&text)));
+                    return Err(self.refuse(at, reason).did_you_mean(&text, ["infinite"]));
+                }
+            },
         };
         let what = || "friction".to_owned();
         match value {
-            // Columns of numbers express infinite friction as an infinite number.
+            f64::INFINITY if in_digits => {
+                Err(self.refuse(at, Reason::NotFinite { what: what(), value }).hint(TOO_LARGE))
+            }
             0.0..=f64::INFINITY => Ok(Some(value.into())),
             _ if value.is_nan() => Err(self.refuse(at, Reason::NotFinite { what: what(), value })),
             _ => Err(self.refuse(at, Reason::OutOfRange { what: what(), allowed: "0 or more", value })),
