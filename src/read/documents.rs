@@ -61,8 +61,8 @@ pub(crate) fn refuse_foreign(beginning: &[u8]) -> Result<()> {
     let known = FOREIGN.iter().find(|(magic, ..)| beginning.starts_with(magic));
     let (what, remedy) = match (known, beginning) {
         (Some(&(_, what, remedy)), _) => (what, remedy),
-        // UTF-16 without a byte order mark has a zero in one of the first two bytes, if the text begins with ASCII.
-        (None, [0, 1..=u8::MAX, ..] | [1..=u8::MAX, 0, ..]) => ("the text is UTF-16", UTF_16),
+        // In UTF-16 without a byte order mark every second byte is zero, if the text begins with ASCII.
+        (None, [0, 1..=u8::MAX, 0, ..] | [1..=u8::MAX, 0, 1..=u8::MAX, ..]) => ("the text is UTF-16", UTF_16),
         _ => return Ok(()),
     };
     Err(Error::new(Reason::Unsupported(what.into())).hint(remedy))

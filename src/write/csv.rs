@@ -53,7 +53,7 @@ pub struct Columns {
     velocities: Range<usize>,
     carried: Range<usize>,
     pub(super) layout: Layout,
-    /// The Arrow schema of the carried columns, if they have types.
+    /// The Arrow schema of the carried columns and of the id, if they have types.
     #[cfg(feature = "columnar")]
     #[serde(skip)]
     types: Option<arrow_schema::SchemaRef>,
@@ -138,12 +138,12 @@ impl Columns {
     /// Takes over the types of the input's carried columns, if the input has types.
     #[cfg(feature = "columnar")]
     fn with_types(mut self, input: Option<&Header>) -> Self {
-        let Some((carried, integers)) = input.and_then(|header| header.types.clone()) else { return self };
+        let Some(types) = input.and_then(|header| header.types.clone()) else { return self };
         self.carried.clone().zip(0..).for_each(|(at, which)| self.kinds[at] = Kind::Carried(which));
-        if integers {
-            self.kinds[0] = Kind::Integer;
+        if types.fields().len() > self.carried.len() && !self.layout.form.is_text() {
+            self.kinds[0] = Kind::Carried(self.carried.len());
         }
-        Self { types: Some(carried), ..self }
+        Self { types: Some(types), ..self }
     }
 
     /// Returns the Arrow field of a carried column.
@@ -316,11 +316,12 @@ impl Columns {
 
     /// Sets the id, the line and the carried cells.
     fn name_state(&self, (id, line, carried): (Option<&Value>, Option<usize>, Option<&Carried>), row: &mut impl Row) {
-        match (id, self.kinds[0]) {
-            (Some(Value::Number(id)), Kind::Integer) => {
-                id.as_i64().into_iter().for_each(|id| row.set(0, Cell::Integer(id)))
-            }
-            (id, _) => id.into_iter().for_each(|id| row.set(0, Cell::Text(&words::id(id)))),
+        #[cfg(feature = "columnar")]
+        if let (Kind::Carried(own), Some(carried)) = (self.kinds[0], carried) {
+            row.set(0, Cell::Carried(carried, own));
+        }
+        if let (Kind::Text, Some(id)) = (self.kinds[0], id) {
+            row.set(0, Cell::Text(&words::id(id)));
         }
         if let Some(line) = line {
             row.set(1, Cell::Integer(line as i64));

@@ -8,19 +8,26 @@
 use super::header::{Header, Rates, TableColumn};
 use super::records::{Form, Record};
 use super::rows::{Row, Source};
-use super::typed::{Typed, kind, unreadable};
+use super::typed::{Typed, carried, unreadable};
+use super::types::{content, kind};
+use crate::read::documents::refuse_foreign;
 use crate::{Error, Reason, Result, Robot};
 use arrow_array::{RecordBatchIterator, RecordBatchReader};
 use arrow_ipc::reader::{FileReader, StreamReader};
 use arrow_schema::{ArrowError, DataType};
 use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 use std::fs::File;
-use std::io::{BufReader, Read, Seek};
+use std::io::{BufReader, Cursor, Read, Seek};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
 /// The greatest number of rows of a part; they are answered together.
 const TOGETHER: usize = 1024;
+
+/// The first bytes of Parquet, of an Arrow file and of an Arrow stream.
+const PARQUET: &[u8] = b"PAR1";
+const FILE: &[u8] = b"ARROW1";
+const STREAM: &[u8] = b"\xFF\xFF\xFF\xFF";
 
 /// The fault of a file that contains more than one stream.
 const JOINED: &str = "more follows the end of the stream: are several joined?";
@@ -53,14 +60,14 @@ impl Parts {
     /// # Errors
     /// Returns an error if the file is neither, or has a compression that is not supported.
     pub fn open(mut file: File, form: Form) -> Result<Self> {
+        let beginning = beginning(&mut file, form)?;
+        file.rewind().map_err(unreadable)?;
         if form == Form::Parquet {
             let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(unreadable)?;
             return builder.with_batch_size(4 * TOGETHER).build().map(Self::new).map_err(unreadable);
         }
         // The first bytes distinguish Arrow's file and stream.
-        let mut magic = Vec::new();
-        (&mut file).take(6).read_to_end(&mut magic).and_then(|_| file.rewind()).map_err(unreadable)?;
-        if magic != b"ARROW1" {
+        if !beginning.starts_with(FILE) {
             return Self::arrow_stream_of(file);
         }
         guarded(|| FileReader::try_new_buffered(file, None)).map(Self::new)
@@ -70,8 +77,9 @@ impl Parts {
     ///
     /// # Errors
     /// Returns an error if the input is not such a stream.
-    pub fn arrow_stream(input: impl Read + Send + 'static) -> Result<Self> {
-        guarded(|| StreamReader::try_new(input, None)).map(Self::new)
+    pub fn arrow_stream(mut input: impl Read + Send + 'static) -> Result<Self> {
+        let beginning = beginning(&mut input, Form::Arrows)?;
+        guarded(|| StreamReader::try_new(Cursor::new(beginning).chain(input), None)).map(Self::new)
     }
 
     /// Reads a file that contains one stream and nothing else.
@@ -105,27 +113,18 @@ impl Parts {
         let mut header = Header::named(names, record, robot, rates, foreign).map_err(Error::nowhere)?;
         for (at, (&column, field)) in header.columns.iter().zip(schema.fields()).enumerate() {
             let expected = match (column, kind(field.data_type())) {
-                (TableColumn::Carried | TableColumn::Ignored, _) | (_, DataType::Null) => continue,
-                (TableColumn::Id | TableColumn::Stance | TableColumn::Friction, DataType::Utf8) => continue,
+                (TableColumn::Carried | TableColumn::Ignored, _) | (_, DataType::Null | DataType::Utf8) => continue,
                 (TableColumn::Stance, _) => "text",
-                (TableColumn::Id, DataType::Int64) => continue,
-                (TableColumn::Id, _) => "text or whole numbers",
                 (_, DataType::Float64 | DataType::Int64) => continue,
+                (TableColumn::Id, _) => "text or numbers",
                 _ => "numbers",
             };
-            let found = match kind(field.data_type()) {
-                DataType::Utf8 => "text".to_owned(),
-                DataType::Int64 | DataType::Float64 => "numbers".to_owned(),
-                DataType::Boolean => "true and false".to_owned(),
-                other => format!("values of the type {other}"),
-            };
+            let found = content(field.data_type());
             let reason = Reason::Inconsistent(format!("\"{}\" must hold {expected}, not {found}", field.name()));
             return Err(Error::new(reason).at(format!("column {}", at + 1)).hint("convert the column"));
         }
-        let carried: Vec<usize> = header.places(TableColumn::Carried).collect();
-        let carried = schema.project(&carried).map_err(unreadable)?;
-        let id = header.id.map(|at| kind(schema.field(at).data_type()));
-        header.types = Some((Arc::new(carried), id == Some(DataType::Int64)));
+        let carried = schema.project(&carried(&header.columns)).map_err(unreadable)?;
+        header.types = Some(Arc::new(carried));
         self.columns = header.columns.clone().into();
         Ok(header)
     }
@@ -159,6 +158,31 @@ impl Parts {
         }
         Ok(Some(Part { columns, start, count, first }))
     }
+}
+
+/// Reads the first bytes of an input. Refuses one that is empty, text, or known as of another format.
+fn beginning(input: &mut impl Read, form: Form) -> Result<Vec<u8>> {
+    const READ: u64 = 64;
+    let mut bytes = Vec::new();
+    input.take(READ).read_to_end(&mut bytes).map_err(unreadable)?;
+    let own: &[&[u8]] = match form {
+        Form::Parquet => &[PARQUET],
+        Form::Arrow => &[FILE, STREAM],
+        _ => &[STREAM],
+    };
+    if bytes.is_empty() {
+        return Err(unreadable("it is empty").hint("was it written to its end?"));
+    }
+    if own.iter().any(|magic| bytes.starts_with(magic)) {
+        return Ok(bytes);
+    }
+    refuse_foreign(&bytes)?;
+    if bytes.iter().all(|byte| matches!(byte, b'\t' | b'\n' | b'\r' | b' '..)) {
+        let format = if form == Form::Parquet { "Parquet" } else { "Arrow" };
+        let refused = unreadable(format_args!("it is text, and not {format}"));
+        return Err(refused.hint("end its name in .csv, .tsv or .ndjson, or say which it is, as `input_format: csv`"));
+    }
+    Ok(bytes)
 }
 
 /// Returns what a reader returns; arrow's readers panic on some damaged files.

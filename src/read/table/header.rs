@@ -3,6 +3,8 @@
 use super::flat;
 use super::records::{Form, Record};
 use super::resemblance::{Compared, plain, without_one_of};
+#[cfg(feature = "columnar")]
+use super::types::content;
 use crate::read::json::{fields_of, line_and_column};
 use crate::robot::{Base, FreezeReason, Plane};
 use crate::state::bolted;
@@ -51,9 +53,9 @@ pub struct Header {
     pub(crate) stance: Option<usize>,
     pub(crate) time: Option<usize>,
     pub(crate) spatial: Option<SpatialColumns>,
-    /// For typed columns: the schema of the carried ones, and whether ids are whole numbers.
+    /// For typed columns: the schema of the carried ones, and at its end that of the id, if there is one.
     #[cfg(feature = "columnar")]
-    pub(crate) types: Option<(arrow_schema::SchemaRef, bool)>,
+    pub(crate) types: Option<arrow_schema::SchemaRef>,
 }
 
 /// The columns of a base in three dimensions.
@@ -124,7 +126,7 @@ impl Header {
                 true => column(name, robot),
                 false => {
                     let twice = Error::new(Reason::Duplicate { what: "column", name: short(name) });
-                    Err(if name.is_empty() { twice.hint("name every column in the first line") } else { twice })
+                    Err(if name.is_empty() { twice.hint("name every column") } else { twice })
                 }
             };
             columns.push(column.map_err(|error| in_column(error, record, at, name))?);
@@ -236,10 +238,12 @@ impl Header {
         let missing = || Error::new(Reason::Missing("a column \"time\"".into())).hint(hint);
         self.time.ok_or_else(missing)?;
         #[cfg(feature = "columnar")]
-        if let Some((types, _)) = &self.types
-            && types.fields().iter().any(|field| field.name().trim() == "time" && field.data_type().is_temporal())
+        if let Some(types) = &self.types
+            && let Some(time) = types.fields().iter().find(|field| field.name().trim() == "time")
+            && let found @ ("dates" | "durations") = content(time.data_type())
         {
-            return Err(Error::new(Reason::WrongKind { expected: "seconds", found: "dates" }).at("time"));
+            let refused = Error::new(Reason::WrongKind { expected: "seconds", found }).at("time");
+            return Err(refused.hint("convert the column to numbers"));
         }
         Ok(self)
     }
@@ -321,7 +325,8 @@ impl Header {
         match (rates, velocity) {
             (_, None) if position.is_none() => {
                 let known = few(self.missing.clone());
-                missing("positions", "q_", &format!("the first line must name the columns, of {known}"))
+                let name = if self.form.is_text() { "the first line must name" } else { "name" };
+                missing("positions", "q_", &format!("{name} the columns, of {known}"))
             }
             (_, Some(at)) if self.is_spatial() => Err(self.in_column(spatial_velocity(), record, at)),
             (Rates::Columns, None) if self.is_spatial() && self.time.is_some() => Err(in_table(

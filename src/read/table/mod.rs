@@ -19,6 +19,8 @@
 mod flat;
 mod records;
 mod resemblance;
+#[cfg(feature = "columnar")]
+mod types;
 mod header;
 #[cfg(feature = "columnar")]
 mod typed;

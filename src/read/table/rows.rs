@@ -230,7 +230,7 @@ impl Row<'_> {
                 *id = None;
                 #[cfg(feature = "columnar")]
                 if let Source::Columns(columns, row) = self.source {
-                    *id = columns.integer(at, row).map(Value::from);
+                    *id = columns.id(at, row);
                 }
             }
         }

@@ -2,12 +2,15 @@
 
 use super::header::TableColumn;
 use super::records::Cell;
+use super::types::kind;
+use crate::read::json::id_of;
 use crate::{Error, Reason, Result, State};
 use arrow_array::cast::AsArray;
 use arrow_array::types::{Float64Type, Int64Type};
 use arrow_array::{Array, ArrayRef, Float64Array, Int64Array, RecordBatch, StringArray};
 use arrow_cast::cast::{CastOptions, cast_with_options};
 use arrow_schema::DataType;
+use serde_json::Value;
 use std::sync::Arc;
 
 /// The columns of a batch, cast to the types that states are read from.
@@ -28,6 +31,8 @@ enum Column {
     Numbers(Float64Array),
     Integers(Int64Array),
     Texts(StringArray),
+    /// Other numbers, as their digits.
+    Digits(StringArray),
     Unread,
 }
 
@@ -35,28 +40,16 @@ enum Column {
 pub(super) fn unreadable(error: impl std::fmt::Display) -> Error {
     let text = error.to_string();
     let refused = Error::new(Reason::Io(format!("cannot be read: {text}")));
-    match ["zstd", "brotli", "lzo"].iter().any(|codec| text.to_lowercase().contains(codec)) {
-        true => refused.hint("write it with the compression snappy, lz4 or gzip, for Arrow only lz4, or with none"),
-        false => refused,
-    }
-}
-
-/// Returns the type as which a column of type `own` is read: f64, whole numbers, text, or `own` itself.
-pub(super) fn kind(own: &DataType) -> DataType {
-    match own {
-        DataType::Dictionary(_, values) => kind(values),
-        DataType::Utf8 | DataType::LargeUtf8 | DataType::Utf8View => DataType::Utf8,
-        own if own.is_integer() => DataType::Int64,
-        own if own.is_floating() || own.is_decimal() => DataType::Float64,
-        own => own.clone(),
-    }
+    refused.hint(match ["zstd", "brotli", "lzo"].iter().any(|codec| text.to_lowercase().contains(codec)) {
+        true => "write it with the compression snappy, lz4 or gzip, for Arrow only lz4, or with none",
+        false => "is it whole, and written in this format?",
+    })
 }
 
 impl Typed {
     /// Casts the columns of a batch.
     pub fn new(batch: &RecordBatch, columns: &[TableColumn]) -> Result<Self> {
-        let places = (0..columns.len()).filter(|&at| columns[at] == TableColumn::Carried).collect::<Vec<_>>();
-        let carried = batch.project(&places).map_err(unreadable)?;
+        let carried = batch.project(&carried(columns)).map_err(unreadable)?;
         let fields = columns.iter().zip(batch.columns()).zip(batch.schema_ref().fields());
         let typed = fields.map(|((column, own), field)| {
             let to = |to: DataType| -> Result<ArrayRef> {
@@ -67,9 +60,9 @@ impl Typed {
                 (TableColumn::Ignored, _) => Column::Unread,
                 (TableColumn::Carried, _) if field.name().trim() != "time" => Column::Unread,
                 (TableColumn::Id, DataType::Int64) => {
-                    let numbers = to(DataType::Int64).map_err(|error| error.hint("give it as int64, or as text"))?;
-                    Column::Integers(numbers.as_primitive::<Int64Type>().clone())
+                    Column::Integers(to(DataType::Int64)?.as_primitive::<Int64Type>().clone())
                 }
+                (TableColumn::Id, DataType::Float64) => Column::Digits(to(DataType::Utf8)?.as_string().clone()),
                 (_, DataType::Int64 | DataType::Float64) => {
                     Column::Numbers(to(DataType::Float64)?.as_primitive::<Float64Type>().clone())
                 }
@@ -117,12 +110,11 @@ impl Typed {
     pub fn cell(&self, at: usize, row: usize) -> Cell<'_> {
         match &self.columns[at] {
             Column::Numbers(_) => self.number(at, row).map_or(Cell::Empty, Cell::Number),
-            Column::Integers(_) => self.integer(at, row).map_or(Cell::Empty, |number| Cell::Number(number as f64)),
             Column::Texts(_) => match self.text(at, row).unwrap_or_default().trim() {
                 "" => Cell::Empty,
                 text => Cell::Text(text.into()),
             },
-            Column::Unread => Cell::Empty,
+            Column::Integers(_) | Column::Digits(_) | Column::Unread => Cell::Empty,
         }
     }
 
@@ -139,9 +131,21 @@ impl Typed {
         texts.is_valid(row).then(|| texts.value(row))
     }
 
-    /// Returns the number in a cell of a column of whole numbers.
-    pub fn integer(&self, at: usize, row: usize) -> Option<i64> {
-        let Column::Integers(numbers) = &self.columns[at] else { return None };
-        numbers.is_valid(row).then(|| numbers.value(row))
+    /// Returns the id in a cell of a column of numbers; a data frame has whole ones as floats if one is missing.
+    pub fn id(&self, at: usize, row: usize) -> Option<Value> {
+        match &self.columns[at] {
+            Column::Integers(numbers) if numbers.is_valid(row) => Some(numbers.value(row).into()),
+            Column::Digits(digits) if digits.is_valid(row) => {
+                let digits = digits.value(row);
+                id_of(digits.strip_suffix(".0").unwrap_or(digits))
+            }
+            _ => None,
+        }
     }
+}
+
+/// Returns the indices of the columns that are copied to the results, with that of the id at the end.
+pub(super) fn carried(columns: &[TableColumn]) -> Vec<usize> {
+    let of = |wanted| (0..columns.len()).filter(move |&at| columns[at] == wanted);
+    of(TableColumn::Carried).chain(of(TableColumn::Id)).collect()
 }
