@@ -394,6 +394,7 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
     /// Makes touchdowns of the strikes whose points are free toward the ground. Simultaneous strikes are one touchdown.
     fn strike(&mut self, mut strikes: Vec<Strike>) {
         let (together, at, touching) = (self.thresholds.together, self.at, self.touching);
+        let start = self.ready.len();
         strikes.retain(|strike| self.points.is_free(strike.point, &self.window.frames[strike.row].places, together));
         while !strikes.is_empty() {
             let first = strikes.remove(0);
@@ -429,5 +430,14 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
                 Err((sample.source, Error::new(Reason::Inconsistent(reason))))
             });
         }
+        // At the end of a clip strikes of several rows are found at once.
+        let moment = |found: &Sampled<S>| {
+            let found = found.as_ref().ok();
+            found.map_or((f64::INFINITY, None), |found| (found.time, found.landing.as_ref().map(|landing| landing.row)))
+        };
+        self.ready.make_contiguous()[start..].sort_by(|one, other| {
+            let (one, other) = (moment(one), moment(other));
+            one.0.total_cmp(&other.0).then(one.1.cmp(&other.1))
+        });
     }
 }

@@ -203,6 +203,16 @@ fn a_quadrupeds_trot() {
 }
 
 #[test]
+fn touchdowns_are_in_the_order_of_time() {
+    // Where the recording ends, feet of two rows strike.
+    let (robot, table) = (path("robots/a1/a1.urdf"), path("gaits/a1_walk.csv"));
+    let stdout = heelstrike(&["batch", &robot, &table, "--touchdowns", "--friction", "0.6"]).well().stdout;
+    let found = stdout.lines().map(|line| serde_json::from_str::<Report>(line).expect("a result"));
+    let times: Vec<f64> = found.map(|report| report.touchdown.expect("a touchdown").time).collect();
+    assert!(times.len() > 10 && times.is_sorted(), "{times:?}");
+}
+
+#[test]
 fn a_humanoids_walk() {
     check("h1_walk", &["robots/h1/h1.urdf"], &[PLANAR, SPATIAL]);
 }
