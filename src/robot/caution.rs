@@ -125,8 +125,8 @@ pub(super) fn about_file(
         let angle = plane.off_normal(**axis);
         joint.kind == JointKind::Planar && joint.has_axis && angle > pose.tolerance && angle <= OBLIQUE
     });
-    // Multiples of 5 up to 360, at least one of 30 or more.
-    let in_degrees = |limit: &f64| limit.rem_euclid(5.0) == 0.0 && limit.abs() <= 360.0;
+    // Multiples of 0.5 up to 360, at least one of 30 or more.
+    let in_degrees = |limit: &f64| (2.0 * limit).fract() == 0.0 && limit.abs() <= 360.0;
     let limited = joints.iter().filter(|joint| {
         let limits = joint.limits.filter(|_| joint.kind == JointKind::Revolute);
         limits.is_some_and(|limits| limits.iter().all(in_degrees) && limits.iter().any(|limit| limit.abs() >= 30.0))

@@ -2,8 +2,9 @@
 //! like degrees, and speeds, slopes and places that no legged robot has.
 
 use super::{Ground, State};
+use crate::law::Friction;
 use crate::robot::{Joint, Robot};
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use std::fmt;
 
 /// Rounding of limits and positions in files and recordings, as a fraction of the limits.
@@ -11,6 +12,9 @@ const ROUNDING: f64 = 1e-6;
 
 /// Greater speeds get a note: no legged robot moves faster \[m/s\], and few parts rotate faster \[rad/s\].
 const FASTEST: f64 = 100.0;
+
+/// A coefficient of friction between these is none of a foot: in percent or degrees. Greater ones stand for infinite.
+const ROUGH: [f64; 2] = [10.0, 100.0];
 
 /// A slope beyond this was probably meant in degrees \[rad\].
 const STEEP: f64 = 0.8;
@@ -53,13 +57,18 @@ impl State {
         let mut odd = Vec::new();
         self.outside_limits(robot).for_each(|outside| odd.push(outside.to_string()));
         self.like_degrees(robot).for_each(|(name, angle)| {
-            odd.push(format!("{name} = {angle} rad is more than a turn; degrees?"));
+            let half = if angle.abs() > TAU { "" } else { "half " };
+            odd.push(format!("{name} = {angle} rad is more than {half}a turn; degrees?"));
         });
         if self.velocity.iter().any(|rate| rate.abs() > FASTEST) {
             odd.extend(self.fast(robot));
         }
         odd.extend(self.scene.contacts.iter().flatten().filter_map(|contact| contact.out_of_scale(robot)));
         odd.extend(self.steep());
+        let friction = &self.scene.friction;
+        let rough = |own: &&Friction| matches!(own, Friction::Finite(mu) if *mu > ROUGH[0] && *mu < ROUGH[1]);
+        let rough = friction.default.iter().chain(friction.links.values()).find(rough);
+        odd.extend(rough.map(|mu| format!("the coefficient of friction is {mu}: was it meant in percent or degrees?")));
         odd
     }
 
@@ -87,8 +96,9 @@ impl State {
         })
     }
 
-    /// Finds the pitch and the joints without limits whose angle exceeds a turn, as degrees do: name and angle \[rad\].
-    /// Wheels, which carry no other joint, do turn so far: for them only whole numbers count, as in degrees by hand.
+    /// Finds the pitch and the joints without limits whose angle exceeds a turn, or as a whole number half a turn, as
+    /// degrees do: name and angle \[rad\]. Wheels, which carry no other joint, do turn so far: for them only whole
+    /// numbers count, as in degrees by hand.
     fn like_degrees<'r>(&self, robot: &'r Robot) -> impl Iterator<Item = (&'r str, f64)> {
         let base = robot.base_dofs();
         let is_free_angle = move |at: usize| match at.checked_sub(base) {
@@ -96,7 +106,12 @@ impl State {
             None => at == 2,
         };
         let like = move |&(at, angle): &(usize, f64)| {
-            angle.abs() > TAU && is_free_angle(at) && (angle.fract() == 0.0 || !is_wheel(robot, at))
+            let least = || match (angle.fract() == 0.0, is_wheel(robot, at)) {
+                (true, false) => PI,
+                (false, true) => f64::INFINITY,
+                _ => TAU,
+            };
+            angle.abs() > PI && is_free_angle(at) && angle.abs() > least()
         };
         let angles = self.position.iter().copied().take(robot.dofs()).enumerate().filter(like);
         angles.filter_map(|(at, angle)| Some((robot.coordinates().nth(at)?, angle)))

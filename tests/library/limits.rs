@@ -63,6 +63,18 @@ fn doubtful_angles_and_limits_are_noted() {
 }
 
 #[test]
+fn friction_in_percent_or_degrees_is_noted() {
+    let is_noted = |friction: &str| {
+        let state = format!(r#"{{"position": {{"base": {{"z": 2}}}}, "friction": {friction}}}"#);
+        let notes = try_impact(&ramone(), Options::default(), state).expect("an answer").notes;
+        notes.iter().any(|note| note.contains("in percent or degrees?"))
+    };
+    assert!(["70", "{\"left_foot\": 35}"].into_iter().all(is_noted));
+    // Large numbers stand for infinite friction.
+    assert!(!["2.5", "1000", "\"infinite\""].into_iter().any(is_noted));
+}
+
+#[test]
 fn a_deep_foot_has_the_remedy_of_its_robot() {
     let remedy = |robot: &Robot, state| {
         let error = try_impact(robot, Options::default(), state).expect_err("in the ground");

@@ -152,6 +152,7 @@ fn doubtful_inertias_and_lengths_are_named() {
         ("an rpy of 90", replaced(drawn, "<origin rpy=\"0 90 0\"/><geometry>")),
         ("an rpy of a whole turn", replaced(drawn, "<origin xyz=\"0 0 -0.5\" rpy=\"0 6.2832 0\"/><geometry>")),
         ("limits of -90 and 120", moving(-90.0, 120.0)),
+        ("limits of -12.5 and 131", moving(-12.5, 131.0)),
         ("limits of -10 and 10", moving(-10.0, 10.0)),
         ("limits of five turns", moving(-31.4, 31.4)),
         ("a box of 400", shaped([0.0; 2], "box size=\"0.1 0.1 400\"")),
