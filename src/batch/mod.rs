@@ -373,7 +373,7 @@ fn with_remedy(error: Error, record: &[u8]) -> Error {
             "each line must hold a whole state; `jq -c .` writes JSON so"
         }
         Reason::Syntax(reason) if reason == "trailing characters" => "a line holds one state and nothing after it",
-        Reason::Syntax(_) if record.split(|&byte| byte == b',').any(is_column) => {
+        Reason::Syntax(_) if record.split(|byte| b",;\t".contains(byte)).any(is_column) => {
             "is this a table? then say `input_format: csv`"
         }
         _ => return error,

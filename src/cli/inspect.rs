@@ -42,8 +42,7 @@ pub(super) fn run(args: &Args) -> Completion {
     args.output.check_ending()?;
     args.plot.claim(&[Some(&args.robot.robot), args.state.as_ref()], args.output.path())?;
     // The cautions of the robot are part of the output, so they are not noted.
-    let (_, _, mut robot) = args.robot.described()?;
-    robot.reading.cautions.iter_mut().for_each(|caution| *caution = with_flags(caution));
+    let (_, _, robot) = args.robot.described()?;
     let feet = args.robot.feet(&robot)?;
     let inspection = Inspection::new(&robot, &feet);
     if args.plot.path().is_some() {

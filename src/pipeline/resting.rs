@@ -90,9 +90,11 @@ impl Pipeline<'_> {
                     notes.push(format!("{name}{AT_REST}{moves} ({because})"));
                 }
             } else if bound > 0.0 && slow <= bound {
+                let moves =
+                    if slow > 0.0 { format!("moves at {slow:.1e} m/s, which is") } else { "does not move,".into() };
                 notes.push(format!(
-                    "{name} moves at {slow:.1e} m/s, which is within the rounding of its velocity: if it is at rest, \
-                     say so by `stance` or the option `resting_speed`"
+                    "{name} {moves} within the rounding of its velocity: if it is at rest, say so by `stance` or the \
+                     option `resting_speed`"
                 ));
             } else if own[1].abs() <= bounds[1]
                 && (own[1] != 0.0 || bounds[1] > 0.0 && self.is_rounded_to_zero(state, contact, foot))

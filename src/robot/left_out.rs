@@ -50,7 +50,7 @@ impl LeftOutPart {
 pub(super) fn passed_over(description: &Description) -> impl Iterator<Item = LeftOutPart> {
     description.ignored.iter().map(|Ignored { parent, tag, count }| {
         let why = match (*parent, tag.as_str()) {
-            ("joint", "limit") => "joint limits do not enter an impact",
+            ("joint", "limit") => "joint limits enter neither an impact nor forces",
             (parent, tag) if closes_loops(parent, tag) => "a tree of joints has no loops: states close them by `loops`",
             ("robot", "joint") => "a joint of another namespace, which is not read",
             ("joint", "dynamics") => "an impact has no damping or dry friction of joints; forces have it as `torque`",

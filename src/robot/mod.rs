@@ -201,7 +201,7 @@ impl Link {
 }
 
 impl Robot {
-    /// Returns the robot's name in the file.
+    /// Returns the robot's name in the file; `robot` if it has none.
     pub fn name(&self) -> &str {
         &self.name
     }

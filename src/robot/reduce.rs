@@ -100,7 +100,7 @@ impl Robot {
             cautions,
         };
         let mut robot = Self {
-            name: description.name.clone(),
+            name: if description.name.is_empty() { "robot".into() } else { description.name.clone() },
             base: found.base,
             left_out: joints_left_out(description, &roles, &tree, &reading),
             reading,

@@ -1,6 +1,5 @@
 //! Notes on an input, in sentences. The tool writes them to standard error; Python raises them as warnings.
 
-use super::words::counted;
 use crate::budget::TotalBudget;
 use crate::gait::Dropped;
 use crate::read::Study;
@@ -42,8 +41,8 @@ pub fn missing(header: &Header) -> Option<String> {
 pub fn left_out(header: &Header, dropped: &Dropped) -> impl Iterator<Item = String> {
     let ignored: Vec<&str> = header.ignored().collect();
     let not_read = (!ignored.is_empty()).then(|| {
-        let (columns, names) = (counted(ignored.len(), "column"), ignored.join(", "));
-        format!("{columns} not read, because their joints have no coordinate (see `heelstrike inspect`): {names}")
+        let names = ignored.join(", ");
+        format!("columns of joints without a coordinate are not read (see `heelstrike inspect`): {names}")
     });
     let projected = header.is_spatial().then(|| {
         format!("the base is projected into its plane along the mean heading of each clip; left out: {dropped}")

@@ -19,6 +19,17 @@ fn an_exact_zero_is_not_noted() {
     assert_eq!((found.contacts.len(), &found.notes[..]), (1, &[][..]));
 }
 
+#[test]
+fn a_speed_of_zero_with_an_uncertainty_is_no_number() {
+    let disc = urdf::collision([0.0; 2], "sphere radius=\"0.5\"");
+    let rolling = json!({
+        "position": {"base": {"z": 0.5, "pitch": 0.3}}, "velocity": {"base": {"x": 0.5, "pitch": 1}}, "friction": 0.7,
+        "uncertainty": {"position": {"base": {"pitch": 0.01}}},
+    });
+    let notes = impact(&robot(&urdf::robot(&[urdf::link("disc", 1.0, [0.0; 2], 0.1, &disc)])), rolling).notes;
+    assert!(notes.iter().any(|note| note.starts_with("disc does not move, within the rounding")), "{notes:?}");
+}
+
 /// A slide on the world, a slide on that and an arm: three contacts on three degrees of freedom. The arm's point rests
 /// up to 1.6e-16 m/s. The fixed base cannot move with it.
 #[test]

@@ -231,7 +231,7 @@ fn what_a_spatial_motion_loses_is_noted_once() {
     assert_eq!(
         notes,
         [
-            "note: 4 columns not read, because their joints have no coordinate (see `heelstrike inspect`): q_FR_hip_joint, \
+            "note: columns of joints without a coordinate are not read (see `heelstrike inspect`): q_FR_hip_joint, \
              q_FL_hip_joint, q_RR_hip_joint, q_RL_hip_joint",
             "note: the base is projected into its plane along the mean heading of each clip; left out: roll up to 0.069 rad, \
              yaw up to 0.002 rad, 0.008 m to the side",

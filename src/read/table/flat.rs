@@ -32,7 +32,7 @@ pub(super) fn keys(line: &[u8]) -> Result<Vec<String>> {
 /// Reads the values of a line into the cells of the columns, as they are written; a null gives an empty cell.
 pub(super) fn read(line: &[u8], columns: &[String], cells: &mut ByteRecord) -> Result<()> {
     let fields = fields(line)?;
-    let refuse = |key: &str, reason: Reason| Error::new(reason).at(key).on(1, column_of(line, key));
+    let refuse = |key: &str, reason: Reason| Error::new(reason).at(key).on(1, column_of(line, key, true));
     let mut values = vec![None; columns.len()];
     // Most lines have the keys in the order of the first line.
     let mut next = 0;
@@ -51,10 +51,15 @@ pub(super) fn read(line: &[u8], columns: &[String], cells: &mut ByteRecord) -> R
     Ok(())
 }
 
-/// Returns the column at which the value of a key begins, in characters from 1; 1 if there is none.
-pub(super) fn column_of(line: &[u8], name: &str) -> usize {
-    let place = |(_, value): &(_, &RawValue)| {
-        let offset = (value.get().as_ptr() as usize).checked_sub(line.as_ptr() as usize)?;
+/// Returns the column at which a key begins, or its value, in characters from 1; 1 if there is none.
+pub(super) fn column_of(line: &[u8], name: &str, of_key: bool) -> usize {
+    let place = |(key, value): &(Cow<str>, &RawValue)| {
+        let start = match key {
+            // A quotation mark is before it.
+            Cow::Borrowed(key) if of_key => key.as_ptr() as usize - 1,
+            _ => value.get().as_ptr() as usize,
+        };
+        let offset = start.checked_sub(line.as_ptr() as usize)?;
         Some(line_and_column(line, offset).1)
     };
     fields(line).ok().and_then(|fields| fields.iter().rev().find(|(key, _)| key == name).and_then(place)).unwrap_or(1)

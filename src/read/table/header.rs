@@ -356,7 +356,10 @@ impl Header {
 
 /// Locates an error where column `at`, which has this name, begins in the first record.
 fn in_column(error: Error, record: Record, at: usize, name: &str) -> Error {
-    let (lines, column) = record.place_of(at, name);
+    let (lines, column) = match record.form {
+        Form::Ndjson => (0, flat::column_of(record.bytes, name, true)),
+        _ => record.place_of(at, name),
+    };
     error.at(format!("column {}", at + 1)).on(1 + lines, column)
 }
 

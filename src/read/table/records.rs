@@ -196,7 +196,7 @@ impl Record<'_> {
     /// Returns where this field begins: the number of lines above, and the column in characters from 1.
     pub fn place_of(self, index: usize, name: &str) -> (usize, usize) {
         if self.form == Form::Ndjson {
-            return (0, flat::column_of(self.bytes, name));
+            return (0, flat::column_of(self.bytes, name, false));
         }
         let (mut quotes, mut field) = (self.form.quotes(), 0);
         let is_before = |&&byte: &&u8| {

@@ -100,6 +100,7 @@ fn lines_that_are_no_states_get_a_remedy() {
         (&["-"][..], "[{\"friction\": 1}, {}]\n", list),
         (&["-"][..], "{\"friction\": 1},\n", "a line holds one state and nothing after it"),
         (&["-"][..], "id,q_base_z,v_base_z\n1,0.5,-1\n", "is this a table? then say `input_format: csv`"),
+        (&["-"][..], "id;q_base_z;v_base_z\n1;0.5;-1\n", "is this a table? then say `input_format: csv`"),
         (
             &["-"][..],
             &strike(1, 0.0),

@@ -467,6 +467,9 @@ fn broken_flat_lines_are_refused_in_their_place() {
         {\"friction\":\"infinite\",\"v_base_z\":-1,\"n\":[1],\"note\":true,\"q_base_z\":5e-1}";
     let run = batch(&["-", "--friction", "0.5", "--refused", "ok"], lines).well();
     insta::assert_snapshot!("flat_lines", format!("{}\n{}", run.stdout, run.stderr));
+    // The mark is under the key, not under its value.
+    let refused = batch(&["-"], "{\"q_base_z\":1,\"v_base_z\":2,\"held\":\"x\"}\n").refusal(1);
+    assert!(refused.contains("--> <stdin>:1:28\n"), "{refused}");
     batch(&["-", "--touchdowns"], "{\"q_base_z\": 0, \"position\": {}}\n")
         .refusal_with(2, "touchdowns and velocities over time need a table");
 }

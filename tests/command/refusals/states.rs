@@ -13,6 +13,8 @@ const STATES: &str = r#"
 "friction"
 null
 friction: 1
+<robot name="r">
+id;q_base_z
 {
 {"friction": 1
 {"position": {"base": {"x":

@@ -159,7 +159,15 @@ fn wheels_are_discs_and_unread_meshes_left_out() {
     let foot = "collision mesh \"package://example-robot-data/robots/solo_description/meshes/obj/with_foot/solo_foot.obj\" \
                 of link \"FL_FOOT\"";
     assert!(solo.left_out().contains(&left_out(foot, "its file was not read")), "{:?}", solo.left_out());
-    assert!(solo.left_out().contains(&left_out("12 <limit> in <joint>", "joint limits do not enter an impact")));
+    assert!(
+        solo.left_out().contains(&left_out("12 <limit> in <joint>", "joint limits enter neither an impact nor forces"))
+    );
+}
+
+#[test]
+fn a_robot_without_a_name_is_called_one() {
+    let urdf = massive(&[]).replacen("name=", "noname=", 1);
+    assert_eq!(load(&urdf).name(), "robot", "{urdf}");
 }
 
 #[test]
