@@ -165,9 +165,11 @@ impl Scale {
     }
 }
 
-/// Whether the error of a number is at most `digits` times its magnitude, or times `scale` if that is larger.
+/// Whether the error of a number is at most `digits` times its magnitude, or times `scale` if that is larger. A number
+/// that f64 cannot hold is not known.
 pub fn is_known<T: Ordered>(number: T, scale: f64, digits: f64) -> bool {
-    number.error() <= digits * scale.max(number.to_f64().abs())
+    let magnitude = number.to_f64().abs();
+    magnitude.is_finite() && number.error() <= digits * scale.max(magnitude)
 }
 
 /// Whether the errors of both ends of a range are at most `digits` times the largest magnitude of the ends and `own`.

@@ -20,7 +20,7 @@ use std::cmp::Ordering;
 /// The relative error of the least friction of several contacts: a tenth of the promised one.
 const KNOWN: f64 = 1e-11;
 /// If this friction does not hold the contacts, only infinite friction does.
-const GREATEST: f64 = 1e12;
+const GREATEST: f64 = 1e24;
 /// The cap of slacks in linear programs.
 const ENOUGH: f64 = 1e3;
 

@@ -33,8 +33,11 @@ use crate::law::{Impulse, Inequality, Law, Mode};
 use crate::scalar::{Ordered, dot};
 use std::cmp::Ordering;
 
-/// The cap of the least slack, free of units: a program that reaches it has unbounded impulses.
-const UNBOUNDED: f64 = 1e3;
+/// The first cap of the least slack, free of units: it keeps the impulses small if they are unbounded.
+const CAP: f64 = 1e3;
+
+/// A least slack that reaches this has unbounded impulses.
+const UNBOUNDED: f64 = 1e12;
 
 /// Violated inequalities within this relative distance of the worst one count as equal when one of them is named.
 const EQUALLY_BAD: f64 = 1e-9;
@@ -135,7 +138,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
         }
         let functions = space.functions();
         // A velocity that is always zero keeps the least slack from exceeding zero.
-        let cap = T::from_f64(if is_of_others { 0.0 } else { UNBOUNDED });
+        let cap = T::from_f64(if is_of_others { 0.0 } else { CAP });
         let found = widest(&functions, space.solutions.directions.len(), cap);
         let found = found.and_then(|(inside, least)| Ok((inside, least, settled(least)?)));
         let twin = rejection(RejectionReason::RedundantTwin);
@@ -251,7 +254,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
         let space = self.space_of(solutions, velocity.iter().map(fixed).collect());
         let pressing = space.inequalities.iter().filter(|own| !own.inequality.is_strict());
         let functions: Vec<LinearFunction<T>> = pressing.map(|own| own.function.clone()).collect();
-        let (inside, least) = widest(&functions, still.len(), T::from_f64(UNBOUNDED))?;
+        let (inside, least) = widest(&functions, still.len(), T::from_f64(CAP))?;
         let outcome = self.outcome(&space, &inside, least)?;
         Ok(Solution { index: None, margin: None, ..outcome })
     }
@@ -377,7 +380,11 @@ impl<'a, T: Ordered> Equations<'a, T> {
         } else {
             generators.impulse(&solutions.moved(at, &least_impulse(&from, &directions, &shifted)?))
         };
-        // A margin at the cap means that the impulses are unbounded.
+        let least = if settled(least - T::from_f64(CAP))?.is_lt() {
+            least
+        } else {
+            widest(&space.functions(), space.solutions.directions.len(), T::from_f64(UNBOUNDED))?.1
+        };
         let bounded = settled(least - T::from_f64(UNBOUNDED))?.is_lt();
         let margin = (!inequalities.is_empty() && bounded).then_some(least);
         let velocity: Vec<T> = velocity.iter().map(|row| row.constant).collect();

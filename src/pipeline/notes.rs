@@ -18,9 +18,10 @@ const STANDS: f64 = 1e-4;
 /// A foot that leaves the ground more slowly than this counts as resting \[m/s\].
 const SLOW: f64 = 1e-2;
 
-/// Contacts of two bodies are at the same place up to this fraction of the robot's size. An outcome depends on rounding
-/// if its margin is smaller than this.
-const THIN: f64 = 1e-10;
+/// Contacts of two bodies whose distance is at most this fraction of the robot's size may be meant to be at the same
+/// place: exporters round angles and lengths to 4 to 6 digits. An outcome may depend on that if its margin is smaller
+/// than this.
+const THIN: f64 = 1e-5;
 
 /// Named contacts whose heights differ by more than this fraction of the robot's size cannot both touch the ground.
 const UNEVEN: f64 = 0.1;
@@ -64,19 +65,19 @@ impl Pipeline<'_> {
         notes.extend(self.upside_down(contacts, placement));
     }
 
-    /// Notes an outcome that depends on the last digits of the robot, by which alone two contacts differ in place.
+    /// Notes an outcome that depends on the distance of two contacts that are nearly at the same place.
     pub(super) fn nearly_one(&self, contacts: &[Contact], outcomes: &[Outcome]) -> Option<String> {
         let is_thin = |own: &Outcome| own.margin.is_some_and(|margin| margin > 0.0 && margin < THIN);
         if !outcomes.iter().any(is_thin) {
             return None;
         }
-        let is_near =
-            |a: &Contact, b: &Contact| a.body != b.body && (a.point - b.point).length() <= THIN * self.feet.size();
-        let mut pairs = contacts.iter().enumerate().flat_map(|(at, a)| contacts[..at].iter().map(move |b| (b, a)));
-        let (a, b) = pairs.find(|(a, b)| is_near(a, b))?;
+        let others = |at: usize| contacts[..at].iter().filter(move |other| other.body != contacts[at].body);
+        let pairs = (0..contacts.len()).flat_map(|at| others(at).map(move |other| (other, &contacts[at])));
+        let mut pairs = pairs.map(|(a, b)| (a, b, (a.point - b.point).length()));
+        let (a, b, distance) = pairs.find(|(.., distance)| *distance <= THIN * self.feet.size())?;
         Some(format!(
-            "{} and {} are at the same place except for the last digits of the robot or its pose; the outcome depends \
-             on those digits",
+            "{} and {} are {distance:.1e} m apart; the outcome depends on this distance, which may be rounding of the \
+             robot or its pose",
             a.name, b.name
         ))
     }

@@ -7,11 +7,13 @@ use crate::law::Law;
 use crate::planar::Pair;
 use crate::scalar::{Real, dot, subtract};
 
-/// M, J and v exactly as given. Of M only the entries on and below the diagonal are read.
+/// M, J and v, as given if M is symmetric.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Dynamics {
     /// dofs x dofs, by rows.
     mass_matrix: Vec<Vec<f64>>,
+    /// Whether M was asymmetric by rounding and was replaced by its mean with its transpose.
+    pub is_symmetrized: bool,
     /// Two rows per contact, dofs columns.
     contact_jacobian: Vec<Vec<f64>>,
     /// The velocity of each coordinate, dofs entries.
@@ -23,10 +25,10 @@ impl Dynamics {
     /// is positive definite. Also returns the pivots that it leaves on M's diagonal.
     pub fn numbers<T: Real>(&self) -> (Vec<T>, Vec<Pair<T>>, Vec<T>) {
         let dofs = self.velocity.len();
-        let lower = |i: usize, j: usize| T::from_f64(self.mass_matrix[i.max(j)][i.min(j)]);
-        let mut mass: Vec<Vec<T>> = (0..dofs).map(|i| (0..dofs).map(|j| lower(i, j)).collect()).collect();
-        let jacobian: Vec<Vec<T>> =
-            self.contact_jacobian.iter().map(|row| row.iter().map(|&entry| T::from_f64(entry)).collect()).collect();
+        let exact = |matrix: &[Vec<f64>]| -> Vec<Vec<T>> {
+            matrix.iter().map(|row| row.iter().map(|&entry| T::from_f64(entry)).collect()).collect()
+        };
+        let (mut mass, jacobian) = (exact(&self.mass_matrix), exact(&self.contact_jacobian));
         let mut forward = jacobian.clone();
         for k in 0..dofs {
             for i in k + 1..dofs {
@@ -82,8 +84,16 @@ impl ContactProblem {
             finite(entry, || "an entry of velocity".into())?;
         }
         check_symmetry(mass_matrix)?;
-        let (mass_matrix, contact_jacobian) = (mass_matrix.to_vec(), contact_jacobian.to_vec());
-        let dynamics = Dynamics { mass_matrix, contact_jacobian, velocity: velocity.to_vec() };
+        // Each is halved first, because their sum may overflow.
+        let mean = |a: f64, b: f64| if a == b { a } else { 0.5 * a + 0.5 * b };
+        let row = |i: usize| (0..dofs).map(|j| mean(mass_matrix[i][j], mass_matrix[j][i])).collect();
+        let symmetric: Vec<Vec<f64>> = (0..dofs).map(row).collect();
+        let dynamics = Dynamics {
+            is_symmetrized: symmetric != mass_matrix,
+            mass_matrix: symmetric,
+            contact_jacobian: contact_jacobian.to_vec(),
+            velocity: velocity.to_vec(),
+        };
         let (delassus, before, left) = dynamics.numbers::<f64>();
         let rounding = 4.0 * dofs as f64 * f64::EPSILON;
         let is_lost = |&k: &usize| left[k].is_nan() || left[k] <= rounding * dynamics.mass_matrix[k][k];

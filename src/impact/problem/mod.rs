@@ -228,6 +228,11 @@ impl ContactProblem {
         matches!(self.origin, Origin::Symmetrized)
     }
 
+    /// Whether the given M was asymmetric, by rounding alone, and was replaced by a symmetric matrix.
+    pub fn is_mass_symmetrized(&self) -> bool {
+        matches!(&self.origin, Origin::Dynamics(own) if own.is_symmetrized)
+    }
+
     /// Whether the given G was indefinite, by rounding alone, and was replaced by a semidefinite matrix.
     pub fn is_repaired(&self) -> bool {
         matches!(self.origin, Origin::Repaired(_))

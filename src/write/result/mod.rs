@@ -401,10 +401,13 @@ fn notes(problem: &Problem, analysis: &Analysis) -> Cow<'static, [String]> {
         notes.push(format!(
             "the Delassus matrix is indefinite by its rounding: the nearest semidefinite one{rank} was taken; {keep}"
         ));
-    } else if problem.contact.is_symmetrized() {
-        let mean = "the mean of it and its transpose was taken, every digit meant";
-        notes.push(format!("the Delassus matrix is not symmetric by its rounding: {mean}"));
     }
+    let mean = |matrix: &str| {
+        let taken = "the mean of it and its transpose was taken, every digit meant";
+        format!("the {matrix} matrix is not symmetric by its rounding: {taken}")
+    };
+    notes.extend(problem.contact.is_symmetrized().then(|| mean("Delassus")));
+    notes.extend(problem.contact.is_mass_symmetrized().then(|| mean("mass")));
     let is_matrix = problem.contact.is_given() || problem.contact.is_symmetrized();
     if let Some(condition) = analysis.condition.filter(|&condition| condition > ILL_CONDITIONED && is_matrix) {
         notes.push(format!(

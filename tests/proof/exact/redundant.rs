@@ -17,6 +17,7 @@ use dashu_ratio::RBig;
 use heelstrike::impact::{
     self, Analysis, ContactProblem, Family, ListedRejections, Mode, Outcome, Rejection, RejectionReason, Verdict,
 };
+use heelstrike::{Defaults, analyze, read};
 use std::collections::BTreeSet;
 
 /// A contact problem given by mass matrix, contact Jacobian and velocity, so that the crate knows its redundancy.
@@ -304,4 +305,31 @@ fn combinations_rejected_at_once_leave_the_rest() {
         [whole.rejected.len() as u64, whole.families.len() as u64]
     });
     assert!(rejected > 200 * count && families > 0, "{rejected} rejected, {families} families");
+}
+
+/// Frictions and margins are as large as they are, and numbers beyond f64 are not called proven.
+#[test]
+fn numbers_of_redundant_contacts_have_any_size() {
+    let outcome = |problem: &str| {
+        let problem = read::Problem::from_json(problem, &Defaults::default()).expect("a problem");
+        let outcomes = analyze(&problem.contact, ListedRejections::Nothing).expect("an answer").outcomes;
+        outcomes.into_iter().find(|own| own.modes.iter().all(|mode| *mode == Mode::Stick)).expect("a sticking one")
+    };
+    // L_t = (1e12, -1e12) while both normal impulses share 1.
+    let jammed = outcome(
+        r#"{"delassus": [[1, 0, 1, 0], [0, 1, 0, 1], [1, 0, 2, 0], [0, 1, 0, 1]], "velocity_before": [[0, -1], [1e12, -1]],
+            "friction": 1e13}"#,
+    );
+    let off = jammed.friction_needed.iter().map(|needed| (needed.expect("pressed") / 2e12 - 1.0).abs());
+    assert!(jammed.proven && off.fold(0.0, f64::max) < 1e-10, "{:?}", jammed.friction_needed);
+    // L_1 + L_2 = L_0 = 2048, in units of S / sqrt(G_ii).
+    let wedged = outcome(
+        r#"{"mass_matrix": [[1, 0], [0, 1]], "velocity": [0, -1], "friction": 0, "contact_jacobian":
+            [[0, 1], [1, 0], [0, 1], [-1, 0.00048828125], [0, 1], [-1, 0.00048828125]]}"#,
+    );
+    let margin = 1024.0 * (1.0 + 2.0_f64.powi(-22)).sqrt();
+    assert!(wedged.proven && (wedged.margin.expect("bounded") / margin - 1.0).abs() < 1e-10, "{wedged:?}");
+    // L_n is 1e400 at least.
+    let beyond = outcome(r#"{"delassus": [[1e-100, 0], [0, 0]], "velocity_before": [[-1, 0]], "friction": 1e-300}"#);
+    assert!(!beyond.proven, "{beyond:?}");
 }
