@@ -206,7 +206,7 @@ fn is_yaml(text: &str) -> bool {
     text.starts_with("---") || !word.is_empty() && word.chars().all(|c| c.is_alphanumeric() || c == '_')
 }
 
-/// Returns whether a text that is not JSON begins as a table does: with names that are separated by commas or semicolons.
+/// Returns whether a text that is not JSON begins as a table does: with names between commas or semicolons.
 fn is_table(text: &str) -> bool {
     let first = text.lines().next().unwrap_or_default();
     first.starts_with(char::is_alphabetic)
