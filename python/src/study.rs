@@ -181,8 +181,8 @@ fn found(
 ///
 /// `G` is the Delassus matrix [1/kg], (2 n, 2 n), with a tangential and a normal row per contact; `c` the contact
 /// velocities before [m/s], (n, 2) or (2 n,); `friction` one number from 0 to inf, or one per contact; `restitution`
-/// one number from 0 to 1, or one per contact. What is not decided after `budget` seconds of processor time, None for no
-/// limit, is undecided. Raises Refused.
+/// one number from 0 to 1, or one per contact. What is not decided after `budget` seconds of processor time, None for
+/// no limit, is undecided. Raises Refused.
 #[pyfunction]
 #[pyo3(signature = (G, c, friction, restitution = None, *, explain = false, budget = Limit(Some(Duration::from_secs(10)))))]
 #[expect(non_snake_case, reason = "the name of the Delassus matrix")]

@@ -19,10 +19,10 @@ pub struct RecordingOptions {
     /// Answer only touchdowns: the moments at which a foot reaches the ground from above
     ///
     /// A foot touches down if it descends far enough (--drop), faster than 0.05 m/s, and stops low enough
-    /// (--ground-height). The moment of contact is when its motion before reaches the level at which it stops, or, if it
-    /// slows down, when it is 2 mm above that level. Noise is measured and fitted by lines. For robots smaller
-    /// than 0.25 m these thresholds shrink in proportion; the size is the greatest distance from the root's origin to a
-    /// foot or center of gravity with all joints at zero. The base is then shifted so that the foot is at z = 0.
+    /// (--ground-height). The moment of contact is when its motion before reaches the level at which it stops, or, if
+    /// it slows down, when it is 2 mm above that level. Noise is measured and fitted by lines. For robots smaller than
+    /// 0.25 m these thresholds shrink in proportion; the size is the greatest distance from the root's origin to a foot
+    /// or center of gravity with all joints at zero. The base is then shifted so that the foot is at z = 0.
     #[arg(long, conflicts_with_all = OTHERS)]
     pub touchdowns: bool,
     /// Trust the heights of a simulation: the ground is z = 0, and a foot touches down when it crosses it

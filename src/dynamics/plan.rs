@@ -343,8 +343,8 @@ impl<T: Real> Plan<T> {
         self.way_to_root(body).take_while(move |&(at, _)| !carries_both(at))
     }
 
-    /// Returns the coordinate of each column, as an index into q and [`Robot::coordinates`]. The mass matrix, the contact
-    /// Jacobian and the bias forces have an entry per column, from the root outward, and not in the order of q.
+    /// Returns the coordinate of each column, as an index into q and [`Robot::coordinates`]. The mass matrix, the
+    /// contact Jacobian and the bias forces have an entry per column, from the root outward, and not in the order of q.
     pub fn coordinates(&self) -> &[usize] {
         &self.coordinates
     }

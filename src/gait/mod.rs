@@ -17,8 +17,8 @@
 //! ```
 //!
 //! The toe of a flat foot therefore touches down even if the heel is recorded a little lower, but the upper side of a
-//! sole or points inside a round foot do not. The thresholds are lengths ([`Touchdowns::with`]), because the floating of
-//! feet depends on the recording and not on the robot. A robot smaller than [`SMALL`] lifts its feet less, so its
+//! sole or points inside a round foot do not. The thresholds are lengths ([`Touchdowns::with`]), because the floating
+//! of feet depends on the recording and not on the robot. A robot smaller than [`SMALL`] lifts its feet less, so its
 //! thresholds are proportionally smaller.
 //!
 //! The *noise* of a point's height is measured on the last rows of the clip. It is the median distance of a row from

@@ -208,8 +208,8 @@ impl<'a, T: Ordered> Equations<'a, T> {
         Ok(Some(Solutions { origin, directions: all }))
     }
 
-    /// The corners of the combination's family; `None` if there are too many. Returns an error if the combination is not
-    /// shown to be a family.
+    /// The corners of the combination's family; `None` if there are too many. Returns an error if the combination is
+    /// not shown to be a family.
     pub fn family(&self) -> Result<Option<FamilyCorners<T>>, Unsettled> {
         let Solved::Family(Space { solutions, velocity: rows, inequalities }) = self.solve()? else {
             return Err(Unsettled);

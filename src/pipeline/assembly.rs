@@ -155,8 +155,8 @@ impl<T: Real> Assembly<T> {
         close(&self.plan, &self.loops, Closed::Velocity, velocity, &self.workspace)
     }
 
-    /// Adds the response of the constraints to a `change` of velocity or to an acceleration, as `closed` selects. Returns
-    /// the loops' impulses on their points a.
+    /// Adds the response of the constraints to a `change` of velocity or to an acceleration, as `closed` selects.
+    /// Returns the loops' impulses on their points a.
     pub fn answer(&self, closed: Closed<'_, T>, change: &mut [T]) -> Vec<Vector<T>> {
         if !self.is_constrained() {
             return Vec::new();

@@ -298,9 +298,10 @@ impl<'r> Pipeline<'r> {
     /// Returns an error with one of these [`Reason`](crate::Reason)s: `Singular` if a coordinate has no inertia,
     /// `Penetration` if a foot is deep in the ground, `Inconsistent` if a joint is outside strict limits or the pose or
     /// velocity leaves a loop open, `Missing` if a contact has no friction or a stance has no foot, `MatricesTooLarge`
-    /// for hundreds of contacts, and `NotFinite` if products of the given numbers leave the range of f64. A state built in
-    /// code is refused for what JSON is refused for: `OutOfRange` or `NotFinite` for a number, `Inconsistent` for a list
-    /// of another length, an unknown index or a base that is placed twice. The error's place is that of the JSON field.
+    /// for hundreds of contacts, and `NotFinite` if products of the given numbers leave the range of f64. A state built
+    /// in code is refused for what JSON is refused for: `OutOfRange` or `NotFinite` for a number, `Inconsistent` for a
+    /// list of another length, an unknown index or a base that is placed twice. The error's place is that of the JSON
+    /// field.
     pub fn impact(&mut self, state: &State) -> Result<Box<Impact>> {
         within(self.options.budget, || {
             let mut answer = self.strike(state, None)?;

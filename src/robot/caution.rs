@@ -539,8 +539,8 @@ fn serves_all(seen: &Seen, (hinge, angle): (usize, f64), stays: &[bool]) -> bool
     })
 }
 
-/// Returns the angle \[rad\] by which a rotation about `hinge` aligns `axis`, both of length 1, with the plane's normal;
-/// `None` if none does.
+/// Returns the angle \[rad\] by which a rotation about `hinge` aligns `axis`, both of length 1, with the plane's
+/// normal; `None` if none does.
 fn angle_into_line(axis: [f64; 3], hinge: [f64; 3], plane: Plane, tolerance: f64) -> Option<f64> {
     let [_, normal, _] = plane.axes();
     let cross =

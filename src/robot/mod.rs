@@ -323,7 +323,8 @@ impl Robot {
         self.base == Base::Floating || self.bodies[self.rigid_body(body)].joint.is_some()
     }
 
-    /// Returns the center of mass of each body with all that is fixed to it, in its frame \[m\]; `None` for a fixed body.
+    /// Returns the center of mass of each body with all that is fixed to it, in its frame \[m\]; `None` for a fixed
+    /// body.
     pub(crate) fn centers(&self) -> Vec<Option<Vector<f64>>> {
         let mut parts = Vec::with_capacity(self.bodies.len());
         // For each body, the result of `rigid_body`, and the body's origin in that body's frame.

@@ -142,7 +142,8 @@ pub struct ForcesRecord<'a> {
 pub struct SustainedContact<'a> {
     /// The URDF link that carries the shape.
     pub link: Option<&'a str>,
-    /// Its name, which is its link's, or link/0, link/1 ... if a link has several (link//0 if others are called link/0).
+    /// Its name, which is its link's, or link/0, link/1 ... if a link has several (link//0 if others are called
+    /// link/0).
     pub name: &'a str,
     /// The contact point in the world \[m\].
     pub point: Option<Vector<f64>>,

@@ -47,8 +47,9 @@ impl Compared {
         Self { plain, bits, rests }
     }
 
-    /// Returns whether a column of this name may be meant as the column `known`: it differs only in case and punctuation,
-    /// names the coordinate alone or with another word for position or velocity, or has one or two wrong letters.
+    /// Returns whether a column of this name may be meant as the column `known`: it differs only in case and
+    /// punctuation, names the coordinate alone or with another word for position or velocity, or has one or two wrong
+    /// letters.
     pub fn resembles(&self, known: &Self) -> bool {
         // Matches "restitution_coefficient" and "friction of the left foot", but not what friction causes or needs.
         const OTHER_QUANTITIES: [&str; 7] = ["needed", "force", "torque", "loss", "power", "margin", "joint"];

@@ -132,8 +132,8 @@ pub struct Report<'a> {
     /// G = J M^-1 J^T, without what the loops do not let move; if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub delassus: Option<Cow<'a, [Vec<f64>]>>,
-    /// Fields of the table that the state comes from and that mean nothing here, as they stand there: as text, from JSON
-    /// and columns with types as values.
+    /// Fields of the table that the state comes from and that mean nothing here, as they stand there: as text, from
+    /// JSON and columns with types as values.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<std::collections::BTreeMap<String, Value>>"))]
     pub carried: Option<Named<CarriedValue>>,
@@ -170,7 +170,8 @@ pub struct ContactRecord<'a> {
     /// The URDF link that carries the shape; of a robot.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub link: Option<Cow<'a, str>>,
-    /// Its name, which is its link's, or link/0, link/1 ... if a link has several (link//0 if others are called link/0).
+    /// Its name, which is its link's, or link/0, link/1 ... if a link has several (link//0 if others are called
+    /// link/0).
     pub name: Cow<'a, str>,
     /// The contact point in the world \[m\]; of a robot.
     #[serde(skip_serializing_if = "Option::is_none")]

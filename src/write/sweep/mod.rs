@@ -78,8 +78,8 @@ pub struct Happening<'a> {
     /// Names of the closed contacts; absent if states are refused.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contacts: Option<&'a [String]>,
-    /// The answer in one word, as at its middle, and `no_impact` only if nothing strikes at its samples, or at a map's nodes; absent if states are refused, and of a map's region without room for a
-    /// point well inside.
+    /// The answer in one word, as at its middle, and `no_impact` only if nothing strikes at its samples, or at a map's
+    /// nodes; absent if states are refused, and of a map's region without room for a point well inside.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub verdict: Option<Verdict>,
     /// The modes of every outcome; absent if states are refused.
