@@ -4,7 +4,7 @@ use crate::values::as_keywords;
 use heelstrike::pipeline::Aspect;
 use heelstrike::state::NamedContact;
 use heelstrike::{
-    Verdict,
+    Mode, Verdict,
     write::{Arrays, Columns, Layout, Texts},
 };
 use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods};
@@ -108,6 +108,7 @@ impl Table {
             && lists == [outcomes; 3]
             && arrays.all_proven.len() == states
             && arrays.verdict.iter().all(|verdict| *verdict <= Arrays::REFUSED)
+            && arrays.modes.iter().all(|mode| (Arrays::OPEN..Mode::ALL.len() as i8).contains(mode))
             && (offsets.len(), offsets.first(), offsets.last()) == (states + 1, Some(&0), Some(&(outcomes as i64)))
             && offsets.is_sorted()
             && texts(&arrays.error, states)

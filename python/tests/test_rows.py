@@ -337,6 +337,7 @@ def test_damaged_pickles_are_refused(ramone, walk):
             for name in dir(answers):
                 getattr(answers, name, None)
             repr(answers)
+            answers.to_arrow()
         except ValueError:
             refused += 1
         with pytest.raises(ValueError):

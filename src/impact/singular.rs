@@ -150,6 +150,9 @@ impl<'a, T: Ordered> Equations<'a, T> {
             found => found?,
         };
         if space.is_one_velocity()? {
+            let is_at_cap = settled(least - cap)?.is_ge();
+            let farther = |cap: f64| widest(&functions, space.solutions.directions.len(), T::from_f64(cap));
+            let least = if is_at_cap { farther(UNBOUNDED)?.1 } else { least };
             return Ok(Solved::Outcome(self.outcome(&space, &inside, least)?));
         }
         let origin = space.solutions.at(&inside);
@@ -326,8 +329,8 @@ impl<'a, T: Ordered> Equations<'a, T> {
         are_zero(space.velocity.iter().enumerate().map(|(row, own)| own.constant - self.problem.free_row(row)))
     }
 
-    /// The outcome with the only velocity of `space` and its impulses. At `inside` the smallest inequality has the
-    /// value `least`, which is not negative.
+    /// The outcome with the only velocity of `space` and its impulses. At `inside` the smallest inequality is positive,
+    /// or zero as `least`, which is the greatest value that it can have.
     fn outcome(&self, space: &Space<T>, inside: &[T], least: T) -> Result<Solution, Unsettled> {
         let Self { problem, scale, modes, generators, .. } = self;
         let Space { solutions, velocity, inequalities } = space;
@@ -379,11 +382,6 @@ impl<'a, T: Ordered> Equations<'a, T> {
             vec![T::zero(); from.len()]
         } else {
             generators.impulse(&solutions.moved(at, &least_impulse(&from, &directions, &shifted)?))
-        };
-        let least = if settled(least - T::from_f64(CAP))?.is_lt() {
-            least
-        } else {
-            widest(&space.functions(), space.solutions.directions.len(), T::from_f64(UNBOUNDED))?.1
         };
         let bounded = settled(least - T::from_f64(UNBOUNDED))?.is_lt();
         let margin = (!inequalities.is_empty() && bounded).then_some(least);

@@ -249,6 +249,8 @@ pub struct Pipeline<'r> {
     options: Options,
     /// Why the options are refused, which every answer then reports.
     refused: Option<Error>,
+    /// Whether the reader of the next state has made the checks of [`State::check`].
+    is_checked: bool,
     feet: Feet,
     /// Names of the base's coordinates, and names of the joints.
     names: [Arc<[String]>; 2],
@@ -278,6 +280,7 @@ impl<'r> Pipeline<'r> {
         Self {
             robot,
             refused,
+            is_checked: false,
             feet: if options.reductions.reach { feet } else { feet.reaching_everywhere() },
             options,
             names: [names.by_ref().take(robot.base_dofs()).collect(), names.collect()],
@@ -327,6 +330,15 @@ impl<'r> Pipeline<'r> {
             Aspect::Impact => self.impact(state),
             Aspect::Forces => self.forces(state),
         }
+    }
+
+    /// The same as [`Pipeline::answer`] for a state that passes [`State::check`], as its reader knows.
+    #[cfg(feature = "columnar")]
+    pub(crate) fn answer_checked(&mut self, state: &State) -> Result<Box<Impact>> {
+        self.is_checked = true;
+        let answer = self.answer(state);
+        self.is_checked = false;
+        answer
     }
 
     /// The same as [`Pipeline::answer`], but ignores the state's uncertainty and omits [`Impact::friction_needed`]. Of

@@ -75,11 +75,12 @@ impl Pipeline<'_> {
         let pairs = (0..contacts.len()).flat_map(|at| others(at).map(move |other| (other, &contacts[at])));
         let mut pairs = pairs.map(|(a, b)| (a, b, (a.point - b.point).length()));
         let (a, b, distance) = pairs.find(|(.., distance)| *distance <= THIN * self.feet.size())?;
-        Some(format!(
-            "{} and {} are {distance:.1e} m apart; the outcome depends on this distance, which may be rounding of the \
-             robot or its pose",
-            a.name, b.name
-        ))
+        let apart = if distance > THIN * THIN * self.feet.size() {
+            format!("{distance:.1e} m apart; the outcome may depend on this distance, which may be rounding")
+        } else {
+            "at the same place except for last digits; the outcome may depend on those digits".to_owned()
+        };
+        Some(format!("{} and {} are {apart} of the robot or its pose", a.name, b.name))
     }
 
     /// Notes that the robot's center of mass is below all contacts, as it is if the robot is upside down.

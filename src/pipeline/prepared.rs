@@ -91,7 +91,9 @@ impl Pipeline<'_> {
         if let Some(error) = &self.refused {
             return Err(error.clone());
         }
-        state.check(self.robot)?;
+        if !self.is_checked {
+            state.check(self.robot)?;
+        }
         self.compile(scene);
         self.assembly.configuration.set(&self.assembly.plan, &state.position);
         self.assembly.place();
