@@ -1,12 +1,13 @@
 //! The files that mesh names in a URDF refer to.
 //!
 //! ```text
-//!     package:///path        path in the first of the folders DIR, PREFIX/share ... below that contains this file
+//!     package:///NAME/rest   the same as
 //!     package://NAME/rest    rest in a folder of package NAME, the first of these that contains this file:
 //!                              DIR/NAME, or DIR itself if it is the package    for each --package-path DIR,
 //!                              the same                                        for each folder of ROS_PACKAGE_PATH,
 //!                              PREFIX/share/NAME                               for each of AMENT_PREFIX_PATH,
-//!                              the same as for DIR                             for each folder above the URDF file
+//!                              the same as for DIR                             for each folder above the URDF file,
+//!                            or if there is no package NAME, rest in the first of these folders that contains it
 //!     file:///path, /path    that path
 //!     path                   from the folder of the URDF file
 //! ```
@@ -26,6 +27,8 @@ pub struct Meshes {
     folder: PathBuf,
     /// Folders that are packages or contain packages, in the order of the search.
     roots: Vec<PathBuf>,
+    /// The number of roots that are not above the URDF file.
+    given: usize,
 }
 
 impl Meshes {
@@ -35,9 +38,10 @@ impl Meshes {
         let mut roots = package_path.to_vec();
         roots.extend(listed("ROS_PACKAGE_PATH"));
         roots.extend(listed("AMENT_PREFIX_PATH").into_iter().map(|prefix| prefix.join("share")));
+        let given = roots.len();
         let whole = Path::new(".").join(&folder).canonicalize().unwrap_or_default();
         roots.extend(whole.ancestors().map(Path::to_owned));
-        Self { folder, roots }
+        Self { folder, roots, given }
     }
 
     /// Reads the file that the URDF calls `name`.
@@ -59,16 +63,16 @@ impl Meshes {
         let Some((package, path)) = package_and_path(name) else {
             return Some(self.folder.join(name.strip_prefix("file://").unwrap_or(name))).filter(|path| path.is_file());
         };
-        self.packages(package).map(|folder| folder.join(path)).find(|path| path.is_file())
+        // Packages are copied to folders of other names.
+        let is_here = self.packages(package).next().is_some();
+        let others = self.roots.iter().filter(|_| !is_here).cloned();
+        self.packages(package).chain(others).map(|folder| folder.join(path)).find(|path| path.is_file())
     }
 
-    /// Returns the folders of a package; for an empty name, all roots.
+    /// Returns the folders of a package.
     fn packages<'a>(&'a self, name: &'a str) -> impl Iterator<Item = PathBuf> + 'a {
         // The folder of the URDF file is one of the roots.
         let inside = move |root: &PathBuf| {
-            if name.is_empty() {
-                return Some(root.clone());
-            }
             let below = root.join(name);
             if below.is_dir() { Some(below) } else { is_package(root, name).then(|| root.clone()) }
         };
@@ -77,9 +81,11 @@ impl Meshes {
 
     fn missing(&self, name: &str) -> String {
         match package_and_path(name) {
-            Some(("", _)) => "no such file, and its name has no package".to_owned(),
             Some((package, _)) if self.packages(package).next().is_none() => {
-                format!("package {package} is not here: name the folder that holds it by `package_path`")
+                let given = self.roots[..self.given].iter().map(|root| root.display().to_string());
+                let looked: Vec<String> = given.chain(["a folder above the URDF file".to_owned()]).collect();
+                let looked = looked.join(" or ");
+                format!("neither package {package} nor this file is in {looked}: name its folder by `package_path`")
             }
             Some((package, _)) => format!("no such file in package {package}"),
             None if name.contains("://") && !name.starts_with("file://") => "no file of this machine".to_owned(),
@@ -96,6 +102,7 @@ fn listed(variable: &str) -> Vec<PathBuf> {
 /// Splits a name like `package://NAME/path` into package and path; `None` for other names.
 fn package_and_path(name: &str) -> Option<(&str, &str)> {
     let rest = name.strip_prefix("package://").or_else(|| name.strip_prefix("model://"))?;
+    let rest = rest.trim_start_matches('/');
     let (package, path) = rest.split_once('/').unwrap_or((rest, ""));
     Some((package, path.trim_start_matches('/')))
 }

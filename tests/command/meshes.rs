@@ -93,8 +93,11 @@ fn packages_are_found_by_option_variable_and_folder() {
     let folder = folder();
     let urdf = folder.join("robots/deep/r.urdf");
     write(&urdf, mesh("package://a_description/meshes/sole.obj"));
-    let missing = "package a_description is not here: name the folder that holds it by `package_path`";
-    assert_eq!(foot(&mut inspecting(), &urdf), Err(missing.to_owned()));
+    let missing = |folders: &str| {
+        let what = "neither package a_description nor this file is in ";
+        Err(format!("{what}{folders}a folder above the URDF file: name its folder by `package_path`"))
+    };
+    assert_eq!(foot(&mut inspecting(), &urdf), missing(""));
 
     let gone = heelstrike(&["inspect", &urdf.to_string_lossy(), "--package-path", "no/such/folder"]);
     gone.refusal_with(2, "there is no folder no/such/folder");
@@ -106,6 +109,13 @@ fn packages_are_found_by_option_variable_and_folder() {
     found(inspecting().arg("--package-path").arg(&share));
     found(inspecting().arg("--package-path").arg(&folder).arg("--package-path").arg(&share));
     found(inspecting().arg("--package-path").arg(share.join("a_description")));
+    // The package's own folder with another name.
+    let renamed = share.join("renamed");
+    fs::create_dir(&renamed).expect("a folder");
+    let looked = missing(&format!("{} or ", renamed.display()));
+    assert_eq!(foot(inspecting().arg("--package-path").arg(&renamed), &urdf), looked);
+    write(&renamed.join("meshes/sole.obj"), sole());
+    found(inspecting().arg("--package-path").arg(&renamed));
     found(inspecting().env("ROS_PACKAGE_PATH", &share));
     found(inspecting().env("AMENT_PREFIX_PATH", &elsewhere));
 
@@ -116,6 +126,9 @@ fn packages_are_found_by_option_variable_and_folder() {
     write(&folder.join("robots/package.xml"), "<package><name> a_description </name></package>");
     fs::remove_dir(folder.join("robots/a_description")).expect("removed");
     write(&folder.join("robots/meshes/sole.obj"), sole());
+    found(&mut inspecting());
+    // A folder above the URDF file that has the file, without a manifest.
+    fs::remove_file(folder.join("robots/package.xml")).expect("removed");
     found(&mut inspecting());
 }
 
@@ -136,6 +149,7 @@ fn names_of_every_kind_lead_to_the_file() {
         "package://pack//meshes/../meshes/my sole.obj",
         "model://pack/meshes/my sole.obj",
         "package:///pack/meshes/my sole.obj",
+        "package:///other/meshes/my sole.obj",
         absolute,
         &format!("file://{absolute}"),
         &format!("file://{}", absolute.replace(' ', "%20")),
@@ -150,7 +164,7 @@ fn names_of_every_kind_lead_to_the_file() {
         ("../meshes", "no such file"),
         ("/dev/zero", "no such file"),
         ("package://pack/", "no such file in package pack"),
-        ("package:///gone.stl", "no such file, and its name has no package"),
+        ("package:///pack/gone.stl", "no such file in package pack"),
     ] {
         write(&urdf, mesh(name));
         assert_eq!(foot(&mut inspecting(), &urdf), Err(why.to_owned()), "{name}");
@@ -180,8 +194,8 @@ fn missing_mesh_is_named_by_impact_too() {
     let mut impact = command();
     let run = finished(impact.arg("impact").arg(&urdf).args(["-", "--friction", "1"]).write_stdin("{}")).well();
     let words = "note: 1 collision mesh is left out, so that nothing touches there (package://gone/sole.stl of foot: \
-                 package gone is not here: name the folder that holds it by --package-path): give the file, or name a \
-                 foot by --contact LINK:X,Y,Z";
+                 neither package gone nor this file is in a folder above the URDF file: name its folder by \
+                 --package-path): give the file, or name a foot by --contact LINK:X,Y,Z";
     assert!(run.stderr.contains(words), "{}", run.stderr);
 }
 
