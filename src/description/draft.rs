@@ -151,7 +151,9 @@ fn refuse_xacro(robot: Node<'_, '_>) -> Result<()> {
         if !has_dollar {
             continue;
         }
-        for inside in element.descendants().filter(|node| node.is_element() && node.tag_name().name() != "gazebo") {
+        // These are not read.
+        let is_skipped = |node: Node| matches!(node.tag_name().name(), "gazebo" | "visual");
+        for inside in element.descendants().filter(|node| node.is_element() && !node.ancestors().any(is_skipped)) {
             let mut values = inside.attributes().map(|attribute| attribute.value());
             if let Some(value) = values.find(|value| value.split('$').skip(1).any(|rest| rest.starts_with(['{', '('])))
             {

@@ -36,7 +36,14 @@ impl<'a, 'input> ByName<'a, 'input> {
         let name = xml::required_attribute(element, attribute)?;
         self.by_name.get(name).copied().ok_or_else(|| {
             let error = xml::refuse(element, Reason::UnknownName { what: self.what, name: name.into() });
-            error.did_you_mean(name, self.elements.iter().map(|(name, ..)| *name))
+            let known = || self.elements.iter().map(|(name, ..)| *name).filter(|known| known.len() <= 100);
+            // A part copied from another file may lack a prefix.
+            let is_longer = |known: &&str| known.strip_suffix(name).is_some_and(|prefix| prefix.ends_with(['_', '/']));
+            let longer: Vec<&str> = known().filter(is_longer).take(3).collect();
+            match longer[..] {
+                [] => error.did_you_mean(name, known()),
+                _ => error.hint(format!("did you mean {}?", longer.join(" or "))),
+            }
         })
     }
 }
@@ -99,6 +106,12 @@ const READ: [(&str, &[&str], &[&str]); 19] = [
     ("sphere", &["radius"], &[]),
     ("mesh", &["filename", "scale"], &[]),
 ];
+
+/// Returns whether elements with this tag are read, but not inside elements with the tag `parent`.
+pub(super) fn is_misplaced(parent: &str, tag: &str) -> bool {
+    let inside = READ.iter().find(|(known, ..)| *known == parent);
+    READ.iter().any(|(known, ..)| *known == tag) && inside.is_some_and(|(.., children)| !children.contains(&tag))
+}
 
 /// Returns the lower and the upper end of a `<limit>`; a missing end is 0. Limits are not part of the mechanics, so
 /// there is no error if an end is not a number: the result is then `None`.

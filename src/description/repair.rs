@@ -1,8 +1,9 @@
 //! Repairs common faults of URDF files so that their XML can be parsed. Places of errors are those in the original.
 //!
-//! Two faults are repaired. A declaration `<?xml ...?>` that is misspelt or not at the beginning is replaced by blanks
-//! (the text is UTF-8 already, so it carries no information). Undeclared namespace prefixes (`<sensor:camera>` in a
-//! robot without `xmlns:sensor`) are declared at the end of the root's tag.
+//! Three faults are repaired. A declaration `<?xml ...?>` that is misspelt or not at the beginning is replaced by blanks
+//! (the text is UTF-8 already, so it carries no information). So is the inside of a comment that holds `--`; as other
+//! readers of URDF do, a comment is taken to end at the first `-->`. Undeclared namespace prefixes (`<sensor:camera>` in
+//! a robot without `xmlns:sensor`) are declared at the end of the root's tag.
 
 use super::xml::Cursor;
 use crate::error::{Error, Location};
@@ -20,14 +21,16 @@ pub(super) struct Repaired<'a> {
 }
 
 impl<'a> Repaired<'a> {
-    /// Replaces the XML declaration in `text` by blanks.
+    /// Replaces the faults in `text` by blanks.
     pub(super) fn new(text: &'a str) -> Self {
-        let mut repaired = Cow::Borrowed(text);
-        for range in declarations(text).into_iter().rev() {
+        let (mut repaired, mut at) = (Cow::Borrowed(""), 0);
+        for range in faults(text) {
             let blank = |character| if character == '\n' { '\n' } else { ' ' };
-            let blanks: String = text[range.clone()].chars().map(blank).collect();
-            repaired.to_mut().replace_range(range, &blanks);
+            repaired += &text[at..range.start];
+            repaired.to_mut().extend(text[range.clone()].chars().map(blank));
+            at = range.end;
         }
+        repaired += &text[at..];
         Self { text: repaired, prefixes: Vec::new(), inserted: None }
     }
 
@@ -64,22 +67,29 @@ impl<'a> Repaired<'a> {
     }
 }
 
-/// Returns the processing instructions before the root element. Each is taken to end at the first `>`.
-fn declarations(text: &str) -> Vec<std::ops::Range<usize>> {
-    let (mut at, mut found) = (0, Vec::new());
-    loop {
-        let rest = text[at..].trim_start();
-        let begin = text.len() - rest.len();
-        let Some((open, close)) = [("<!--", "-->"), ("<?", ">")].into_iter().find(|(open, _)| rest.starts_with(open))
-        else {
-            return found;
+/// Returns what is replaced by blanks: processing instructions before the root element, each taken to end at the first
+/// `>`, and the insides of comments that XML does not allow.
+fn faults(text: &str) -> Vec<std::ops::Range<usize>> {
+    let (mut at, mut found, mut in_root) = (0, Vec::new(), false);
+    while let Some(offset) = text[at..].find('<') {
+        let begin = at + offset;
+        let marks = [("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", ">")];
+        let Some((open, close)) = marks.into_iter().find(|(open, _)| text[begin..].starts_with(open)) else {
+            (at, in_root) = (begin + 1, true);
+            continue;
         };
-        let Some(end) = rest.find(close) else { return found };
-        at = begin + end + close.len();
-        if open == "<?" {
-            found.push(begin..at);
+        let inside = begin + open.len();
+        let Some(length) = text[inside..].find(close) else { break };
+        let end = inside + length;
+        at = end + close.len();
+        match open {
+            // The hyphen before `-->` may not be another one.
+            "<!--" if text[inside..=end].contains("--") => found.push(inside..end),
+            "<?" if !in_root => found.push(begin..at),
+            _ => {}
         }
     }
+    found
 }
 
 /// Returns where the name and the attributes of the root's tag end.
@@ -112,12 +122,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn declaration_becomes_blanks() {
+    fn declarations_and_hyphens_in_comments_become_blanks() {
         for (text, repaired) in [
             ("<?xml verison=\"1.0\"?>\n<robot/>", "                     \n<robot/>"),
             ("<?xml version=\"1.0\">\n<robot/>", "                    \n<robot/>"),
             ("\n <? xml\n?><robot/>", "\n       \n  <robot/>"),
             ("<!-- <?xml?> -->\n<?xml?>\n<robot/>", "<!-- <?xml?> -->\n       \n<robot/>"),
+            ("<robot><!-- ä --\n - --><a/></robot>", "<robot><!--     \n   --><a/></robot>"),
+            ("<!-- <!-- --><robot/><!---a---><?b?><!-- --", "<!--      --><robot/><!--   --><?b?><!-- --"),
+            ("<robot><![CDATA[<!-- -- ]]><a/><!-- --></robot>", "<robot><![CDATA[<!-- -- ]]><a/><!-- --></robot>"),
         ] {
             assert_eq!(Repaired::new(text).text, repaired);
         }

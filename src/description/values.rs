@@ -1,5 +1,6 @@
 //! Values of an element, with every number checked, in the types and with the defaults of urdf-rs.
 
+use super::elements::is_misplaced;
 use super::{Collision, Geometry, Inertial, JointKind, Mesh, Mimic, Pose, xml};
 use crate::error::{Reason, Result};
 use roxmltree::Node;
@@ -51,8 +52,9 @@ pub(super) fn collision(element: Node<'_, '_>) -> Result<Collision> {
 }
 
 fn geometry(geometry: Node<'_, '_>) -> Result<Geometry> {
-    // Elements of other programs, such as <drake:declare_convex>, may accompany a shape of URDF.
-    let (mut shapes, foreign) = (xml::children(geometry), || geometry.children().find(Node::is_element));
+    // Elements of other programs, such as <drake:declare_convex>, or misplaced ones may accompany a shape of URDF.
+    let mut shapes = xml::children(geometry).filter(|shape| !is_misplaced("geometry", shape.tag_name().name()));
+    let foreign = || geometry.children().find(Node::is_element);
     let missing = || xml::refuse(geometry, Reason::Missing("a shape in <geometry>".into()));
     let shape = shapes.next().or_else(foreign).ok_or_else(missing)?;
     if let Some(second) = shapes.next() {
@@ -84,7 +86,8 @@ pub(super) fn axis(axis: Option<Node<'_, '_>>, kind: JointKind) -> Result<Option
     let Some(xyz) = optional(axis, "xyz", ANY)? else { return Ok(None) };
     if kind.has_axis() && xyz == [0.0; 3] {
         let reason = "xyz of <axis> is zero, so the joint has no direction".into();
-        return Err(xml::refuse(axis, Reason::Inconsistent(reason)));
+        let hint = "give a direction, as in xyz=\"0 1 0\"; a joint that does not move is of type fixed";
+        return Err(xml::refuse(axis, Reason::Inconsistent(reason)).hint(hint));
     }
     Ok(Some(urdf_rs::Axis { xyz: Vec3(xyz) }))
 }
@@ -113,7 +116,16 @@ fn numbers<const N: usize>(element: Node<'_, '_>, name: &str, text: &str, least:
     let numbers: [f64; N] = numbers.ok_or_else(|| {
         let expected = if N == 1 { "a number".into() } else { format!("{N} numbers") };
         let reason = format!("{} must be {expected}, not \"{text}\"", what());
-        xml::refuse(element, Reason::Syntax(reason))
+        let error = xml::refuse(element, Reason::Syntax(reason));
+        let first = text.split_whitespace().take(N).collect::<Vec<_>>().join(" ");
+        let remedies = [
+            ("separate numbers by spaces", text.replace(", ", " ").replace(',', " ")),
+            ("write decimal points", text.replace(',', ".")),
+            ("leave out the rest", first),
+        ];
+        let is_one = |meant: &str| meant.len() < 100 && parsed::<N>(meant.split_whitespace()).is_some();
+        let remedy = remedies.into_iter().find(|(_, meant)| is_one(meant));
+        remedy.into_iter().fold(error, |error, (what, meant)| error.hint(format!("{what}: \"{}\"", meant.trim())))
     })?;
     match numbers.iter().find(|number| !number.is_finite() || **number < least) {
         None => Ok(numbers),

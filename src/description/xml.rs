@@ -56,30 +56,19 @@ fn refusal(text: &str, error: &roxmltree::Error) -> Error {
             syntax().hint(format!("declare the prefix: <robot xmlns:{prefix}=\"...\">"))
         }
         Xml::UnclosedRootNode | Xml::UnexpectedEndOfStream => syntax().hint("the text ends too early: is it whole?"),
-        Xml::InvalidComment(_) => {
-            let error = refused(Reason::Syntax("a comment holds --, which XML does not allow".into()));
-            let hyphens = hyphens_in_comment(text).map(|offset| Cursor::new(text).locate(offset));
-            let located = hyphens.into_iter().fold(error, |error, Location { line, column }| error.on(line, column));
-            located.hint("remove one of the hyphens, or the comment")
-        }
         _ if text.trim_start().starts_with(['{', '[']) => syntax().hint(JSON),
+        Xml::UnknownToken(_) if text.trim_start().starts_with('<') && !begins_at(text, place, "<!") => {
+            syntax().hint("the element <robot> is the whole file: delete what follows its end")
+        }
         _ if text.trim_start().starts_with('<') => syntax(),
         _ if text.lines().next().is_some_and(|head| head.contains([',', '\t'])) => syntax().hint(TABLE),
         _ => syntax().hint(NO_URDF),
     }
 }
 
-/// Returns the position of the first `--` inside a comment.
-fn hyphens_in_comment(text: &str) -> Option<usize> {
-    let mut at = 0;
-    loop {
-        let inside = at + text[at..].find("<!--")? + 4;
-        let hyphens = inside + text[inside..].find("--")?;
-        if !text[hyphens..].starts_with("-->") {
-            return Some(hyphens);
-        }
-        at = hyphens + 3;
-    }
+fn begins_at(text: &str, place: roxmltree::TextPos, part: &str) -> bool {
+    let line = text.lines().nth(place.row as usize - 1).unwrap_or_default();
+    line.char_indices().nth(place.col as usize - 1).is_some_and(|(at, _)| line[at..].starts_with(part))
 }
 
 /// Refuses texts with more than [`MOST_LINKS`] tags `<link` before a tree is built from them, and texts on which
@@ -160,16 +149,19 @@ pub(super) fn children<'a, 'input: 'a>(node: Node<'a, 'input>) -> impl Iterator<
 
 pub(super) type Child<'a, 'input> = Option<Node<'a, 'input>>;
 
-/// Finds the child elements with these tags in one pass. A second element with the same tag is an error.
+/// Finds the child elements with these tags in one pass. A second element with the same tag is an error, unless it is
+/// written exactly as the first.
 pub(super) fn named<'a, 'input: 'a, const N: usize>(
     node: Node<'a, 'input>,
     tags: [&str; N],
 ) -> [Result<Child<'a, 'input>>; N] {
     let mut found = tags.map(|_| Ok(None));
+    let text = |element: Node<'_, 'input>| &node.document().input_text()[element.range()];
     for child in children(node) {
         let tag = child.tag_name().name();
         match tags.iter().position(|known| *known == tag).map(|at| &mut found[at]) {
             Some(first @ Ok(None)) => *first = Ok(Some(child)),
+            Some(Ok(Some(first))) if text(*first) == text(child) => {}
             Some(known @ Ok(_)) => {
                 let twice = Reason::Duplicate { what: "element", name: tag.into() };
                 *known = Err(refuse(child, twice).hint("delete one of them"));

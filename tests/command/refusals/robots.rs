@@ -72,6 +72,8 @@ time,q_base_x\n0,1
 <robot>\n<link name="${p}a"><inertial><mass value="1"/></inertial></link></robot>
 <robot><link name="a"/>\n<include filename="$(find x)/y.xacro"/></robot>
 <robot><link name="a">\n<collision><geometry><sphere radius="$(arg r)"/></geometry></collision></link></robot>
+<robot><link name="a"/></robot>\n<robot/>
+<robot><link name="a"/>\n<!- a -></robot>
 "#;
 
 /// Contents of `<robot>`, one per line.
@@ -94,17 +96,21 @@ const SHAPES: &str = r#"
 <cylinder radius="1"/>
 <box size="1 1 1"/><sphere radius="1"/>
 <mesh filename="a.stl" scale="0 -0 0e9"/>
+<mesh filename="a.stl" scale="1 1 1 1"/>
 "#;
 
 /// A joint's type and its content besides parent a and child b, one joint per line.
 const JOINTS: &str = r#"
 fixed <origin xyz="1 2 x 3"/>
 fixed <origin xyz="1 2"/>
+fixed <origin xyz="0.07, 0, -0.69"/>
+fixed <origin xyz="0,07 0 -0,69"/>
 fixed <origin quat_xyzw="0 0 0 1"/>
-fixed <origin/>\n<origin/>
+fixed <origin/>\n<origin xyz="1 0 0"/>
 fixed <parent link="b"/>
 fixed </joint>\n<joint name="j" type="fixed"><parent link="a"/><child link="b"/>
 continuous <mimic joint="k"/>
+continuous <mimic joint="k"/></joint>\n<joint name="left_k" type="fixed"><parent link="a"/><child link="a"/>
 revolut <axis xyz="0 1 0"/>
  <axis xyz="0 1 0"/>
 Fixed <axis xyz="0 1 0"/>

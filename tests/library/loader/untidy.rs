@@ -94,12 +94,63 @@ fn moment_that_is_negative_by_rounding_is_zero() {
 }
 
 #[test]
-fn hyphens_in_a_comment_are_named_with_their_place() {
-    let text = format!("<robot>\n<!-- a - comment -->\n{LINK}<!-- the -- second -->\n</robot>");
-    let error = Robot::from_urdf(&text).expect_err("no XML");
-    let column = LINK.len() + 10;
-    assert_eq!(error.to_string(), format!("3:{column}: a comment holds --, which XML does not allow"));
-    assert_eq!(error.remedy(), Some("remove one of the hyphens, or the comment"));
+fn a_negative_moment_is_kept_if_its_body_has_another() {
+    let text = |iyy: &str| {
+        chain(&[1.0, 2.0, 0.0], &[("fixed", "1 0 0"), PITCH]).replacen("iyy=\"1\"", &format!("iyy=\"{iyy}\""), 1)
+    };
+    // The two links are 1 m apart, which gives 2 / 3 kg m^2.
+    let robot = load(&text("-0.5"));
+    assert!((robot.bodies()[0].moment - (2.0 - 0.5 + 2.0 / 3.0)).abs() < 1e-15, "{:?}", robot.bodies()[0]);
+    let caution = "with an inertia that no body has, one moment being more than the other two together: a; correct it";
+    assert!(robot.reading().cautions.iter().any(|own| own == caution), "{:?}", robot.reading().cautions);
+    for weld in [false, true] {
+        let reductions = heelstrike::reductions::Reductions { weld, ..Default::default() };
+        let reduced = |iyy: &str| {
+            let description = Description::from_urdf(&text(iyy)).expect("a description");
+            Robot::reduce(&description, &Reduction { reductions, ..Reduction::default() })
+        };
+        assert!(reduced("-0.5").is_ok());
+        let refused = reduced("-3").expect_err("a negative sum").to_string();
+        let reason = "2:1: link \"a\": the moment of inertia about the plane's normal must be at least 0, not -0.33333";
+        assert!(refused.starts_with(reason), "{refused}");
+    }
+}
+
+#[test]
+fn an_origin_inside_a_geometry_is_named() {
+    let inside = "<origin xyz=\"9 9 9\"/><sphere radius=\"1\"/>";
+    let collision = format!("\n<collision>\n<geometry>\n{inside}</geometry></collision></link>");
+    let robot = load(&robot(&LINK.replace("</link>", &collision)));
+    assert_eq!(disc(&robot.links()[0]), ([0.0; 2], 1.0));
+    let caution = "not read, and perhaps misspelt: <origin> in <geometry> on line 5 (in <collision>?)";
+    assert!(robot.reading().cautions.iter().any(|own| own == caution), "{:?}", robot.reading().cautions);
+}
+
+#[test]
+fn an_element_given_twice_alike_counts_once() {
+    let axis = "<axis xyz=\"0 1 0\"/>";
+    let text = massive(&[PITCH]);
+    assert_eq!(names(&load(&text.replace(axis, &axis.repeat(2)))), ["j"]);
+    assert!(Robot::from_urdf(&text.replace(axis, &format!("{axis}<axis xyz=\"0 -1 0\"/>"))).is_err());
+}
+
+#[test]
+fn macros_in_what_is_seen_are_passed_over() {
+    let seen = |element: &str| {
+        let mesh = format!("<{element}><geometry><mesh filename=\"$(find x)/y.stl\"/></geometry></{element}></link>");
+        Robot::from_urdf(&robot(&LINK.replace("</link>", &mesh)))
+    };
+    assert!(seen("visual").is_ok());
+    assert!(seen("collision").is_err());
+}
+
+#[test]
+fn hyphens_in_comments_are_passed_over() {
+    let text = format!("<robot>\n<!-- <a> -- <!-- ä --->{LINK}<!-- <link -->\n<link name=\"b\"/></robot>");
+    // A comment ends at the first `-->`, and places are those of the file.
+    let refused = Robot::from_urdf(&text).expect_err("two roots");
+    assert_eq!(refused.to_string(), "3:1: link \"b\": links \"a\" and \"b\" are both roots");
+    assert_eq!(load(&text.replace("<link name=\"b\"/>", "")).links().len(), 1);
 }
 
 #[test]
