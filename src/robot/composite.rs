@@ -7,7 +7,6 @@
 //! Distances are taken in the plane, and the normal is n = +y (Featherstone 2008, sections 2.8 and 2.13).
 
 use crate::description::Matrix;
-use crate::error::Reason;
 use crate::planar::Vector;
 
 /// A negative moment below this fraction of its terms is a rounding error of a rotated inertia.
@@ -39,24 +38,18 @@ pub(super) fn is_physical(inertia: &Matrix) -> bool {
 pub(super) struct LinkInertia {
     mass: f64,
     com: Vector<f64>,
-    /// Moment of inertia about the normal through the center of mass \[kg m^2\]; negative by rounding at most.
+    /// Moment of inertia about the normal through the center of mass \[kg m^2\]; negative in some files.
     pub(super) moment: f64,
 }
 
 impl LinkInertia {
-    /// A point mass.
-    pub(super) fn point(mass: f64, com: Vector<f64>) -> Self {
-        Self { mass, com, moment: 0.0 }
+    pub(super) fn new(mass: f64, com: Vector<f64>, moment: f64) -> Self {
+        Self { mass, com, moment }
     }
 
     /// Projects the `inertia` about the center of mass, whose axes are the columns of `rotation` in the body's frame;
-    /// without it the result is a point mass. Returns an error if the moment is negative by more than rounding.
-    pub(super) fn projected(
-        mass: f64,
-        com: Vector<f64>,
-        inertia: Option<&Matrix>,
-        rotation: &Matrix,
-    ) -> Result<Self, Reason> {
+    /// without it the result is a point mass. Returns it with the largest rounding error of its moment.
+    pub(super) fn projected(mass: f64, com: Vector<f64>, inertia: Option<&Matrix>, rotation: &Matrix) -> (Self, f64) {
         // The middle row of R is n' R.
         let normal = rotation[1];
         let (mut moment, mut size) = (0.0, 0.0);
@@ -70,11 +63,7 @@ impl LinkInertia {
         let largest =
             inertia.into_iter().flat_map(|rows| rows.as_flattened()).fold(0.0, |most, entry| entry.abs().max(most));
         let scale = [size, largest, mass * com.dot(com)].into_iter().fold(0.0, f64::max);
-        if moment < -ROUNDING * scale {
-            let what = "the moment of inertia about the plane's normal".into();
-            return Err(Reason::OutOfRange { what, allowed: "at least 0", value: moment });
-        }
-        Ok(Self { mass, com, moment })
+        (Self { mass, com, moment }, ROUNDING * scale)
     }
 }
 
@@ -131,7 +120,7 @@ mod tests {
             ([0.0, 0.0, 0.4], 0.3 * sin * sin + 2.0 * 0.01 * sin * cos + 0.1 * cos * cos, 1e-16),
         ] {
             let rotation = Pose { xyz: [0.0; 3], rpy }.rotation();
-            let part = LinkInertia::projected(1.0, Vector::zero(), Some(&INERTIA), &rotation).expect("positive");
+            let (part, _) = LinkInertia::projected(1.0, Vector::zero(), Some(&INERTIA), &rotation);
             assert!((part.moment - expected).abs() <= off, "{rpy:?}");
         }
     }

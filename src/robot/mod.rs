@@ -323,9 +323,9 @@ impl Robot {
         self.base == Base::Floating || self.bodies[self.rigid_body(body)].joint.is_some()
     }
 
-    /// Returns the center of mass of each body with all that is fixed to it, in its frame \[m\]; `None` for a fixed
-    /// body.
-    pub(crate) fn centers(&self) -> Vec<Option<Vector<f64>>> {
+    /// Returns for each body with all that is fixed to it the center of mass in its frame \[m\] and the moment of
+    /// inertia about it \[kg m^2\]; `None` for a fixed body.
+    fn wholes(&self) -> Vec<Option<(Vector<f64>, f64)>> {
         let mut parts = Vec::with_capacity(self.bodies.len());
         // For each body, the result of `rigid_body`, and the body's origin in that body's frame.
         let mut grounds: Vec<(usize, Vector<f64>)> = Vec::with_capacity(self.bodies.len());
@@ -335,10 +335,10 @@ impl Robot {
                 _ => (index, Vector::zero()),
             };
             grounds.push((ground, place));
-            parts.push((ground, LinkInertia::point(body.mass, place + body.com)));
+            parts.push((ground, LinkInertia::new(body.mass, place + body.com, body.moment)));
         }
         let wholes = composites(self.bodies.len(), parts).into_iter().enumerate();
-        wholes.map(|(index, (_, center, _))| (grounds[index].0 == index).then_some(center)).collect()
+        wholes.map(|(index, (_, center, moment))| (grounds[index].0 == index).then_some((center, moment))).collect()
     }
 
     /// Returns the greatest distance from the root's origin to a center of mass or to one of these shapes of bodies,
@@ -351,8 +351,8 @@ impl Robot {
             }
         }
         let distance = |body: usize, point: Vector<f64>| (origins[body] + point).length();
-        let centers = self.centers().into_iter().enumerate();
-        let centers = centers.filter_map(|(index, center)| Some(distance(index, center?)));
+        let wholes = self.wholes().into_iter().enumerate();
+        let centers = wholes.filter_map(|(index, whole)| Some(distance(index, whole?.0)));
         let soles = shapes.map(|(body, shape)| {
             let corners = shape.corners().iter().map(|&corner| distance(body, corner));
             corners.fold(0.0, f64::max) + shape.rim.bound()

@@ -35,6 +35,9 @@ pub enum PlaneReason {
     /// Among x-z and y-z, more revolute and continuous joints on the paths to the lowest links rotate in this plane, or
     /// equally many and it is x-z.
     Legs,
+    /// No revolute or continuous joint on the paths to the lowest links rotates in x-z or y-z, and y-z keeps more of all
+    /// of them than x-z.
+    Most,
     /// It is the usual sagittal plane of URDF, and the axes do not suggest another.
     #[default]
     Usual,
@@ -80,6 +83,7 @@ impl Reading {
             PlaneReason::Asked => "as asked",
             PlaneReason::CommonAxis => "all hinges of the file turn in it",
             PlaneReason::Legs => "most hinges on the way to the lowest links turn in it",
+            PlaneReason::Most => "more hinges of the file turn in it than in x-z",
             PlaneReason::Usual => "the usual one, as the file's hinges have no common direction",
         };
         match self.better_plane {

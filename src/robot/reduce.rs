@@ -51,7 +51,8 @@ impl Robot {
     /// Reduces `description` to a plane of its root link.
     ///
     /// The plane is the one whose normal is parallel to all revolute and continuous axes. If there is none, it is x-z
-    /// or y-z, whichever is normal to more of these axes on the paths to the lowest links. Joints that rotate about the
+    /// or y-z, whichever is normal to more of these axes on the paths to the lowest links, or if to none, to more of all
+    /// axes. Joints that rotate about the
     /// normal or slide in the plane, both within the tolerance, are kept. All others are frozen at zero, with the
     /// inertia that their links have there. The base floats, is fixed to the world, or is a chain of the file's own
     /// joints. [`Robot::reading`] reports these choices with reasons, and [`Robot::left_out`] lists what does not enter
@@ -60,9 +61,9 @@ impl Robot {
     /// # Errors
     /// Returns [`Reason::Inconsistent`] if mimic joints form a cycle, if a joint cannot be frozen at a value or does
     /// not exist, or if nothing that moves has mass. Returns [`Reason::NotATree`] if links or joints of the description
-    /// were changed such that they do not form one tree. Returns [`Reason::OutOfRange`] for a negative moment of
-    /// inertia about the normal, and for an axis tolerance beyond [`Reduction::WIDEST_TOLERANCE`]. Returns
-    /// [`Reason::NotFinite`] if sums of sizes or masses exceed the range of f64.
+    /// were changed such that they do not form one tree. Returns [`Reason::OutOfRange`] for a moving body with a
+    /// negative moment of inertia about the normal, and for an axis tolerance beyond [`Reduction::WIDEST_TOLERANCE`].
+    /// Returns [`Reason::NotFinite`] if sums of sizes or masses exceed the range of f64.
     pub fn reduce(description: &Description, reduction: &Reduction) -> Result<Self> {
         description.check()?;
         let tolerance = reduction.axis_tolerance.unwrap_or(PARALLEL);
@@ -117,10 +118,9 @@ impl Robot {
             if let Some(inertial) = &link.inertial {
                 let Inertial { origin, mass, inertia } = inertial;
                 let frame = place.frame(origin);
-                let part = LinkInertia::projected(*mass, frame.in_plane(), inertia.as_ref(), &frame.rotation);
-                let negative = |reason| link.refuse(reason).hint("correct the moments and products of its <inertia>");
-                let mut part = part.map_err(negative)?;
-                if part.moment < 0.0 {
+                let (mut part, rounding) =
+                    LinkInertia::projected(*mass, frame.in_plane(), inertia.as_ref(), &frame.rotation);
+                if part.moment < 0.0 && part.moment >= -rounding {
                     let found = format!("its moment about the plane's normal is {:e} kg m^2", part.moment);
                     let why = format!("{found}, which is rounding: taken as 0");
                     robot.left_out.push(LeftOutPart::link(&link.name, why));
@@ -141,15 +141,17 @@ impl Robot {
         for (body, whole) in robot.bodies.iter_mut().zip(wholes) {
             (body.mass, body.com, body.moment) = whole;
         }
+        let placed = description.links.iter().zip(moments).zip(&tree.places);
+        let placed = placed.filter_map(|((link, moment), place)| Some((link, moment, place.as_ref()?.body)));
+        refuse_negative(&robot, placed.clone())?;
         robot.left_out.extend(passed_over(description));
         let mut shapes =
             robot.links.iter().flat_map(|link| link.shapes.iter().map(|shape| (link.body, shape))).peekable();
         // Without shapes, only the centers of mass are known.
         let least = if shapes.peek().is_some() { 0.0 } else { USUAL };
         let size = robot.size(shapes).max(least);
-        let moving = description.links.iter().zip(moments).zip(&tree.places);
-        let moving = moving.filter(|(_, place)| place.as_ref().is_some_and(|place| robot.moves(place.body)));
-        let cautions = caution::about_inertias(moving.map(|(link, _)| link), (robot.mass(), size));
+        let moving = placed.filter(|&(.., body)| robot.moves(body)).map(|(link, moment, _)| (link, moment));
+        let cautions = caution::about_inertias(moving, (robot.mass(), size));
         robot.reading.cautions.extend(cautions);
         // With prismatic joints, the robot may reach farther than at zero.
         let slides = robot.joints.iter().any(|joint| !joint.axis.is_revolute());
@@ -168,7 +170,8 @@ impl Robot {
     }
 }
 
-/// Returns the plane that is `asked` for, else the plane of all hinges, else the plane of most hinges of the `legs`.
+/// Returns the plane that is `asked` for, else the plane of all hinges, else the plane of most hinges of the `legs`, or
+/// of the robot if its legs have none.
 fn find_plane(
     description: &Description,
     pose: &ReferencePose,
@@ -185,13 +188,18 @@ fn find_plane(
     if let Some(plane) = Plane::normal_to(hinges.clone().map(|joint| pose.axes[joint]), pose.tolerance) {
         return (plane, PlaneReason::CommonAxis);
     }
-    let turning = |plane: Plane| {
-        let legs = hinges.clone().filter(|&joint| legs[joint]);
-        legs.filter(|&joint| plane.off_normal(pose.axes[joint]) <= OBLIQUE).count()
+    let counts = |all: bool| {
+        [Plane::XZ, Plane::YZ].map(|plane| {
+            let most = if all { pose.tolerance } else { OBLIQUE };
+            let turns = |&joint: &usize| (all || legs[joint]) && plane.off_normal(pose.axes[joint]) <= most;
+            hinges.clone().filter(turns).count()
+        })
     };
-    match [Plane::XZ, Plane::YZ].map(turning) {
-        [0, 0] => (Plane::default(), PlaneReason::Usual),
-        [x, y] => (if y > x { Plane::YZ } else { Plane::XZ }, PlaneReason::Legs),
+    match (counts(false), counts(true)) {
+        // No hinge leads to the lowest links if the root is the lowest.
+        ([0, 0], [x, y]) if y > x => (Plane::YZ, PlaneReason::Most),
+        ([0, 0], _) => (Plane::XZ, PlaneReason::Usual),
+        ([x, y], _) => (if y > x { Plane::YZ } else { Plane::XZ }, PlaneReason::Legs),
     }
 }
 
@@ -277,6 +285,20 @@ fn reduce_link(link: &UrdfLink, place: &Place, left_out: &mut Vec<LeftOutPart>) 
         has_inertial: link.inertial.is_some(),
         line: Some(link.location.line),
     }
+}
+
+/// Returns an error if a moving body has a negative moment of inertia. Its place is that of the link that contributes
+/// most. Each of the `links` has its moment and its body.
+fn refuse_negative<'l>(robot: &Robot, links: impl Iterator<Item = (&'l UrdfLink, f64, usize)>) -> Result<()> {
+    let wholes = robot.wholes().into_iter().enumerate();
+    let mut negative = wholes.filter_map(|(body, whole)| Some((body, whole.filter(|whole| whole.1 < 0.0)?.1)));
+    let Some((whole, value)) = negative.find(|&(body, _)| robot.moves(body)) else { return Ok(()) };
+    let what = "the moment of inertia about the plane's normal".into();
+    let error = Error::from(Reason::OutOfRange { what, allowed: "at least 0", value });
+    let parts = links.filter(|&(.., body)| robot.rigid_body(body) == whole);
+    let worst = parts.min_by(|(_, one, _), (_, other, _)| one.total_cmp(other));
+    let error = worst.into_iter().fold(error, |error, (link, ..)| link.refuse(error));
+    Err(error.hint("correct the moments and products of its <inertia>"))
 }
 
 /// Returns an error if a sum exceeds the range of f64.

@@ -40,6 +40,11 @@ fn plane_without_a_common_direction_is_that_of_legs() {
     let arms = with_arms(&massive(&[PITCH, PITCH, PITCH, ROLL, ROLL, ROLL, ROLL]));
     let robot = load(&arms);
     assert_eq!((robot.reading().plane, names(&robot)), (Plane::XZ, vec!["j", "k", "l"]));
+    // The root's origin may be lower than all feet: a leg that begins 3 m above it.
+    let high = massive(&[ROLL, PITCH, ROLL]).replacen("0 0 -1", "0 0 3", 1);
+    let robot = load(&high);
+    assert_eq!((robot.reading().plane, names(&robot)), (Plane::YZ, vec!["j", "l"]));
+    assert_eq!((robot.reading().plane_because, robot.reading().better_plane), (PlaneReason::Most, None));
     // An axis between two normals counts for the nearer one.
     let oblique = ("revolute", "0 1 0.4");
     let robot = load(&massive(&[ROLL, oblique, oblique]));
