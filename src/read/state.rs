@@ -3,7 +3,7 @@
 use super::json::{Node, Value, id_in};
 use crate::law::Friction;
 use crate::planar::Vector;
-use crate::robot::Base;
+use crate::robot::{Base, FreezeReason};
 use crate::state::{
     AppliedImpulse, ByLink, Defaults, Ground, LOOP_LIMIT, LinkPoint, NamedContact, NamedLoop, PLACED_BY_JOINTS,
     Profile, SpringEnd, SpringLaw, State, Uncertainty, VirtualSpring, bolted, check_restitution, check_slope,
@@ -369,7 +369,13 @@ fn joint(node: Node, name: &str, robot: &Robot) -> Result<usize> {
             return no_coordinate(format!("it follows joint \"{mimicked}\"")).hint(format!("name {mimicked} instead"));
         }
         if let Some(frozen) = robot.frozen(name) {
-            return no_coordinate(frozen.why());
+            let refused = no_coordinate(frozen.why());
+            return match frozen.reason {
+                FreezeReason::OffPlane { .. } | FreezeReason::Asked { .. } => {
+                    refused.hint(format!("pose it by `hold: {name}=VALUE`"))
+                }
+                _ => refused,
+            };
         }
         let unknown = Reason::UnknownName { what: "joint", name: name.to_owned() };
         node.refuse_name(name, unknown).did_you_mean(name, robot.joints.iter().map(|joint| joint.name.as_str()))

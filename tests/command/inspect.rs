@@ -74,6 +74,7 @@ fn a_state_that_names_a_frozen_joint_is_refused() {
     let reason = "joint \"FR_hip_joint\" has no coordinate: frozen at zero, its axis being 90.00 degrees off the plane's normal: \
                   welded into base";
     assert!(stderr.contains(reason), "{stderr}");
+    assert!(stderr.ends_with("hint: pose it by --hold FR_hip_joint=VALUE\n"), "{stderr}");
 }
 
 #[test]

@@ -486,7 +486,9 @@ fn coordinate(prefix: &str, name: &str, robot: &Robot, moving: fn(usize) -> Tabl
         let hint = format!("write results with `brief`, or give `foreign: {prefix}{}` to copy the column", short(name));
         return Err(Error::new(reason).hint(hint));
     }
-    let known: Vec<String> = in_columns(robot).map(|known| format!("{prefix}{known}")).collect();
+    // Columns of frozen joints are accepted, too.
+    let frozen = robot.reading.frozen.iter().map(|frozen| frozen.name.clone());
+    let known: Vec<String> = in_columns(robot).chain(frozen).map(|known| format!("{prefix}{known}")).collect();
     let unknown = Error::new(Reason::UnknownName { what: "coordinate", name: short(name) });
     let in_degrees = is_of_coordinate(name, &["deg", "degree", "degrees"], &plain_coordinates(robot));
     if in_degrees || name.contains("[deg") || name.contains("(deg") {
