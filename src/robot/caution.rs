@@ -41,6 +41,8 @@ const AT_ZERO: f64 = 0.02;
 const TRIED: usize = 3;
 /// Largest number of joints or links that a caution names.
 const NAMED: usize = 3;
+/// Largest number of remedies for tilted axes that a caution names: one per leg.
+const MOST_REMEDIES: usize = 8;
 
 /// The description with its reference pose and plane.
 pub(super) struct Seen<'a> {
@@ -95,8 +97,7 @@ pub(super) fn about_frozen(seen: &Seen, frozen: &[(usize, FrozenJoint)], kept: u
     }
     cautions.extend(naming(
         hidden.iter().map(|(_, joint)| &joint.name),
-        "{} could move in the plane and is frozen all the same, having no single axis: replace it by revolute and \
-         prismatic joints",
+        "able to move in the plane but frozen, having no single axis: {}; give revolute and prismatic joints instead",
     ));
     cautions
 }
@@ -140,8 +141,8 @@ pub(super) fn about_file(
     ));
     cautions.extend(naming(
         touching.map(|link| &link.name),
-        "{} has collision shapes but belongs to the base, so they are left out: if it is a foot, name one on another \
-         link (`feet: LINK:X,Y,Z`)",
+        "part of the base, so that its collision shapes are left out: {}; if it is a foot, name one on another link \
+         (`feet: LINK:X,Y,Z`)",
     ));
     cautions.extend(about_shapes(description));
     cautions.extend(naming(misspelt, "not read, and perhaps misspelt: {}"));
@@ -303,7 +304,7 @@ pub(super) fn about_inertias<'l>(
         let moments = inertia.map(|inertia| [inertia[0][0], inertia[1][1], inertia[2][2]]).unwrap_or_default();
         let largest = moments.into_iter().fold(0.0, f64::max);
         // Planar models give only one moment.
-        let is_planar = moments.iter().filter(|&&moment| moment == 0.0).count() == 2;
+        let is_planar = largest > 0.0 && moments.iter().filter(|&&moment| moment == 0.0).count() == 2;
         let kind = match inertia {
             None if *mass > 0.0 => 0,
             Some(_) if *mass == 0.0 && largest > 0.0 => 1,
@@ -448,13 +449,16 @@ fn about_tilted(seen: &Seen, nearly: &[&(usize, FrozenJoint)], (all, stays): (us
             remedies.push(remedy);
         }
     }
-    let remedies: Vec<String> = remedies.into_iter().map(|(.., words)| words).collect();
+    let [are, their_axes_are, them] = match nearly.len() {
+        1 => ["is", "its axis is", "it"],
+        _ => ["are", "their axes are", "them"],
+    };
     format!(
-        "{} of {all} joints that could move are frozen only because their axes are {range} degrees off the plane ({}); to keep \
-         them: {}",
+        "{} of {all} joints that could move {are} frozen only because {their_axes_are} {range} degrees off the plane ({}); to \
+         keep {them}: {}",
         nearly.len(),
         names(nearly.iter().map(|(_, joint)| &joint.name)).unwrap_or_default(),
-        remedies.join(", "),
+        first(remedies.into_iter().map(|(.., words)| words), MOST_REMEDIES).unwrap_or_default(),
     )
 }
 
@@ -560,8 +564,13 @@ fn naming<S: AsRef<str>>(listed: impl IntoIterator<Item = S>, text: &str) -> Opt
 
 /// Returns the first [`NAMED`] names and the number of others; `None` if there are none.
 fn names<S: AsRef<str>>(names: impl IntoIterator<Item = S>) -> Option<String> {
+    first(names, NAMED)
+}
+
+/// Returns the first `most` names and the number of others; `None` if there are none.
+fn first<S: AsRef<str>>(names: impl IntoIterator<Item = S>, most: usize) -> Option<String> {
     let mut names = names.into_iter();
-    let mut first: Vec<String> = names.by_ref().take(NAMED).map(|name| name.as_ref().to_owned()).collect();
+    let mut first: Vec<String> = names.by_ref().take(most).map(|name| name.as_ref().to_owned()).collect();
     first.extend(Some(names.count()).filter(|&more| more > 0).map(|more| format!("{more} more")));
     (!first.is_empty()).then(|| first.join(", "))
 }

@@ -83,8 +83,8 @@ fn every_command_warns_of_a_robot_that_loses_joints() {
     let joint = "<joint name='j' type='revolute'><origin rpy='0.0872665 0 0'/><axis xyz='0 1 0'/><parent link='a'/>\
                  <child link='b'/></joint>";
     let file = file("tilted.urdf", urdf::robot(&[a, b, joint.to_owned()]));
-    let word = "1 of 1 joints that could move are frozen only because their axes are 5.0 degrees off the plane (j); to keep \
-                them: straighten the rpy of j";
+    let word = "1 of 1 joints that could move is frozen only because its axis is 5.0 degrees off the plane (j); to keep \
+                it: straighten the rpy of j";
     let inspect = heelstrike(&["inspect", &file]);
     assert!(inspect.stdout.replace("\n               ", " ").contains(word), "{}", inspect.stdout);
     let impact = heelstrike_reads(&["impact", &file, "-"], r#"{"friction": 1}"#);

@@ -21,8 +21,8 @@ const FEET: usize = 200;
 const SHAPES: usize = 600;
 /// The number of lines that fit a screen.
 const SCREEN: usize = 40;
-/// The number of lines of a section that are always shown: a blank line, the title, the heads of the columns, two rows.
-const LEAST: usize = 5;
+/// The number of lines of a section that are always shown: a blank line, the title, the heads of the columns, one row.
+const LEAST: usize = 4;
 /// The room for the links of a body, in characters.
 const LINKS: usize = 50;
 

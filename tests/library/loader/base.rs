@@ -198,7 +198,7 @@ fn links_of_the_base_have_no_contacts() {
         "<link name=\"c\"><collision><geometry><sphere radius=\"0\"/></geometry></collision>",
     ));
     let caution = only_caution(&robot);
-    assert!(caution.starts_with("c has collision shapes but belongs to the base"), "{caution}");
+    assert!(caution.starts_with("part of the base, so that its collision shapes are left out: c;"), "{caution}");
 }
 
 #[test]

@@ -162,8 +162,8 @@ fn joints_without_one_axis_are_frozen_with_a_caution() {
         assert_eq!(names(&robot), ["j"]);
         let why = format!("frozen at zero, being {word}: welded into b");
         assert_eq!(robot.left_out(), [left_out("joint \"k\"", &why)]);
-        let caution = "k could move in the plane and is frozen all the same, having no single axis: replace it by revolute \
-                       and prismatic joints";
+        let caution = "able to move in the plane but frozen, having no single axis: k; give revolute and prismatic joints \
+                       instead";
         assert_eq!(robot.reading().cautions, [caution]);
     }
 }
