@@ -42,6 +42,16 @@ fn state(table: &str) -> State {
 }
 
 #[test]
+fn a_misspelt_frozen_joint_is_likened_to_frozen_joints() {
+    let turned = joint("ankle_yaw", Axis::OffPlane, ["shin", "foot"], [0.0; 2], "");
+    let turns = joint("ankle_pitch", HINGE, ["foot", "toe"], [0.0; 2], "");
+    let links = ["foot", "toe"].map(|name| link(name, 1.0, [0.0; 2], 0.1, "")).concat();
+    let robot = robot(&leg_urdf().replace("</robot>", &format!("{links}{turned}{turns}</robot>")));
+    let refused = Header::read(b"q_ankle_yow,v_knee", Form::Csv, &robot, Rates::Columns, &[]).expect_err("no joint");
+    assert_eq!(refused.remedy(), Some("did you mean q_ankle_yaw?"));
+}
+
+#[test]
 fn columns_go_by_name_and_cells_may_be_missing() {
     let state = state("v_knee,id,q_base_pitch,phase,friction,q_base_z,restitution\n2e1,007,-0.5,x,infinite, .25 ,1\n");
     assert_eq!(state.position, [0.0, 0.25, -0.5, 0.0]);
