@@ -1,9 +1,9 @@
 //! Repairs common faults of URDF files so that their XML can be parsed. Places of errors are those in the original.
 //!
-//! Three faults are repaired. A declaration `<?xml ...?>` that is misspelt or not at the beginning is replaced by blanks
-//! (the text is UTF-8 already, so it carries no information). So is the inside of a comment that holds `--`; as other
-//! readers of URDF do, a comment is taken to end at the first `-->`. Undeclared namespace prefixes (`<sensor:camera>` in
-//! a robot without `xmlns:sensor`) are declared at the end of the root's tag.
+//! Three faults are repaired. A declaration `<?xml ...?>` that is misspelt or not at the beginning is replaced by
+//! blanks (the text is UTF-8 already, so it carries no information). So is the inside of a comment that holds `--`; as
+//! other readers of URDF do, a comment is taken to end at the first `-->`. Undeclared namespace prefixes
+//! (`<sensor:camera>` in a robot without `xmlns:sensor`) are declared at the end of the root's tag.
 
 use super::xml::Cursor;
 use crate::error::{Error, Location};

@@ -35,8 +35,8 @@ pub enum PlaneReason {
     /// Among x-z and y-z, more revolute and continuous joints on the paths to the lowest links rotate in this plane, or
     /// equally many and it is x-z.
     Legs,
-    /// No revolute or continuous joint on the paths to the lowest links rotates in x-z or y-z, and y-z keeps more of all
-    /// of them than x-z.
+    /// No revolute or continuous joint on the paths to the lowest links rotates in x-z or y-z, and y-z keeps more of
+    /// all of them than x-z.
     Most,
     /// It is the usual sagittal plane of URDF, and the axes do not suggest another.
     #[default]

@@ -51,12 +51,11 @@ impl Robot {
     /// Reduces `description` to a plane of its root link.
     ///
     /// The plane is the one whose normal is parallel to all revolute and continuous axes. If there is none, it is x-z
-    /// or y-z, whichever is normal to more of these axes on the paths to the lowest links, or if to none, to more of all
-    /// axes. Joints that rotate about the
-    /// normal or slide in the plane, both within the tolerance, are kept. All others are frozen at zero, with the
-    /// inertia that their links have there. The base floats, is fixed to the world, or is a chain of the file's own
-    /// joints. [`Robot::reading`] reports these choices with reasons, and [`Robot::left_out`] lists what does not enter
-    /// the analysis.
+    /// or y-z, whichever is normal to more of these axes on the paths to the lowest links, or if to none, to more of
+    /// all axes. Joints that rotate about the normal or slide in the plane, both within the tolerance, are kept. All
+    /// others are frozen at zero, with the inertia that their links have there. The base floats, is fixed to the world,
+    /// or is a chain of the file's own joints. [`Robot::reading`] reports these choices with reasons, and
+    /// [`Robot::left_out`] lists what does not enter the analysis.
     ///
     /// # Errors
     /// Returns [`Reason::Inconsistent`] if mimic joints form a cycle, if a joint cannot be frozen at a value or does
