@@ -60,6 +60,8 @@ impl Parts {
     /// # Errors
     /// Returns an error if the file is neither, or has a compression that is not supported.
     pub fn open(mut file: File, form: Form) -> Result<Self> {
+        // Under either name of Arrow a file may be a stream, and a stream a file.
+        let form = if form == Form::Arrows { Form::Arrow } else { form };
         let beginning = beginning(&mut file, form)?;
         file.rewind().map_err(unreadable)?;
         if form == Form::Parquet {
