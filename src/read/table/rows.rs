@@ -71,7 +71,7 @@ impl Carried {
         Self::Text(fields.collect::<Vec<_>>().into())
     }
 
-    /// Returns the number of cells, which are in the order of [`Header::carried`].
+    /// Returns the number of cells, which are in the order of [`Header::carried`]. In columns with types, the id follows.
     pub fn len(&self) -> usize {
         match self {
             Self::Text(cells) | Self::Json(cells) => cells.len(),
@@ -236,7 +236,8 @@ impl Row<'_> {
         }
     }
 
-    /// Returns the cells to copy to the result, if there are any and the row has as many fields as the header.
+    /// Returns the cells to copy to the result, if there are any and the row has as many fields as the header. Columns
+    /// with types have the id at their end.
     pub fn carried(&self) -> Option<Carried> {
         let cells = match self.source {
             Source::Text(cells, _) if cells.len() == self.header.columns.len() => cells,

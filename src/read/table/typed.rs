@@ -21,7 +21,7 @@ pub(super) struct Typed {
     whole: [Vec<(usize, Float64Array)>; 2],
     /// The indices of all other columns.
     pub open: Vec<usize>,
-    /// The columns that are carried through, if there are any.
+    /// The columns that are carried through, with that of the ids at their end, if there are any of these.
     pub carried: Option<Arc<RecordBatch>>,
     pub rows: usize,
 }
@@ -137,7 +137,18 @@ impl Typed {
             Column::Integers(numbers) if numbers.is_valid(row) => Some(numbers.value(row).into()),
             Column::Digits(digits) if digits.is_valid(row) => {
                 let digits = digits.value(row);
-                id_of(digits.strip_suffix(".0").unwrap_or(digits))
+                let digits = match digits.split_once('.') {
+                    Some((whole, zeros)) if zeros.bytes().all(|digit| digit == b'0') => whole,
+                    _ => digits,
+                };
+                match digits.parse::<f64>() {
+                    Ok(0.0) => Some(0.into()),
+                    // Large floats are written with an exponent.
+                    Ok(value) if digits.contains('e') && value.fract() == 0.0 && value.abs() < -(i64::MIN as f64) => {
+                        Some((value as i64).into())
+                    }
+                    _ => id_of(digits),
+                }
             }
             _ => None,
         }
