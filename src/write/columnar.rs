@@ -8,11 +8,13 @@ use super::csv::{Cell, Columns, Kind, Row, RowSink};
 use crate::read::table::{Carried, Form};
 use crate::{Error, Reason, Result};
 use arrow_array::builder::{ArrayBuilder, BooleanBuilder, Float64Builder, Int64Builder, StringBuilder};
+use arrow_array::cast::AsArray;
 use arrow_array::{Array, ArrayRef, RecordBatch, new_null_array};
 use arrow_ipc::writer::{FileWriter, StreamWriter};
 use arrow_schema::{DataType, Field, Schema, SchemaRef};
 use arrow_select::concat::concat_batches;
 use arrow_select::interleave::interleave;
+use arrow_select::take::take;
 use parquet::arrow::ArrowWriter;
 use parquet::basic::{Compression, Encoding};
 use parquet::errors::ParquetError;
@@ -70,6 +72,24 @@ fn whole<B: ArrayBuilder>(mut builder: B, rows: usize, nulls: fn(&mut B, usize))
     builder.finish()
 }
 
+/// Replaces dictionaries by their values, in those rows only that lie between the ones in `at`, which may be few.
+fn without_dictionaries(arrays: &mut [ArrayRef], at: &mut [(usize, usize)]) -> Result<()> {
+    let mut used = vec![(usize::MAX, 0); arrays.len()];
+    for &(array, row) in &*at {
+        let (first, end) = used[array];
+        used[array] = (row.min(first), end.max(row + 1));
+    }
+    for (array, &(first, end)) in arrays.iter_mut().zip(&used).filter(|(_, (first, end))| first < end) {
+        let rows = array.slice(first, end - first);
+        *array = match rows.as_any_dictionary_opt() {
+            Some(dictionary) => take(dictionary.values(), dictionary.keys(), None).map_err(unwritable)?,
+            None => rows,
+        };
+    }
+    at.iter_mut().for_each(|(array, row)| *row -= used[*array].0);
+    Ok(())
+}
+
 impl ColumnBlock {
     /// Creates a block of these columns without rows, with capacity for `rows`.
     pub fn new(columns: &Columns, rows: usize) -> Self {
@@ -93,9 +113,12 @@ impl ColumnBlock {
                 Column::Boolean(values) => whole(values, rows, BooleanBuilder::append_nulls),
                 Column::Carried { which, sources, mut at } => {
                     at.resize(rows, (0, 0));
-                    let null = new_null_array(field.data_type(), 1);
-                    let arrays = sources.iter().map(|source| source.column(which).as_ref());
-                    let arrays: Vec<&dyn Array> = std::iter::once(null.as_ref()).chain(arrays).collect();
+                    let mut arrays = vec![new_null_array(field.data_type(), 1)];
+                    arrays.extend(sources.iter().map(|source| Arc::clone(source.column(which))));
+                    if sources.iter().any(|source| source.column(which).data_type() != field.data_type()) {
+                        without_dictionaries(&mut arrays, &mut at)?;
+                    }
+                    let arrays: Vec<&dyn Array> = arrays.iter().map(AsRef::as_ref).collect();
                     interleave(&arrays, &at).map_err(unwritable)?
                 }
             })
@@ -202,15 +225,15 @@ impl ColumnWriter {
                     .set_max_row_group_row_count(Some(ROW_GROUP))
                     .set_statistics_enabled(EnabledStatistics::Chunk)
                     .set_dictionary_enabled(false);
-                for (name, kind) in columns.names().iter().zip(columns.kinds()) {
-                    let path = ColumnPath::new(vec![name.clone()]);
-                    properties = match kind {
+                for field in schema.fields() {
+                    let path = ColumnPath::new(vec![field.name().clone()]);
+                    properties = match field.data_type() {
                         // Minima and maxima of text are of no use, nor is a dictionary of ids, which all differ.
-                        Kind::Text => properties
-                            .set_column_dictionary_enabled(path.clone(), name != "id")
+                        DataType::Utf8 | DataType::LargeUtf8 | DataType::Utf8View => properties
+                            .set_column_dictionary_enabled(path.clone(), field.name() != "id")
                             .set_column_statistics_enabled(path, EnabledStatistics::None),
-                        // Consecutive lines and counts differ by little.
-                        Kind::Integer => properties.set_column_encoding(path, Encoding::DELTA_BINARY_PACKED),
+                        // Consecutive lines, ids and counts differ by little.
+                        own if own.is_integer() => properties.set_column_encoding(path, Encoding::DELTA_BINARY_PACKED),
                         _ => properties,
                     };
                 }
@@ -281,7 +304,6 @@ mod tests {
     use super::*;
     use crate::Robot;
     use crate::write::Layout;
-    use arrow_array::cast::AsArray;
 
     #[test]
     fn every_column_has_a_cell_of_each_row() -> Result<()> {

@@ -70,7 +70,7 @@ pub enum Kind {
     Integer,
     /// True or false.
     Boolean,
-    /// The type of a carried column, given by its number among them.
+    /// The type of a column of the input that is carried through or has the ids, given by its number in [`Carried`].
     #[cfg(feature = "columnar")]
     Carried(usize),
 }
@@ -146,14 +146,15 @@ impl Columns {
         Self { types: Some(types), ..self }
     }
 
-    /// Returns the Arrow field of a carried column.
+    /// Returns the Arrow field of a carried column. A dictionary becomes its values: every block has one of its own, and
+    /// Arrow's file holds one for all.
     #[cfg(feature = "columnar")]
     pub(super) fn carried_field(&self, which: usize) -> arrow_schema::Field {
         let field = self.types.as_ref().and_then(|types| types.fields().get(which));
-        field.map_or_else(
-            || arrow_schema::Field::new("", arrow_schema::DataType::Null, true),
-            |own| own.as_ref().clone(),
-        )
+        let own = field.map_or(&arrow_schema::DataType::Null, |own| own.data_type());
+        let own = if let arrow_schema::DataType::Dictionary(_, values) = own { values } else { own };
+        let field = field.map_or_else(|| arrow_schema::Field::new("", own.clone(), true), |own| own.as_ref().clone());
+        field.with_data_type(own.clone())
     }
 
     /// Creates the columns for states without a line. `named` are contacts that the states name themselves, and

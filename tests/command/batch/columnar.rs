@@ -3,7 +3,8 @@
 use super::table::{WALK_QUESTIONS, walk};
 use super::*;
 use crate::support::random::Random;
-use arrow_array::types::Int8Type;
+use arrow_array::cast::AsArray;
+use arrow_array::types::{Int8Type, Int32Type};
 use arrow_array::{
     Array, ArrayRef, BooleanArray, DictionaryArray, Float32Array, Float64Array, Int64Array, NullArray, RecordBatch,
     StringArray, TimestampSecondArray, UInt64Array,
@@ -204,7 +205,13 @@ fn ids_are_numbers_of_any_type() {
     let floats: ArrayRef = Arc::new(Float64Array::from(vec![Some(1.0), None, Some(2.5), Some(f64::NAN)]));
     let large: ArrayRef = Arc::new(UInt64Array::from(vec![Some(u64::MAX), None, Some(0), Some(7)]));
     let decimals = cast(&Int64Array::from(vec![1, 2, 3, 4]), &DataType::Decimal128(30, 0)).expect("decimals");
+    let hundredths = cast(&Int64Array::from(vec![1, -2, 30, 4]), &DataType::Decimal128(10, 2)).expect("decimals");
+    let halves = cast(&Float64Array::from(vec![1.5, 0.0, -0.5, 10.0]), &DataType::Decimal128(10, 2)).expect("decimals");
+    let extreme: ArrayRef = Arc::new(Float64Array::from(vec![1e16, -0.0, -1.5e17, 1e19]));
     for (name, ids, expected) in [
+        ("hundredths", hundredths, json!([1, -2, 30, 4])),
+        ("halves", halves, json!([1.5, 0, -0.5, 10])),
+        ("extreme", extreme, json!([10_000_000_000_000_000_i64, 0, -150_000_000_000_000_000_i64, 1e19])),
         ("floats", floats, json!([1, null, 2.5, null])),
         ("large", large, json!([u64::MAX, null, 0, 7])),
         ("decimals", decimals, json!([1, 2, 3, 4])),
@@ -218,6 +225,73 @@ fn ids_are_numbers_of_any_type() {
             batch(&[&input, "--friction", "1", "-o", &output], "").well();
             assert_eq!(batches(&output)[0].column(0).as_ref(), ids.as_ref(), "{name}.{ending}");
         }
+    }
+}
+
+#[test]
+fn dictionaries_of_many_rows_are_written_as_their_values() {
+    const ROWS: usize = 20_000;
+    let dictionary = |text: fn(usize) -> String| -> ArrayRef {
+        let texts: Vec<String> = (0..ROWS).map(text).collect();
+        Arc::new(texts.iter().map(|text| Some(&**text)).collect::<DictionaryArray<Int32Type>>())
+    };
+    let half: ArrayRef = Arc::new(Float64Array::from(vec![0.5; ROWS]));
+    let own = [("id", dictionary(|row| format!("id {row}"))), ("phase", dictionary(|row| format!("{}", row / 7)))];
+    let columns = [&own[..], &[("q_base_z", Arc::clone(&half)), ("v_base_z", half)]].concat();
+    // One batch, because a file of Arrow has one dictionary.
+    let whole = RecordBatch::try_from_iter(columns).expect("columns of one length");
+    let (mut arrow, mut parquet) = (Vec::new(), Vec::new());
+    let mut writer = FileWriter::try_new(&mut arrow, &whole.schema()).expect("a writer");
+    writer.write(&whole).and_then(|()| writer.finish()).expect("memory");
+    let mut writer = ArrowWriter::try_new(&mut parquet, whole.schema(), None).expect("a writer");
+    writer.write(&whole).expect("memory");
+    writer.close().expect("memory");
+    for input in [file("dictionaries.arrow", arrow), file("dictionaries.parquet", parquet)] {
+        for ending in ENDINGS {
+            let output = place(&format!("dictionaries-answers.{ending}"));
+            batch(&[&input, "--friction", "1", "--brief", "-o", &output], "").well();
+            for (name, array) in &own {
+                let found = batches(&output);
+                let found: Vec<&dyn Array> =
+                    found.iter().map(|rows| rows.column_by_name(name).expect("a column").as_ref()).collect();
+                let texts = found.iter().flat_map(|texts| texts.as_string::<i32>());
+                let expected = cast(array, &DataType::Utf8).expect("text");
+                assert!(texts.eq(expected.as_string::<i32>()), "{input} {name} {ending}");
+            }
+        }
+    }
+}
+
+#[test]
+fn whole_numbers_take_few_bytes_in_parquet() {
+    const ROWS: i64 = 20_000;
+    let half: ArrayRef = Arc::new(Float64Array::from(vec![0.5; ROWS as usize]));
+    let whole: ArrayRef = Arc::new(Int64Array::from_iter_values(0..ROWS));
+    let texts: ArrayRef = Arc::new(StringArray::from_iter_values((0..ROWS).map(|row| row.to_string())));
+    let columns = [("id", Arc::clone(&whole)), ("q_base_z", Arc::clone(&half)), ("v_base_z", half)];
+    let columns = [&columns[..], &[("count", whole), ("remark", texts)]].concat();
+    let output = place("whole-answers.parquet");
+    batch(&[&written("whole.parquet", &columns), "--friction", "1", "--brief", "-o", &output], "").well();
+    let read = ParquetRecordBatchReaderBuilder::try_new(File::open(output).expect("a file")).expect("Parquet");
+    let metadata = read.metadata().row_group(0);
+    for column in metadata.columns() {
+        let name = column.column_path().string();
+        if matches!(name.as_str(), "id" | "count") {
+            assert!(column.compressed_size() < 4000, "{name} {}", column.compressed_size());
+        }
+        assert!(column.statistics().is_none() || !matches!(name.as_str(), "verdict" | "remark"), "{name}");
+    }
+}
+
+#[test]
+fn arrow_is_read_under_either_of_its_names() {
+    let half: ArrayRef = Arc::new(Float64Array::from(vec![0.5; 50]));
+    let columns = [("q_base_z", Arc::clone(&half)), ("v_base_z", half)];
+    let answers = |input: &str| batch(&[input, "--friction", "1"], "").well().stdout;
+    let expected = answers(&written("named.parquet", &columns));
+    for (own, other) in [("named.arrow", "renamed.arrows"), ("named.arrows", "renamed.arrow")] {
+        let bytes = std::fs::read(written(own, &columns)).expect("a file");
+        assert!(answers(&file(other, bytes)) == expected, "{own}");
     }
 }
 
@@ -260,11 +334,12 @@ fn columns_of_any_type_are_carried_and_cells_refused() {
         assert_eq!(table, as_csv(&output));
         let found = &batches(&output)[0];
         for (name, array) in strikes().iter().skip(6).chain([&strikes()[0]]) {
-            assert_eq!(
-                found.column_by_name(name).expect("a carried column").as_ref(),
-                array.as_ref(),
-                "{name} {ending}"
-            );
+            // Dictionaries become their values.
+            let expected = match array.data_type() {
+                DataType::Dictionary(_, values) => cast(array, values).expect("values"),
+                _ => Arc::clone(array),
+            };
+            assert_eq!(found.column_by_name(name).expect("a carried column"), &expected, "{name} {ending}");
         }
         let lines = batch(&[&*input, "--refused", "ok"], "").well().lines();
         assert_eq!(lines.iter().map(|line| &line["line"]).collect::<Vec<_>>(), [1, 2, 3, 4, 5, 6, 7, 8]);
