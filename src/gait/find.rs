@@ -95,6 +95,13 @@ pub struct Touchdowns<'r, S, I> {
     ready: VecDeque<Sampled<S>>,
 }
 
+/// A touchdown or its refusal, with the time \[s\] and the row by which those at the end of a clip are ordered.
+struct Found<S> {
+    time: f64,
+    row: usize,
+    sampled: Sampled<S>,
+}
+
 /// The state of a point's motion.
 #[derive(Debug, Clone, Copy)]
 struct Descent {
@@ -386,15 +393,24 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
                 self.window.moment(point, 0.0, end, end)
             }
         };
-        self.strike(self.descents.iter().enumerate().filter_map(strike).collect());
+        let mut found = self.touchdowns(self.descents.iter().enumerate().filter_map(strike).collect());
+        // The strikes are those of several rows.
+        found.sort_by(|one, other| one.time.total_cmp(&other.time).then(one.row.cmp(&other.row)));
+        self.ready.extend(found.into_iter().map(|found| found.sampled));
         self.window.frames.clear();
         self.descents.clear();
     }
 
+    /// Makes touchdowns of strikes that are in order.
+    fn strike(&mut self, strikes: Vec<Strike>) {
+        let found = self.touchdowns(strikes);
+        self.ready.extend(found.into_iter().map(|found| found.sampled));
+    }
+
     /// Makes touchdowns of the strikes whose points are free toward the ground. Simultaneous strikes are one touchdown.
-    fn strike(&mut self, mut strikes: Vec<Strike>) {
+    fn touchdowns(&mut self, mut strikes: Vec<Strike>) -> Vec<Found<S>> {
         let (together, at, touching) = (self.thresholds.together, self.at, self.touching);
-        let start = self.ready.len();
+        let mut touchdowns = Vec::new();
         strikes.retain(|strike| self.points.is_free(strike.point, &self.window.frames[strike.row].places, together));
         while !strikes.is_empty() {
             let first = strikes.remove(0);
@@ -423,21 +439,15 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
             let landing = Landing { row, striking, shift_z, at, touching, is_early, is_slowed, is_deep, is_crowded };
             sample.landing = Some(landing);
             let finite = sample.state.position.iter().chain(&sample.state.velocity).all(|entry| entry.is_finite());
-            self.ready.push_back(if finite {
+            let time = sample.time;
+            let sampled = if finite {
                 Ok(sample)
             } else {
                 let reason = "the robot is too far away or too fast to be placed on the ground".to_owned();
                 Err((sample.source, Error::new(Reason::Inconsistent(reason))))
-            });
+            };
+            touchdowns.push(Found { time, row, sampled });
         }
-        // At the end of a clip strikes of several rows are found at once.
-        let moment = |found: &Sampled<S>| {
-            let found = found.as_ref().ok();
-            found.map_or((f64::INFINITY, None), |found| (found.time, found.landing.as_ref().map(|landing| landing.row)))
-        };
-        self.ready.make_contiguous()[start..].sort_by(|one, other| {
-            let (one, other) = (moment(one), moment(other));
-            one.0.total_cmp(&other.0).then(one.1.cmp(&other.1))
-        });
+        touchdowns
     }
 }
