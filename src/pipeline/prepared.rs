@@ -377,7 +377,8 @@ impl Pipeline<'_> {
             ),
             (None, Some(remedy)) => format!("{remedy}; `place: lowest` puts the lowest foot on the ground"),
         };
-        let hint = state.oddities(self.robot).into_iter().take(1).fold(hint, |hint, odd| format!("{hint}; {odd}"));
+        let odd = state.oddities_of_motion(self.robot).into_iter().take(1);
+        let hint = odd.fold(hint, |hint, odd| format!("{hint}; {odd}"));
         Error::new(Reason::Penetration { link: link.clone(), depth: *depth, tolerance: *tolerance, velocity })
             .hint(hint)
     }

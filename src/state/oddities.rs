@@ -54,6 +54,16 @@ impl State {
 
     /// Describes oddities in sentences: joints outside their limits, and numbers as in degrees or millimeters.
     pub fn oddities(&self, robot: &Robot) -> Vec<String> {
+        let mut odd = self.oddities_of_motion(robot);
+        let friction = &self.scene.friction;
+        let rough = |own: &&Friction| matches!(own, Friction::Finite(mu) if *mu > ROUGH[0] && *mu < ROUGH[1]);
+        let rough = friction.default.iter().chain(friction.links.values()).find(rough);
+        odd.extend(rough.map(|mu| format!("the coefficient of friction is {mu}: was it meant in percent or degrees?")));
+        odd
+    }
+
+    /// Describes the oddities that may explain why a foot is too deep or never lands: all except those of friction.
+    pub(crate) fn oddities_of_motion(&self, robot: &Robot) -> Vec<String> {
         let mut odd = Vec::new();
         self.outside_limits(robot).for_each(|outside| odd.push(outside.to_string()));
         self.like_degrees(robot).for_each(|(name, angle)| {
@@ -65,10 +75,6 @@ impl State {
         }
         odd.extend(self.scene.contacts.iter().flatten().filter_map(|contact| contact.out_of_scale(robot)));
         odd.extend(self.steep());
-        let friction = &self.scene.friction;
-        let rough = |own: &&Friction| matches!(own, Friction::Finite(mu) if *mu > ROUGH[0] && *mu < ROUGH[1]);
-        let rough = friction.default.iter().chain(friction.links.values()).find(rough);
-        odd.extend(rough.map(|mu| format!("the coefficient of friction is {mu}: was it meant in percent or degrees?")));
         odd
     }
 

@@ -82,6 +82,9 @@ fn a_deep_foot_has_the_remedy_of_its_robot() {
     };
     let degrees = json!({"position": {"base": {"z": -1, "pitch": 90}}});
     assert!(remedy(&ramone(), degrees).ends_with("pitch = 90 rad is more than a turn; degrees?"));
+    // Friction puts no foot into the ground.
+    let percent = remedy(&ramone(), json!({"position": {"base": {"z": -1}}, "friction": 80}));
+    assert!(!percent.contains("friction"), "{percent}");
     let reduction = Reduction { base: Some(Base::Fixed), ..Reduction::default() };
     let bolted = reduced(include_str!("../../urdf/ramone.urdf"), &reduction);
     assert!(remedy(&bolted, json!({})).starts_with("the robot is bolted to the world: "));

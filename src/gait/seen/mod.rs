@@ -46,7 +46,7 @@ impl Seen {
         self.lowest = Some(self.lowest.map_or(lowest, |before| before.min(lowest)));
         let Sample { state, time, .. } = sample;
         if self.oddity.is_none() {
-            self.oddity = state.oddities(robot).into_iter().next();
+            self.oddity = state.oddities_of_motion(robot).into_iter().next();
         }
         self.order.add(*time, step);
         // Velocities that were computed from positions are consistent with them.

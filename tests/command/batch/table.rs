@@ -124,13 +124,15 @@ fn the_note_of_no_touchdown_says_what_would_count() {
     let still =
         "time,q_base_x,q_base_z,q_base_pitch,v_base_x,v_base_z,v_base_pitch\n0,0,0.57,0,0,0,0\n0.1,0,0.6,0,0,0,0\n";
     let note_of = |table: &str, options: &[&str]| {
-        let always = ["-", "--input-format", "csv", "--friction", "1", "--touchdowns"];
-        batch(&[&always, options].concat(), table).refusal(0)
+        let always = ["-", "--input-format", "csv", "--touchdowns"];
+        let friction = if options.contains(&"--friction") { &[][..] } else { &["--friction", "1"] };
+        batch(&[&always, friction, options].concat(), table).refusal(0)
     };
     let note = |options: &[&str]| note_of(still, options);
     let expected = "no touchdown found: the lowest foot comes to z = 0.07 m; a foot must descend 0.0120 m or more, \
                     faster than 0.0500 m/s, to at most 0.0200 m above the ground (see --drop, --ground-height)\n";
     assert_eq!(note(&[]), expected);
+    assert_eq!(note(&["--friction", "20"]), expected, "friction explains nothing");
     let expected = expected.replace("0.0200", "0.0300").replace("0.0120", "0.0250");
     assert_eq!(note(&["--drop", "0.025", "--ground-height", "0.03"]), expected);
     let milliseconds = note_of(&still.replace("\n0.1,", "\n100,"), &[]);
