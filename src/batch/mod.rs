@@ -408,7 +408,14 @@ fn with_remedy(error: Error, record: &[u8]) -> Error {
         }
         Reason::Syntax(reason) if reason == "trailing characters" => "a line holds one state and nothing after it",
         Reason::Syntax(_) if record.split(|byte| b",;\t".contains(byte)).any(is_column) => {
-            "is this a table? then say `input_format: csv`"
+            match record.iter().find(|byte| b",;\t".contains(byte)) {
+                Some(b';') => {
+                    "is this a table? save it with commas between columns and points in numbers, and say \
+                     `input_format: csv`"
+                }
+                Some(b'\t') => "is this a table? then say `input_format: tsv`",
+                _ => "is this a table? then say `input_format: csv`",
+            }
         }
         _ => return error,
     };

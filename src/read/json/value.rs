@@ -185,8 +185,14 @@ fn refusal(text: &str, error: &serde_json::Error) -> Error {
         (is_key(u8::is_ascii_digit), "numbers have a decimal point, as in 0.8"),
         (is_key(u8::is_ascii_alphabetic), "names are in double quotes, as in {\"friction\": 0.8}"),
         (begins(&[","]), "leave out this comma"),
-        (text.trim_start().starts_with('<'), "is this a robot description? a command takes it as its first argument"),
-        (is_table(text), "is this a table? `heelstrike batch` reads CSV"),
+        (
+            text.trim_start().starts_with('<'),
+            "is this a robot description? commands that take one have it as their first argument",
+        ),
+        (
+            is_table(text),
+            "is this a table? `heelstrike batch` reads CSV, with commas between columns and points in numbers",
+        ),
         (is_yaml(text), "is this YAML? JSON has braces and double quotes, as in {\"friction\": 0.8}"),
         (begins(&["//", "/*", "#"]), "JSON has no comments: leave it out"),
     ];
@@ -206,12 +212,10 @@ fn is_yaml(text: &str) -> bool {
     text.starts_with("---") || !word.is_empty() && word.chars().all(|c| c.is_alphanumeric() || c == '_')
 }
 
-/// Returns whether a text that is not JSON begins as a table does: with names between commas or semicolons.
+/// Returns whether a text that is not JSON begins as a table of states does: with names of coordinates among others.
 fn is_table(text: &str) -> bool {
-    let first = text.lines().next().unwrap_or_default();
-    first.starts_with(char::is_alphabetic)
-        && first.contains([',', ';'])
-        && first.chars().all(|c| c.is_alphanumeric() || "_-.,;/ ".contains(c))
+    let mut names = text.lines().next().unwrap_or_default().split([',', ';', '\t']).map(str::trim);
+    names.clone().nth(1).is_some() && names.any(|name| name.starts_with("q_") || name.starts_with("v_"))
 }
 
 /// Returns the path up to the last key that was read.

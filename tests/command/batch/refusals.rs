@@ -100,7 +100,12 @@ fn lines_that_are_no_states_get_a_remedy() {
         (&["-"][..], "[{\"friction\": 1}, {}]\n", list),
         (&["-"][..], "{\"friction\": 1},\n", "a line holds one state and nothing after it"),
         (&["-"][..], "id,q_base_z,v_base_z\n1,0.5,-1\n", "is this a table? then say `input_format: csv`"),
-        (&["-"][..], "id;q_base_z;v_base_z\n1;0.5;-1\n", "is this a table? then say `input_format: csv`"),
+        (&["-"][..], "id\tq_base_z\tv_base_z\n1\t0.5\t-1\n", "is this a table? then say `input_format: tsv`"),
+        (
+            &["-"][..],
+            "id;q_base_z;v_base_z\n1;0,5;-1\n",
+            "is this a table? save it with commas between columns and points in numbers, and say `input_format: csv`",
+        ),
         (
             &["-"][..],
             &strike(1, 0.0),

@@ -15,6 +15,7 @@ null
 friction: 1
 <robot name="r">
 id;q_base_z
+yes; no
 {
 {"friction": 1
 {"position": {"base": {"x":
