@@ -182,7 +182,7 @@ fn beginning(input: &mut impl Read, form: Form) -> Result<Vec<u8>> {
     if bytes.iter().all(|byte| matches!(byte, b'\t' | b'\n' | b'\r' | b' '..)) {
         let format = if form == Form::Parquet { "Parquet" } else { "Arrow" };
         let refused = unreadable(format_args!("it is text, and not {format}"));
-        return Err(refused.hint("end its name in .csv, .tsv or .ndjson, or say which it is, as `input_format: csv`"));
+        return Err(refused.hint("end its name in .csv, .tsv or .ndjson, or give the command `input_format: csv`"));
     }
     Ok(bytes)
 }
