@@ -146,8 +146,8 @@ impl Columns {
         Self { types: Some(types), ..self }
     }
 
-    /// Returns the Arrow field of a carried column. A dictionary becomes its values: every block has one of its own, and
-    /// Arrow's file holds one for all.
+    /// Returns the Arrow field of a carried column. A dictionary becomes its values: every block has one of its own,
+    /// and Arrow's file holds one for all.
     #[cfg(feature = "columnar")]
     pub(super) fn carried_field(&self, which: usize) -> arrow_schema::Field {
         let field = self.types.as_ref().and_then(|types| types.fields().get(which));

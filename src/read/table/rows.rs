@@ -71,7 +71,8 @@ impl Carried {
         Self::Text(fields.collect::<Vec<_>>().into())
     }
 
-    /// Returns the number of cells, which are in the order of [`Header::carried`]. In columns with types, the id follows.
+    /// Returns the number of cells, which are in the order of [`Header::carried`]. In columns with types, the id
+    /// follows.
     pub fn len(&self) -> usize {
         match self {
             Self::Text(cells) | Self::Json(cells) => cells.len(),
