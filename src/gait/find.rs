@@ -95,13 +95,6 @@ pub struct Touchdowns<'r, S, I> {
     ready: VecDeque<Sampled<S>>,
 }
 
-/// A touchdown or its refusal, with the time \[s\] and the row by which those at the end of a clip are ordered.
-struct Found<S> {
-    time: f64,
-    row: usize,
-    sampled: Sampled<S>,
-}
-
 /// The state of a point's motion.
 #[derive(Debug, Clone, Copy)]
 struct Descent {
@@ -393,22 +386,14 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
                 self.window.moment(point, 0.0, end, end)
             }
         };
-        let mut found = self.touchdowns(self.descents.iter().enumerate().filter_map(strike).collect());
-        // The strikes are those of several rows.
-        found.sort_by(|one, other| one.time.total_cmp(&other.time).then(one.row.cmp(&other.row)));
-        self.ready.extend(found.into_iter().map(|found| found.sampled));
+        self.strike(self.descents.iter().enumerate().filter_map(strike).collect());
         self.window.frames.clear();
         self.descents.clear();
     }
 
-    /// Makes touchdowns of strikes that are in order.
-    fn strike(&mut self, strikes: Vec<Strike>) {
-        let found = self.touchdowns(strikes);
-        self.ready.extend(found.into_iter().map(|found| found.sampled));
-    }
-
-    /// Makes touchdowns of the strikes whose points are free toward the ground. Simultaneous strikes are one touchdown.
-    fn touchdowns(&mut self, mut strikes: Vec<Strike>) -> Vec<Found<S>> {
+    /// Makes touchdowns of the strikes whose points are free toward the ground, in the order of time. Simultaneous
+    /// strikes are one touchdown.
+    fn strike(&mut self, mut strikes: Vec<Strike>) {
         let (together, at, touching) = (self.thresholds.together, self.at, self.touching);
         let mut touchdowns = Vec::new();
         strikes.retain(|strike| self.points.is_free(strike.point, &self.window.frames[strike.row].places, together));
@@ -446,8 +431,10 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
                 let reason = "the robot is too far away or too fast to be placed on the ground".to_owned();
                 Err((sample.source, Error::new(Reason::Inconsistent(reason))))
             };
-            touchdowns.push(Found { time, row, sampled });
+            touchdowns.push((time, row, sampled));
         }
-        touchdowns
+        // The strikes may be those of several rows.
+        touchdowns.sort_by(|one, other| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1)));
+        self.ready.extend(touchdowns.into_iter().map(|(.., sampled)| sampled));
     }
 }

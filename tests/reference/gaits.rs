@@ -204,7 +204,7 @@ fn a_quadrupeds_trot() {
 
 #[test]
 fn touchdowns_are_in_the_order_of_time() {
-    // Where the recording ends, feet of two rows strike.
+    // Where the recording ends, feet of two rows strike and are found at once.
     let (robot, table) = (path("robots/a1/a1.urdf"), path("gaits/a1_walk.csv"));
     let stdout = heelstrike(&["batch", &robot, &table, "--touchdowns", "--friction", "0.6"]).well().stdout;
     let found = stdout.lines().map(|line| serde_json::from_str::<Report>(line).expect("a result"));
