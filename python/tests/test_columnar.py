@@ -71,7 +71,9 @@ def test_columns_are_answered_as_the_csv(tmp_path, ending, options):
             # Lines of a CSV count its header; rows of columns have none.
             assert [row + 1 for row in found[name].to_pylist()] == expected[name].to_pylist()
     for name, column in foreign.items():
-        assert found[name].type == column.type, name
+        # A file of Arrow has one dictionary for all blocks.
+        values = ending == "arrow" and pa.types.is_dictionary(column.type)
+        assert found[name].type == (column.type.value_type if values else column.type), name
         if not options:
             rows = [line - 1 for line in found["line"].to_pylist()]
             assert found[name].to_pylist() == column.take(rows).to_pylist(), name

@@ -146,15 +146,20 @@ impl Columns {
         Self { types: Some(types), ..self }
     }
 
-    /// Returns the Arrow field of a carried column. A dictionary becomes its values: every block has one of its own,
-    /// and Arrow's file holds one for all.
+    /// Returns the Arrow field of a carried column or of the id. A dictionary becomes its values in Arrow's file, which
+    /// holds one for all blocks, and where it has the ids, which all differ.
     #[cfg(feature = "columnar")]
     pub(super) fn carried_field(&self, which: usize) -> arrow_schema::Field {
+        use arrow_schema::{DataType, Field};
         let field = self.types.as_ref().and_then(|types| types.fields().get(which));
-        let own = field.map_or(&arrow_schema::DataType::Null, |own| own.data_type());
-        let own = if let arrow_schema::DataType::Dictionary(_, values) = own { values } else { own };
-        let field = field.map_or_else(|| arrow_schema::Field::new("", own.clone(), true), |own| own.as_ref().clone());
-        field.with_data_type(own.clone())
+        let field = field.map_or_else(|| Field::new("", DataType::Null, true), |own| own.as_ref().clone());
+        match field.data_type() {
+            DataType::Dictionary(_, values) if self.form() == Form::Arrow || which == self.carried.len() => {
+                let values = values.as_ref().clone();
+                field.with_data_type(values)
+            }
+            _ => field,
+        }
     }
 
     /// Creates the columns for states without a line. `named` are contacts that the states name themselves, and
