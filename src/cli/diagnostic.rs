@@ -12,18 +12,19 @@ const SETTINGS: &str = "base plane all hold axis_tolerance feet contact_toleranc
     resting_speed friction velocity drop ground_height foreign touchdowns at touching input_format format budget \
     budget_total brief simulated";
 
-/// Replaces settings in backticks, such as `base: floating`, by options: --base floating.
+/// Replaces settings in backticks, such as `base: floating`, by options: --base floating. The value may be on the next
+/// line.
 pub(super) fn with_flags(text: &str) -> String {
     let pieces: Vec<&str> = text.split('`').collect();
     let mut out = String::new();
     for (at, piece) in pieces.iter().enumerate() {
         // Every second piece is between two backticks, except a last one without a closing backtick.
         let quoted = at % 2 == 1 && at + 1 < pieces.len();
-        let (name, value) = piece.split_once(": ").unwrap_or((piece, ""));
+        let parts = piece.split_once(':').filter(|(_, value)| value.starts_with(char::is_whitespace));
+        let (name, value) = parts.unwrap_or((piece, ""));
         let flag = || format!("--{}", if name == "feet" { "contact".into() } else { name.replace('_', "-") });
         match (quoted && SETTINGS.split(' ').any(|setting| setting == name)).then(flag) {
-            Some(flag) if value.is_empty() => out.push_str(&flag),
-            Some(flag) => out.extend([&flag, " ", value]),
+            Some(flag) => out.extend([&flag, value]),
             None if at % 2 == 1 => out.extend(["`", piece, if quoted { "`" } else { "" }]),
             None => out.push_str(piece),
         }
@@ -101,6 +102,7 @@ mod tests {
     #[test]
     fn settings_become_options() {
         assert_eq!(with_flags("give `base: floating`, or `hold`"), "give --base floating, or --hold");
+        assert_eq!(with_flags("keep it: `hold:\n    knee=0.5`"), "keep it: --hold\n    knee=0.5");
         for other in ["as in `impact`, or `stance`", "link a`base", "`", "plain"] {
             assert_eq!(with_flags(other), other);
         }
