@@ -27,6 +27,10 @@
 //! 7. (M^-1)_ii is itself computed by a triangular solve, so it may be too small by a factor (1 - gamma sqrt(nv
 //!    tau))^2.
 //!
+//! 8. (M^-1)_ii = 1 / min v.M v over the v with v_i = 1, where v.M v is twice the kinetic energy. Without other bodies
+//!    there is less of it, so two bodies that only a joint connects give an upper bound that holds in every pose.
+//!    (M^-1)_ii is computed where that bound is too coarse.
+//!
 //! All bounds are doubled to cover the terms of second order. These are small, because a bound above one tenth counts
 //! as unknown. The constants are generous. If a bound does not decide a sign, balls do.
 
@@ -35,12 +39,14 @@ use super::jacobian::ContactPoint;
 use super::ltl::LtlFactor;
 use super::stretch::{Arm, LIKELY, SMALL, Stretched, UNIT_ROUNDOFF, stretch};
 use super::workspace::Workspace;
-use crate::dynamics::plan::{Configuration, JointMotion, Plan};
-use crate::planar::{Pair, Rotation, Vector};
+use crate::dynamics::plan::{Configuration, JointMotion, Plan, PlanBody};
+use crate::planar::{Inertia, Pair, Rotation, Vector};
 use crate::scalar::{Magnitude, UNDERFLOW};
 
 /// Roundings in an entry of M or J, per level and body. This is twice the number of step 2.
 const ENTRY: f64 = 96.0;
+/// The bound of G above which that of every pose gives way to that of the pose.
+const COARSE: f64 = 1e-8;
 /// Bounds on the motion of one end of a loop relative to the other, with every arm stretched.
 #[derive(Debug, Clone, Default)]
 pub struct Reach {
@@ -72,8 +78,9 @@ pub struct RoundingBounds {
     /// Upper bound on the sum of the magnitudes of the terms of J v per contact, including those of a stance's foot
     /// \[m/s\].
     terms: Vec<f64>,
-    /// sqrt((M^-1)_ii) per column.
+    /// Upper bound on sqrt((M^-1)_ii) per column: of this state, and in every pose.
     ease: Vec<f64>,
+    greatest_ease: Vec<f64>,
     scratch: Vec<f64>,
     balance: Balance,
 }
@@ -90,6 +97,7 @@ impl RoundingBounds {
         }
         stretch(plan, configuration, &mut self.bodies);
         self.measure_moments(plan);
+        self.measure_greatest_ease(plan);
         let depth = self.bodies.iter().map(|body| body.depth).max().unwrap_or(0) + 1;
         // If columns are shared, an entry may have one term for every pair of a body and a level.
         let terms = if plan.has_mimics { (depth + 1) * (self.bodies.len() + 1) } else { depth + self.bodies.len() };
@@ -227,14 +235,60 @@ impl RoundingBounds {
         }
     }
 
+    /// Computes the upper bound on sqrt((M^-1)_ii) that holds in every pose; infinite for a prismatic joint.
+    fn measure_greatest_ease(&mut self, plan: &Plan) {
+        // The least kinetic energy for a unit rate of each column, times two.
+        let mut least = vec![0.0; plan.columns()];
+        // A lower bound on the moment of inertia about the center of mass.
+        let central = |body: &PlanBody<f64>| {
+            let Inertia { mass, first, second } = body.inertia;
+            let offset = if mass > 0.0 { first.dot(first) / mass } else { 0.0 };
+            (second * (1.0 - 16.0 * UNIT_ROUNDOFF) - offset).max(0.0)
+        };
+        for body in &plan.bodies {
+            let (own, Some(column)) = (central(body), body.column) else { continue };
+            let twice = match body.motion {
+                JointMotion::Root => {
+                    let Inertia { mass, first, .. } = body.inertia;
+                    let linear = mass * (own / (own + first.dot(first) / mass));
+                    least[..2].fill(if linear > 0.0 { linear } else { 0.0 });
+                    own
+                }
+                JointMotion::Revolute { rate, .. } => {
+                    let parent = body.parent.map(|parent| &plan.bodies[parent]);
+                    let parent = parent.filter(|parent| plan.floating || parent.parent.is_some());
+                    // The two bodies turn about a common axis in opposite directions, as masses on a spring move.
+                    let pair = parent.map_or(own, |parent| own * (central(parent) / (own + central(parent))));
+                    if pair > 0.0 { pair * (rate * rate) + body.rotor } else { body.rotor }
+                }
+                JointMotion::Prismatic { .. } | JointMotion::Fixed => body.rotor,
+            };
+            least[column] = f64::max(least[column], twice);
+        }
+        self.greatest_ease.clear();
+        self.greatest_ease.extend(least.into_iter().map(|least| (1.0 / least).sqrt()));
+    }
+
     /// Bounds G. Requires the factorized mass matrix and the Delassus matrix.
     pub fn delassus(&mut self, plan: &Plan, workspace: &Workspace) {
+        self.delassus = f64::INFINITY;
+        self.ease.clone_from(&self.greatest_ease);
+        if self.ease.iter().all(|ease| ease.is_finite()) {
+            self.delassus = self.of_delassus(plan, workspace);
+        }
+        if self.delassus > COARSE {
+            let Self { ease, scratch, .. } = self;
+            scratch.resize(plan.columns(), 0.0);
+            let columns = ease.iter_mut().enumerate();
+            columns.for_each(|(column, ease)| *ease = squared_ease(plan, &workspace.factor, column, scratch).sqrt());
+            self.delassus = self.of_delassus(plan, workspace);
+        }
+    }
+
+    /// Returns the bound of G that follows from the current bounds on (M^-1)_ii.
+    fn of_delassus(&self, plan: &Plan, workspace: &Workspace) -> f64 {
         let nv = plan.columns();
         let (eta, gamma) = (self.roundings * UNIT_ROUNDOFF, 2.0 * (nv + 2) as f64 * UNIT_ROUNDOFF);
-        self.scratch.resize(nv, 0.0);
-        self.ease.clear();
-        let scratch = &mut self.scratch;
-        self.ease.extend((0..nv).map(|column| squared_ease(plan, &workspace.factor, column, scratch).sqrt()));
         let tau = self.roots.iter().zip(&self.ease).fold(0.0, |tau, (root, ease)| tau + (root * ease) * (root * ease));
         let solve = gamma * (nv as f64 * tau).sqrt();
         let short = 1.0 - solve;
@@ -257,8 +311,7 @@ impl RoundingBounds {
             }
         }
         let sum = eps + jacobian + solve + gamma;
-        self.delassus =
-            if sum < SMALL { 2.0 * (2.0 * eps + 2.0 * jacobian + 4.0 * solve + 2.0 * gamma) } else { f64::INFINITY };
+        if sum < SMALL { 2.0 * (2.0 * eps + 2.0 * jacobian + 4.0 * solve + 2.0 * gamma) } else { f64::INFINITY }
     }
 
     /// Bounds G computed by articulated bodies. `points` are its contacts.
