@@ -80,7 +80,7 @@ pub struct RoundingBounds {
     terms: Vec<f64>,
     /// Upper bound on sqrt((M^-1)_ii) per column: of this state, and in every pose.
     ease: Vec<f64>,
-    greatest_ease: Vec<f64>,
+    pub(super) greatest_ease: Vec<f64>,
     scratch: Vec<f64>,
     balance: Balance,
 }

@@ -426,6 +426,18 @@ mod tests {
             }
         }
 
+        #[test]
+        fn no_pose_exceeds_the_greatest_ease(case in case(true), rotor in 0.0..0.1f64) {
+            let plan = Plan::new(&case.robot, &[], &vec![rotor; case.robot.joints.len()]);
+            let (workspace, bounds) = (case.computed(&plan, &[]), case.bounds(&plan, &[]));
+            for (column, greatest) in bounds.greatest_ease.iter().enumerate() {
+                let mut inverse = vec![0.0; plan.columns()];
+                inverse[column] = 1.0;
+                workspace.factor.solve(&plan, &mut inverse);
+                prop_assert!(inverse[column] <= greatest * greatest * (1.0 + 1e-9), "{column}: {inverse:?} {greatest}");
+            }
+        }
+
         /// Uses trees with mimic joints and a virtual spring, and compares with balls of double-doubles.
         #[test]
         fn f64_accelerations_keep_within_their_bounds(
