@@ -63,7 +63,7 @@ fn read_document(document: &Document<'_>) -> Result<Description> {
         joints: Vec::with_capacity(joints.elements.len()),
         root: 0,
         ignored: Vec::new(),
-        misspelt: misspelt(robot),
+        misspelt: Vec::new(),
         rotors: rotors(robot),
     };
     let mut shapes = 0;
@@ -84,8 +84,11 @@ fn read_document(document: &Document<'_>) -> Result<Description> {
     }));
     for &(name, element, location) in &joints.elements {
         let joint = read_joint(name, element, location, &links, &joints, &mut ignored);
-        description.joints.push(joint.map_err(|error| error.at(joint_place(name)))?);
+        let (joint, unread) = joint.map_err(|error| error.at(joint_place(name)))?;
+        description.joints.push(joint);
+        description.misspelt.extend(unread);
     }
+    description.misspelt.extend(misspelt(robot));
     Ok(Description { ignored: ignored.kinds, ..description })
 }
 
@@ -186,6 +189,8 @@ fn read_link(name: &str, element: Node<'_, '_>, location: Location, ignored: &mu
     Ok(UrdfLink { name: name.into(), inertial, collisions, joint: None, location })
 }
 
+/// Reads a joint. A `<mimic>` of a joint that the file does not have is left out and described: most programs read such
+/// a file.
 fn read_joint(
     name: &str,
     element: Node<'_, '_>,
@@ -193,15 +198,29 @@ fn read_joint(
     links: &ByName,
     joints: &ByName,
     ignored: &mut IgnoredCount,
-) -> Result<UrdfJoint> {
+) -> Result<(UrdfJoint, Option<String>)> {
     let [parent, child, origin, axis, mimic] = xml::named(element, ["parent", "child", "origin", "axis", "mimic"]);
     let kind = joint_kind(element)?;
     let parent = links.find(xml::required_child(element, parent, "parent")?, "link")?;
     let child = links.find(xml::required_child(element, child, "child")?, "link")?;
     let origin = values::origin(origin?)?;
     let axis = values::axis(axis?, kind)?;
-    let mimic = mimic?.map(|mimic| values::mimic(mimic, joints.find(mimic, "joint")?));
-    let mimic = mimic.transpose()?;
+    let mut unread = None;
+    let mimic = match mimic? {
+        Some(mimic) => match joints.find(mimic, "joint") {
+            Err(error) if matches!(error.reason(), Reason::UnknownName { .. }) => {
+                values::mimic(mimic, 0)?;
+                unread = error.location().map(|place| {
+                    let remedy = error.remedy().map_or(String::new(), |remedy| format!("; {remedy}"));
+                    let reason = format!("{}{remedy}", error.reason());
+                    format!("<mimic> of {name} on line {} ({reason}), so that this joint moves by itself", place.line)
+                });
+                None
+            }
+            joint => Some(values::mimic(mimic, joint?)?),
+        },
+        None => None,
+    };
     let mut limit = None;
     for child in element.children().filter(Node::is_element) {
         match tag(element, child) {
@@ -215,7 +234,8 @@ fn read_joint(
     let limits = limit.and_then(limits);
     let limits =
         limits.filter(|[lower, upper]| lower < upper && matches!(kind, JointKind::Revolute | JointKind::Prismatic));
-    Ok(UrdfJoint { name: name.into(), kind, parent, child, origin, axis, has_axis, mimic, limits, location })
+    let name = name.into();
+    Ok((UrdfJoint { name, kind, parent, child, origin, axis, has_axis, mimic, limits, location }, unread))
 }
 
 fn joint_kind(element: Node<'_, '_>) -> Result<JointKind> {

@@ -109,8 +109,8 @@ fixed <origin quat_xyzw="0 0 0 1"/>
 fixed <origin/>\n<origin xyz="1 0 0"/>
 fixed <parent link="b"/>
 fixed </joint>\n<joint name="j" type="fixed"><parent link="a"/><child link="b"/>
-continuous <mimic joint="k"/>
-continuous <mimic joint="k"/></joint>\n<joint name="left_k" type="fixed"><parent link="a"/><child link="a"/>
+continuous <mimic multiplier="2"/>
+continuous <mimic joint="k" multiplier="x"/>
 revolut <axis xyz="0 1 0"/>
  <axis xyz="0 1 0"/>
 Fixed <axis xyz="0 1 0"/>

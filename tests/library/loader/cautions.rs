@@ -287,6 +287,8 @@ fn elements_that_are_not_read_are_named_with_their_lines() {
         ("<axis ", "<limit effort=\"1\" velocity=\"x\"/><axis "),
         // Names of other formats.
         ("<axis ", "<limit min=\"-1\" max=\"1\"/><axis "),
+        // A joint that does not exist.
+        ("<axis ", "<mimic joint=\"left_j\" multiplier=\"2\"/><axis "),
         ("</robot>", "<loop_joint name=\"l\"/></robot>"),
         ("</robot>", &still),
         ("</robot>", &turning),
