@@ -76,8 +76,7 @@ impl Model {
             };
             set().map_err(of_argument(&name))?;
         }
-        let meshes = Meshes::of(path, &package_path);
-        description.read_meshes(|name| meshes.fetch(name));
+        Meshes::of(path, &package_path).read(&mut description);
         let robot = heelstrike::Robot::reduce(&description, &reduction).map_err(refused)?;
         let feet = feet.map(|feet| contacts(&robot, &feet)).transpose()?;
         let options = Options { feet: feet.unwrap_or_default(), ..own };

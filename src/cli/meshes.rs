@@ -7,7 +7,8 @@
 //!                              the same                                        for each folder of ROS_PACKAGE_PATH,
 //!                              PREFIX/share/NAME                               for each of AMENT_PREFIX_PATH,
 //!                              the same as for DIR                             for each folder above the URDF file,
-//!                            or if there is no package NAME, rest in the first of these folders that contains it
+//!                            or if there is no package NAME, rest in the first of these folders that contains it,
+//!                            which is a guess if that is a folder above the URDF file
 //!     file:///path, /path    that path
 //!     path                   from the folder of the URDF file
 //! ```
@@ -17,7 +18,7 @@
 //! percent sign in its name. Only regular files are opened, and only names that do not leave their package.
 
 use super::input::InputFile;
-use crate::description::Fetched;
+use crate::description::{Description, Fetched};
 use percent_encoding::percent_decode_str;
 use std::path::{Component, Path, PathBuf};
 
@@ -44,29 +45,43 @@ impl Meshes {
         Self { folder, roots, given }
     }
 
-    /// Reads the file that the URDF calls `name`.
+    /// Reads the collision meshes of the URDF file, with a caution about packages whose folder is guessed.
+    pub fn read(&self, description: &mut Description) {
+        let mut guessed = Vec::new();
+        description.read_meshes(|name| self.fetch(name, &mut guessed));
+        description.guessed = guessed;
+    }
+
+    /// Reads the file that the URDF calls `name`. A guess of its package's folder is appended to `guessed`.
     ///
     /// # Errors
     /// Returns the reason if the file is not found, cannot be read, or its name leaves its package.
-    pub fn fetch(&self, name: &str) -> Fetched {
+    fn fetch(&self, name: &str, guessed: &mut Vec<String>) -> Fetched {
         let as_written = name.replace('\\', "/");
         let decoded = percent_decode_str(&as_written).decode_utf8_lossy().into_owned();
         if [&as_written, &decoded].into_iter().any(|name| leaves(name)) {
             return Err("its name leaves its package, as no name may".into());
         }
-        let found = [&as_written, &decoded].into_iter().find_map(|name| self.find(name));
+        let found = [&as_written, &decoded].into_iter().find_map(|name| self.find(name, guessed));
         let path = found.ok_or_else(|| self.missing(&decoded))?;
         InputFile::read(&path, InputFile::LARGE).map(|input| input.bytes).map_err(|error| error.reason().to_string())
     }
 
-    fn find(&self, name: &str) -> Option<PathBuf> {
+    fn find(&self, name: &str, guessed: &mut Vec<String>) -> Option<PathBuf> {
         let Some((package, path)) = package_and_path(name) else {
             return Some(self.folder.join(name.strip_prefix("file://").unwrap_or(name))).filter(|path| path.is_file());
         };
+        let within = |folder: &PathBuf| folder.join(path).is_file();
+        if self.packages(package).next().is_some() {
+            return self.packages(package).find(within).map(|folder| folder.join(path));
+        }
         // Packages are copied to folders of other names.
-        let is_here = self.packages(package).next().is_some();
-        let others = self.roots.iter().filter(|_| !is_here).cloned();
-        self.packages(package).chain(others).map(|folder| folder.join(path)).find(|path| path.is_file())
+        let at = self.roots.iter().position(within)?;
+        let guess = format!("{package} in {}", self.roots[at].display());
+        if at >= self.given && !guessed.contains(&guess) {
+            guessed.push(guess);
+        }
+        Some(self.roots[at].join(path))
     }
 
     /// Returns the folders of a package.

@@ -128,8 +128,7 @@ impl RobotOptions {
             let reason = format!("there is no folder {}", folder.display());
             return Err(Failure::Usage(Error::new(Reason::Io(reason)).at("--package-path")));
         }
-        let meshes = Meshes::of(&self.robot, &self.package_path);
-        description.read_meshes(|name| meshes.fetch(name));
+        Meshes::of(&self.robot, &self.package_path).read(&mut description);
         let reduction = Reduction {
             plane: self.plane,
             hold: self.held(&description)?,

@@ -65,6 +65,7 @@ fn read_document(document: &Document<'_>) -> Result<Description> {
         ignored: Vec::new(),
         misspelt: Vec::new(),
         rotors: rotors(robot),
+        guessed: Vec::new(),
     };
     let mut shapes = 0;
     for &(name, element, location) in &links.elements {

@@ -56,6 +56,8 @@ pub struct Description {
     pub misspelt: Vec<String>,
     /// The joints whose transmissions have a rotor inertia in the file. It is not read.
     pub rotors: Vec<String>,
+    /// The packages of meshes whose folder is guessed, each with that folder.
+    pub guessed: Vec<String>,
 }
 
 /// A link of the file.

@@ -110,7 +110,7 @@ pub(super) fn about_file(
     outside: &[&UrdfLink],
 ) -> Vec<String> {
     let &Seen { description, pose, plane, .. } = seen;
-    let Description { links, joints, ignored, misspelt, rotors, root, .. } = description;
+    let Description { links, joints, ignored, misspelt, rotors, guessed, root, .. } = description;
     let moves = |joint: usize| matches!(roles[joint], Role::Moves { .. });
     let followers = pose.mimicked.iter().enumerate().filter_map(|(index, mimicked)| {
         let followed = mimicked.as_ref()?.joint;
@@ -145,6 +145,11 @@ pub(super) fn about_file(
          (`feet: LINK:X,Y,Z`)",
     ));
     cautions.extend(about_shapes(description));
+    cautions.extend(naming(
+        guessed,
+        "packages of meshes whose folder is guessed by the path of a file: {}; if it is another, name the right one by \
+         `package_path`",
+    ));
     cautions.extend(naming(misspelt, "not read, and perhaps misspelt: {}"));
     cautions.extend(naming(
         driven.map(|(_, joint)| &joint.name),

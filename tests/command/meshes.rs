@@ -127,9 +127,23 @@ fn packages_are_found_by_option_variable_and_folder() {
     fs::remove_dir(folder.join("robots/a_description")).expect("removed");
     write(&folder.join("robots/meshes/sole.obj"), sole());
     found(&mut inspecting());
-    // A folder above the URDF file that has the file, without a manifest.
+    // A folder above the URDF file that has the file, without a manifest, is a guess.
+    let guesses = |command: &mut Command| {
+        let inspection = inspect(command, &urdf);
+        let cautions = list(&inspection["cautions"]).iter().filter_map(Value::as_str).map(str::to_owned);
+        cautions.filter(|caution| caution.contains("guessed")).collect::<Vec<_>>()
+    };
+    assert!(guesses(&mut inspecting()).is_empty());
     fs::remove_file(folder.join("robots/package.xml")).expect("removed");
     found(&mut inspecting());
+    let robots = folder.join("robots").canonicalize().expect("a folder");
+    let guess = format!(
+        "packages of meshes whose folder is guessed by the path of a file: a_description in {}; if it is another, name \
+         the right one by `package_path`",
+        robots.display()
+    );
+    assert_eq!(guesses(&mut inspecting()), [guess]);
+    assert!(guesses(inspecting().arg("--package-path").arg(&robots)).is_empty());
 }
 
 #[test]
