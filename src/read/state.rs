@@ -378,7 +378,12 @@ fn joint(node: Node, name: &str, robot: &Robot) -> Result<usize> {
             };
         }
         let unknown = Reason::UnknownName { what: "joint", name: name.to_owned() };
-        node.refuse_name(name, unknown).did_you_mean(name, robot.joints.iter().map(|joint| joint.name.as_str()))
+        let others = robot.mimic_joints.iter().map(|mimic| &mimic.joint.name);
+        let others = others.chain(robot.reading.frozen.iter().map(|frozen| &frozen.name));
+        let known = robot.joints.iter().map(|joint| joint.name.as_str());
+        // If no name is similar, only those with a coordinate are listed.
+        let error = node.refuse_name(name, unknown).did_you_mean(name, known.clone());
+        error.did_you_mean(name, known.chain(others.map(String::as_str)))
     })
 }
 

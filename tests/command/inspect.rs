@@ -75,6 +75,9 @@ fn a_state_that_names_a_frozen_joint_is_refused() {
                   welded into base";
     assert!(stderr.contains(reason), "{stderr}");
     assert!(stderr.ends_with("hint: pose it by --hold FR_hip_joint=VALUE\n"), "{stderr}");
+    // A misspelt name is likened to frozen joints, too.
+    let stderr = heelstrike_reads(&["impact", A1, "-"], state.replace("FR_hip", "FR_hipp")).refusal(1);
+    assert!(stderr.ends_with("hint: did you mean FR_hip_joint?\n"), "{stderr}");
 }
 
 #[test]
