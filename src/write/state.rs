@@ -135,7 +135,8 @@ impl Serialize for StateRecord<'_> {
         );
         entry(&mut map, "contacts", scene.contacts.is_some(), &contacts.collect::<Vec<_>>())?;
         let loops = scene.loops.iter().map(|own| json!({"a": self.point(own.a), "b": self.point(own.b)}));
-        entry(&mut map, "loops", !scene.loops.is_empty(), &loops.collect::<Vec<_>>())?;
+        // Without the field, a reader would close its default loops.
+        map.serialize_entry("loops", &loops.collect::<Vec<_>>())?;
         let uncertainty = uncertainty.as_ref().map(|uncertainty| self.uncertainty(uncertainty));
         entry(&mut map, "uncertainty", uncertainty.is_some(), &uncertainty)?;
         let impulses = scene.impulses.iter().map(

@@ -234,6 +234,17 @@ fn states_and_answers_of_other_robots_are_refused() {
     assert!(state.to_json(&robot).expect_err("no such link").to_string().contains("no index 99"));
 }
 
+/// Read where states have loops by default, a written state without loops still has none.
+#[test]
+fn a_written_state_without_loops_has_none_anywhere() {
+    let robot = ramone();
+    let state = State { uncertainty: None, ..falling(&robot) };
+    let end = LinkPoint { link: 0, offset: [0.0; 3] };
+    let closed = Defaults { loops: vec![NamedLoop { a: end, b: end }], ..Defaults::default() };
+    let written = state.to_json(&robot).expect("a state of the robot");
+    assert_eq!(State::from_json(&written, &robot, &closed).expect("a state"), state);
+}
+
 /// All ways of writing a report of forces give the names of forces.
 #[test]
 fn forces_have_their_own_names_however_they_are_written() {
