@@ -162,9 +162,11 @@ impl Parts {
     }
 }
 
-/// Reads the first bytes of an input. Refuses one that is empty, text, or known as of another format.
+/// Reads the first bytes of an input. Refuses one that is empty, text, too short, or known as of another format.
 fn beginning(input: &mut impl Read, form: Form) -> Result<Vec<u8>> {
     const READ: u64 = 64;
+    /// No table has fewer bytes.
+    const LEAST: usize = 12;
     let mut bytes = Vec::new();
     input.take(READ).read_to_end(&mut bytes).map_err(unreadable)?;
     let own: &[&[u8]] = match form {
@@ -175,14 +177,16 @@ fn beginning(input: &mut impl Read, form: Form) -> Result<Vec<u8>> {
     if bytes.is_empty() {
         return Err(unreadable("it is empty").hint("was it written to its end?"));
     }
-    if own.iter().any(|magic| bytes.starts_with(magic)) {
-        return Ok(bytes);
+    let format = if form == Form::Parquet { "Parquet" } else { "Arrow" };
+    if !own.iter().any(|magic| bytes.starts_with(magic)) {
+        refuse_foreign(&bytes)?;
+        if bytes.iter().all(|byte| matches!(byte, b'\t' | b'\n' | b'\r' | b' '..)) {
+            let refused = unreadable(format_args!("it is text, and not {format}"));
+            return Err(refused.hint("end its name in .csv, .tsv or .ndjson, or give the command `input_format: csv`"));
+        }
     }
-    refuse_foreign(&bytes)?;
-    if bytes.iter().all(|byte| matches!(byte, b'\t' | b'\n' | b'\r' | b' '..)) {
-        let format = if form == Form::Parquet { "Parquet" } else { "Arrow" };
-        let refused = unreadable(format_args!("it is text, and not {format}"));
-        return Err(refused.hint("end its name in .csv, .tsv or .ndjson, or give the command `input_format: csv`"));
+    if bytes.len() < LEAST {
+        return Err(unreadable(format_args!("it has only {} bytes, and is not {format}", bytes.len())));
     }
     Ok(bytes)
 }
