@@ -160,9 +160,13 @@ fn refusal(text: &str, error: &serde_json::Error) -> Error {
     let start: usize = text.split_inclusive('\n').take(error.line().max(1) - 1).map(str::len).sum();
     let found = start + error.column().saturating_sub(1);
     let whole = error.to_string();
-    // Text that begins with t, f or n is taken for true, false or null, and refused inside the word.
-    let letters = text.as_bytes()[..found.min(text.len())].iter().rev().take_while(|byte| byte.is_ascii_alphabetic());
-    let offset = if whole.starts_with("expected ident") { found - letters.count() } else { found };
+    // Text that begins with t, f or n is taken for true, false or null, and refused inside the word; a number out of
+    // range at its end.
+    let is_of_word = |byte: &&u8| {
+        whole.starts_with("expected ident") && byte.is_ascii_alphabetic()
+            || whole.starts_with("number out of range") && (byte.is_ascii_digit() || b"+-.eE".contains(byte))
+    };
+    let offset = found - text.as_bytes()[..found.min(text.len())].iter().rev().take_while(is_of_word).count();
     let location = line_and_column(text.as_bytes(), offset);
     let syntax = |message: &str| Error::new(Reason::Syntax(message.to_owned())).on(location.0, location.1);
     let refused = match whole.split(" at line ").next().unwrap_or_default() {
