@@ -53,11 +53,14 @@ pub fn choice<T: Copy>(what: &str, choices: Choices<T>, name: Option<&str>) -> P
     name.map(|name| named(choices, name).map_err(|known| unknown(name, known))).transpose()
 }
 
-/// The text with settings such as `velocity: central` in backticks written as keywords: `velocity="central"`.
+/// The text with settings such as `velocity: central` in backticks written as keywords: `velocity="central"`. The format
+/// of a table is no keyword, but follows from the name of its file.
 pub fn as_keywords(text: &str) -> String {
     let is_word = |value: &str| value.bytes().all(|letter| letter.is_ascii_alphanumeric() || letter == b'_');
+    let text = text.replace("say `input_format: ", "end the file's name in `.");
     let pieces = text.split('`').enumerate().map(|(at, piece)| match piece.split_once(": ") {
         Some(("feet", _)) if at % 2 == 1 => "feet=[{\"link\": ..., \"offset\": [x, y, z]}]".to_owned(),
+        Some(("input_format", form)) if at % 2 == 1 => format!("--input-format {form}"),
         Some((name, value)) if at % 2 == 1 && value.parse::<f64>().is_ok() => format!("{name}={value}"),
         Some((name, value)) if at % 2 == 1 && is_word(value) => format!("{name}=\"{value}\""),
         _ => piece.to_owned(),
