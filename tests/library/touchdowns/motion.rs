@@ -339,6 +339,23 @@ fn a_refused_row_stays_in_its_place() {
 }
 
 #[test]
+fn touchdowns_found_at_once_with_a_refusal_are_sorted() {
+    // Both feet fall until the clip ends. Foot b crosses the ground first, then a, and there the rate of b's joint has
+    // no value between its rows.
+    let robot = lift(1.0);
+    let mut table = "time,q_base_z,q_ja,q_jb,v_ja,v_jb\n".to_owned();
+    for (row, rate) in (0..).zip(["-1", "-1", "-1", "-1", "-1", "1.7e308", "-1.7e308"]) {
+        let time = f64::from(row) * 0.01;
+        table += &format!("{time},0.1,{},{},-1,{rate}\n", 0.055 - time, 0.035 - time);
+    }
+    let samples = samples(&table, &robot, Rates::Columns);
+    let found: Vec<_> = find(samples.into_iter(), &robot, &[], At::Crossing, Touching::Strike).unwrap().collect();
+    let [Ok(first), Err((_, error))] = &found[..] else { panic!("a touchdown and a refusal: {found:?}") };
+    assert_eq!((&*landing(first).striking, landing(first).row), ("b", 3));
+    assert_eq!(error.to_string(), "the robot is too far away or too fast to be placed on the ground");
+}
+
+#[test]
 fn numbers_beyond_all_measure_are_refused_and_end() {
     let rows = one_foot(&[1e308, -1e308, 1e308, -1e308, -1e308]);
     let robot = lift(1.0);
