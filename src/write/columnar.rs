@@ -8,13 +8,12 @@ use super::csv::{Cell, Columns, Kind, Row, RowSink};
 use crate::read::table::{Carried, Form};
 use crate::{Error, Reason, Result};
 use arrow_array::builder::{ArrayBuilder, BooleanBuilder, Float64Builder, Int64Builder, StringBuilder};
-use arrow_array::cast::AsArray;
 use arrow_array::{Array, ArrayRef, RecordBatch, new_null_array};
+use arrow_cast::cast;
 use arrow_ipc::writer::{FileWriter, StreamWriter};
 use arrow_schema::{DataType, Field, Schema, SchemaRef};
 use arrow_select::concat::concat_batches;
 use arrow_select::interleave::interleave;
-use arrow_select::take::take;
 use parquet::arrow::ArrowWriter;
 use parquet::basic::{Compression, Encoding};
 use parquet::errors::ParquetError;
@@ -72,19 +71,16 @@ fn whole<B: ArrayBuilder>(mut builder: B, rows: usize, nulls: fn(&mut B, usize))
     builder.finish()
 }
 
-/// Replaces dictionaries by their values, in those rows only that lie between the ones in `at`, which may be few.
-fn without_dictionaries(arrays: &mut [ArrayRef], at: &mut [(usize, usize)]) -> Result<()> {
+/// Replaces dictionaries by their values, of type `to`, in those rows only that lie between the ones in `at`, which may
+/// be few.
+fn without_dictionaries(arrays: &mut [ArrayRef], at: &mut [(usize, usize)], to: &DataType) -> Result<()> {
     let mut used = vec![(usize::MAX, 0); arrays.len()];
     for &(array, row) in &*at {
         let (first, end) = used[array];
         used[array] = (row.min(first), end.max(row + 1));
     }
     for (array, &(first, end)) in arrays.iter_mut().zip(&used).filter(|(_, (first, end))| first < end) {
-        let rows = array.slice(first, end - first);
-        *array = match rows.as_any_dictionary_opt() {
-            Some(dictionary) => take(dictionary.values(), dictionary.keys(), None).map_err(unwritable)?,
-            None => rows,
-        };
+        *array = cast(&array.slice(first, end - first), to).map_err(unwritable)?;
     }
     at.iter_mut().for_each(|(array, row)| *row -= used[*array].0);
     Ok(())
@@ -116,7 +112,7 @@ impl ColumnBlock {
                     let mut arrays = vec![new_null_array(field.data_type(), 1)];
                     arrays.extend(sources.iter().map(|source| Arc::clone(source.column(which))));
                     if sources.iter().any(|source| source.column(which).data_type() != field.data_type()) {
-                        without_dictionaries(&mut arrays, &mut at)?;
+                        without_dictionaries(&mut arrays, &mut at, field.data_type())?;
                     }
                     let arrays: Vec<&dyn Array> = arrays.iter().map(AsRef::as_ref).collect();
                     interleave(&arrays, &at).map_err(unwritable)?
@@ -304,6 +300,7 @@ mod tests {
     use super::*;
     use crate::Robot;
     use crate::write::Layout;
+    use arrow_array::cast::AsArray;
 
     #[test]
     fn every_column_has_a_cell_of_each_row() -> Result<()> {

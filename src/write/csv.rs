@@ -150,16 +150,13 @@ impl Columns {
     /// holds one for all blocks, and where it has the ids, which all differ.
     #[cfg(feature = "columnar")]
     pub(super) fn carried_field(&self, which: usize) -> arrow_schema::Field {
-        use arrow_schema::{DataType, Field};
         let field = self.types.as_ref().and_then(|types| types.fields().get(which));
-        let field = field.map_or_else(|| Field::new("", DataType::Null, true), |own| own.as_ref().clone());
-        match field.data_type() {
-            DataType::Dictionary(_, values) if self.form() == Form::Arrow || which == self.carried.len() => {
-                let values = values.as_ref().clone();
-                field.with_data_type(values)
-            }
-            _ => field,
-        }
+        let field = field.map_or_else(
+            || arrow_schema::Field::new("", arrow_schema::DataType::Null, true),
+            |own| own.as_ref().clone(),
+        );
+        let is_plain = self.form() == Form::Arrow || which == self.carried.len();
+        if is_plain { plain(field) } else { field }
     }
 
     /// Creates the columns for states without a line. `named` are contacts that the states name themselves, and
@@ -399,6 +396,23 @@ impl Columns {
         let of_contact = if self.layout.brief { 1 } else { 3 };
         Ok(self.velocities.start - of_contact * (self.contacts.len() - at))
     }
+}
+
+/// Returns the field with the values of dictionaries in place of these, also inside lists and structures.
+#[cfg(feature = "columnar")]
+fn plain(field: arrow_schema::Field) -> arrow_schema::Field {
+    use arrow_schema::{DataType, FieldRef};
+    let inner = |own: &FieldRef| FieldRef::new(plain(own.as_ref().clone()));
+    let values = match field.data_type() {
+        DataType::Dictionary(_, values) => return plain(field.clone().with_data_type(values.as_ref().clone())),
+        DataType::List(own) => DataType::List(inner(own)),
+        DataType::LargeList(own) => DataType::LargeList(inner(own)),
+        DataType::FixedSizeList(own, size) => DataType::FixedSizeList(inner(own), *size),
+        DataType::Map(own, is_sorted) => DataType::Map(inner(own), *is_sorted),
+        DataType::Struct(fields) => DataType::Struct(fields.iter().map(inner).collect()),
+        _ => return field,
+    };
+    field.with_data_type(values)
 }
 
 /// Returns the names of all contacts that the feet can make: two corners of a polygon at once, or with touchdowns all

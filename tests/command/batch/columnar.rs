@@ -3,17 +3,16 @@
 use super::table::{WALK_QUESTIONS, walk};
 use super::*;
 use crate::support::random::Random;
-use arrow_array::cast::AsArray;
 use arrow_array::types::{Int8Type, Int32Type};
 use arrow_array::{
     Array, ArrayRef, BooleanArray, DictionaryArray, Float32Array, Float64Array, Int64Array, NullArray, RecordBatch,
-    StringArray, TimestampSecondArray, UInt64Array,
+    StringArray, StructArray, TimestampSecondArray, UInt64Array,
 };
 use arrow_cast::cast;
 use arrow_cast::display::array_value_to_string;
 use arrow_ipc::reader::{FileReader, StreamReader};
 use arrow_ipc::writer::{FileWriter, StreamWriter};
-use arrow_schema::{ArrowError, DataType, TimeUnit};
+use arrow_schema::{ArrowError, DataType, Field, TimeUnit};
 use parquet::arrow::ArrowWriter;
 use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 use std::fs::File;
@@ -236,7 +235,12 @@ fn dictionaries_of_many_rows_are_written() {
         Arc::new(texts.iter().map(|text| Some(&**text)).collect::<DictionaryArray<Int32Type>>())
     };
     let half: ArrayRef = Arc::new(Float64Array::from(vec![0.5; ROWS]));
-    let own = [("id", dictionary(|row| format!("id {row}"))), ("phase", dictionary(|row| format!("{}", row / 7)))];
+    let phase = dictionary(|row| format!("{}", row / 7));
+    let item = Arc::new(Field::new("item", phase.data_type().clone(), true));
+    // A list of one entry in each row.
+    let lists = cast(&phase, &DataType::List(Arc::clone(&item))).expect("lists");
+    let member: ArrayRef = Arc::new(StructArray::from(vec![(item, Arc::clone(&phase))]));
+    let own = [("id", dictionary(|row| format!("id {row}"))), ("phase", phase), ("lists", lists), ("member", member)];
     let columns = [&own[..], &[("q_base_z", Arc::clone(&half)), ("v_base_z", half)]].concat();
     // One batch, because a file of Arrow has one dictionary.
     let whole = RecordBatch::try_from_iter(columns).expect("columns of one length");
@@ -252,11 +256,12 @@ fn dictionaries_of_many_rows_are_written() {
             batch(&[&input, "--friction", "1", "--brief", "-o", &output], "").well();
             for (name, array) in &own {
                 let found = batches(&output);
-                let own = |rows: &RecordBatch| cast(rows.column_by_name(name).expect("a column"), &DataType::Utf8);
-                let found: Vec<ArrayRef> = found.iter().map(own).collect::<Result<_, _>>().expect("text");
-                let texts = found.iter().flat_map(|texts| texts.as_string::<i32>());
-                let expected = cast(array, &DataType::Utf8).expect("text");
-                assert!(texts.eq(expected.as_string::<i32>()), "{input} {name} {ending}");
+                let texts = |own: &ArrayRef| {
+                    let text = |row| array_value_to_string(own, row).expect("text");
+                    (0..own.len()).map(text).collect::<Vec<_>>()
+                };
+                let own = |rows: &RecordBatch| texts(rows.column_by_name(name).expect("a column"));
+                assert_eq!(found.iter().flat_map(own).collect::<Vec<_>>(), texts(array), "{input} {name} {ending}");
             }
         }
     }
