@@ -5,7 +5,7 @@ use super::repair::Repaired;
 use super::xml::{self, Cursor, MOST_LINKS};
 use super::{Description, JointKind, UrdfJoint, UrdfLink, joint_place, link_place, values};
 use crate::error::{Location, Reason, Result};
-use memchr::memmem;
+use memchr::{memchr2, memmem};
 use roxmltree::{Document, Node};
 
 /// Largest number of moving joints: the factorization of M takes n^3 / 3 steps for a chain of n joints.
@@ -133,15 +133,15 @@ fn refuse_xacro(robot: Node<'_, '_>) -> Result<()> {
     let refused = |element: Node, what: String| {
         xml::refuse(element, Reason::Unsupported(format!("{what} is not URDF"))).hint(EXPAND)
     };
-    let holds = |part: &str| memmem::find(robot.document().input_text().as_bytes(), part.as_bytes()).is_some();
+    let text = robot.document().input_text().as_bytes();
     // Without a namespace declaration, elements can only have XML's own namespace.
-    if holds("xmlns")
+    if memmem::find(text, b"xmlns").is_some()
         && let Some(element) = robot.descendants().find(|node| node.is_element() && is_macro(node))
     {
         return Err(refused(element, format!("<xacro:{}>", element.tag_name().name())));
     }
     // A dollar sign may also be written as a character reference.
-    let has_dollar = holds("$") || holds("&#");
+    let may_have_dollar = memchr2(b'$', b'&', text).is_some();
     for element in robot.children().filter(Node::is_element) {
         let place: fn(&str) -> String = match tag(robot, element) {
             Some(old @ ("include" | "property" | "macro")) => {
@@ -152,7 +152,7 @@ fn refuse_xacro(robot: Node<'_, '_>) -> Result<()> {
             // Elements for other programs may contain anything.
             _ => continue,
         };
-        if !has_dollar {
+        if !may_have_dollar {
             continue;
         }
         // These are not read.
@@ -174,7 +174,12 @@ fn tag<'a>(robot: Node<'_, '_>, element: Node<'a, '_>) -> Option<&'a str> {
     (element.tag_name().namespace() == robot.tag_name().namespace()).then(|| element.tag_name().name())
 }
 
-fn read_link(name: &str, element: Node<'_, '_>, location: Location, ignored: &mut IgnoredCount) -> Result<UrdfLink> {
+fn read_link<'input>(
+    name: &str,
+    element: Node<'_, 'input>,
+    location: Location,
+    ignored: &mut IgnoredCount<'input>,
+) -> Result<UrdfLink> {
     // An <inertial> without child elements counts as missing.
     let [inertial] = xml::named(element, ["inertial"]);
     let inertial = inertial?.filter(|inertial| inertial.children().any(|child| child.is_element()));
@@ -192,13 +197,13 @@ fn read_link(name: &str, element: Node<'_, '_>, location: Location, ignored: &mu
 
 /// Reads a joint. A `<mimic>` of a joint that the file does not have is left out and described: most programs read such
 /// a file.
-fn read_joint(
+fn read_joint<'input>(
     name: &str,
-    element: Node<'_, '_>,
+    element: Node<'_, 'input>,
     location: Location,
     links: &ByName,
     joints: &ByName,
-    ignored: &mut IgnoredCount,
+    ignored: &mut IgnoredCount<'input>,
 ) -> Result<(UrdfJoint, Option<String>)> {
     let [parent, child, origin, axis, mimic] = xml::named(element, ["parent", "child", "origin", "axis", "mimic"]);
     let kind = joint_kind(element)?;

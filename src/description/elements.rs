@@ -63,15 +63,15 @@ const MOST_IGNORED: usize = 1000;
 
 /// Counts of ignored elements.
 #[derive(Default)]
-pub(super) struct IgnoredCount {
+pub(super) struct IgnoredCount<'input> {
     pub(super) kinds: Vec<Ignored>,
-    by_tag: HashMap<(&'static str, String), usize>,
+    by_tag: HashMap<(&'static str, &'input str), usize>,
 }
 
-impl IgnoredCount {
-    pub(super) fn count(&mut self, parent: &'static str, element: Node<'_, '_>) -> Result<()> {
+impl<'input> IgnoredCount<'input> {
+    pub(super) fn count(&mut self, parent: &'static str, element: Node<'_, 'input>) -> Result<()> {
         let tag = element.tag_name().name();
-        let kind = *self.by_tag.entry((parent, tag.into())).or_insert(self.kinds.len());
+        let kind = *self.by_tag.entry((parent, tag)).or_insert(self.kinds.len());
         if kind == MOST_IGNORED {
             let reason = Reason::TooMany { what: "kinds of unknown elements", limit: MOST_IGNORED };
             return Err(xml::refuse(element, reason));
@@ -143,9 +143,12 @@ const MOST_MISSPELT: usize = 100;
 /// Returns attributes and elements of a robot that are not read and may be misspelt: they differ by one letter from a
 /// name that is read and missing, or stand in the wrong element. Impossible limits are included.
 pub(super) fn misspelt(robot: Node<'_, '_>) -> Vec<String> {
-    let (mut waiting, mut found) = (vec![robot], Vec::new());
-    while let Some(element) = waiting.pop().filter(|_| found.len() < MOST_MISSPELT) {
-        let tag = element.tag_name().name();
+    let (mut found, mut unread_to) = (Vec::new(), 0);
+    for element in robot.descendants().filter(Node::is_element) {
+        let (tag, range) = (element.tag_name().name(), element.range());
+        if range.start < unread_to || found.len() == MOST_MISSPELT {
+            continue;
+        }
         let line = |node: Node| node.document().text_pos_at(node.range().start).row;
         if tag == "visual" {
             // Nothing in <visual> is read, but these elements would be read in <link>.
@@ -154,8 +157,10 @@ pub(super) fn misspelt(robot: Node<'_, '_>) -> Vec<String> {
             let odd = of_link.map(|(child, name)| format!("<{name}> in <visual> on line {} (in <link>?)", line(child)));
             found.extend(odd.take(MOST_MISSPELT - found.len()));
         }
-        let Some((_, attributes, children)) = READ.iter().find(|(known, ..)| *known == tag) else { continue };
-        waiting.extend(element.children().rev().filter(Node::is_element));
+        let Some((_, attributes, children)) = READ.iter().find(|(known, ..)| *known == tag) else {
+            unread_to = range.end;
+            continue;
+        };
         let elements = || element.children().filter(Node::is_element).map(|child| (child, child.tag_name().name()));
         let tags = || elements().map(|(_, name)| name);
         let given = || element.attributes().filter(|own| own.namespace().is_none()).map(|own| own.name());

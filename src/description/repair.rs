@@ -7,6 +7,8 @@
 
 use super::xml::Cursor;
 use crate::error::{Error, Location};
+use memchr::{memchr, memchr2_iter};
+use roxmltree::Document;
 use std::borrow::Cow;
 
 /// Largest number of prefixes that are declared; the text is parsed once more for each.
@@ -68,16 +70,15 @@ impl<'a> Repaired<'a> {
 }
 
 /// Returns what is replaced by blanks: processing instructions before the root element, each taken to end at the first
-/// `>`, and the insides of comments that XML does not allow.
+/// `>`, unless it is a declaration that XML allows, and the insides of comments that XML does not allow.
 fn faults(text: &str) -> Vec<std::ops::Range<usize>> {
     let (mut at, mut found, mut in_root) = (0, Vec::new(), false);
-    while let Some(offset) = text[at..].find('<') {
-        let begin = at + offset;
+    for second in memchr2_iter(b'!', b'?', text.as_bytes()) {
+        let Some(begin) = second.checked_sub(1).filter(|&begin| begin >= at) else { continue };
         let marks = [("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", ">")];
-        let Some((open, close)) = marks.into_iter().find(|(open, _)| text[begin..].starts_with(open)) else {
-            (at, in_root) = (begin + 1, true);
-            continue;
-        };
+        let mut marks = marks.into_iter().filter(|(open, _)| text.as_bytes()[begin..].starts_with(open.as_bytes()));
+        let Some((open, close)) = marks.next() else { continue };
+        in_root |= memchr(b'<', &text.as_bytes()[at..begin]).is_some();
         let inside = begin + open.len();
         let Some(length) = text[inside..].find(close) else { break };
         let end = inside + length;
@@ -85,11 +86,17 @@ fn faults(text: &str) -> Vec<std::ops::Range<usize>> {
         match open {
             // The hyphen before `-->` may not be another one.
             "<!--" if text[inside..=end].contains("--") => found.push(inside..end),
-            "<?" if !in_root => found.push(begin..at),
+            "<?" if !in_root && !(begin == 0 && is_declaration(&text[..at], &text[at..])) => found.push(begin..at),
             _ => {}
         }
     }
     found
+}
+
+/// Returns whether `mark`, at the beginning of a file, is a declaration that XML allows, and tags follow in the `rest`.
+fn is_declaration(mark: &str, rest: &str) -> bool {
+    let is_allowed = || Document::parse(&format!("{mark}<robot/>")).is_ok();
+    mark.starts_with("<?xml ") && rest.trim_start().starts_with('<') && is_allowed()
 }
 
 /// Returns where the name and the attributes of the root's tag end.
@@ -97,8 +104,10 @@ fn root_tag_end(text: &str) -> Option<usize> {
     let mut at = 0;
     loop {
         let begin = at + text[at..].find('<')?;
-        if let Some(comment) = text[begin..].strip_prefix("<!--") {
-            at = begin + 4 + comment.find("-->")? + 3;
+        let marks = [("<!--", "-->"), ("<?", ">")];
+        if let Some((open, close)) = marks.into_iter().find(|(open, _)| text[begin..].starts_with(open)) {
+            let inside = begin + open.len();
+            at = inside + text[inside..].find(close)? + close.len();
             continue;
         }
         let mut quote = None;
@@ -130,6 +139,9 @@ mod tests {
             ("<!-- <?xml?> -->\n<?xml?>\n<robot/>", "<!-- <?xml?> -->\n       \n<robot/>"),
             ("<robot><!-- ä --\n - --><a/></robot>", "<robot><!--     \n   --><a/></robot>"),
             ("<!-- <!-- --><robot/><!---a---><?b?><!-- --", "<!--      --><robot/><!--   --><?b?><!-- --"),
+            ("<?xml version='1.0'?>\n<robot/>", "<?xml version='1.0'?>\n<robot/>"),
+            ("<?xml version='1.0'?>\n<!<?b?><robot/>", "<?xml version='1.0'?>\n<!<?b?><robot/>"),
+            ("<?xml version='1.0'?>\nrobot", "                     \nrobot"),
             ("<robot><![CDATA[<!-- -- ]]><a/><!-- --></robot>", "<robot><![CDATA[<!-- -- ]]><a/><!-- --></robot>"),
         ] {
             assert_eq!(Repaired::new(text).text, repaired);
@@ -150,5 +162,7 @@ mod tests {
         assert!(repaired.declaring("x").is_none());
         let alone = Repaired::new("<robot/>").declaring("x").expect("a root");
         assert_eq!(alone.text, "<robot xmlns:x=\"undeclared:x\"/>");
+        let declared = Repaired::new("<?xml version='1.0'?><robot/>").declaring("x").expect("a root");
+        assert_eq!(declared.text, "<?xml version='1.0'?><robot xmlns:x=\"undeclared:x\"/>");
     }
 }

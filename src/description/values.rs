@@ -140,7 +140,12 @@ fn numbers<const N: usize>(element: Node<'_, '_>, name: &str, text: &str, least:
 fn parsed<'t, const N: usize>(mut words: impl Iterator<Item = &'t str>) -> Option<[f64; N]> {
     let mut numbers = [0.0; N];
     for number in &mut numbers {
-        *number = words.next()?.parse().ok()?;
+        *number = match words.next()? {
+            // Most numbers.
+            "0" => 0.0,
+            "1" => 1.0,
+            word => word.parse().ok()?,
+        };
     }
     words.next().is_none().then_some(numbers)
 }

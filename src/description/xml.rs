@@ -84,21 +84,23 @@ fn refuse_many(text: &str) -> Result<()> {
     if let Some(offset) = memmem::find_iter(text.as_bytes(), "xmlns").nth(MOST_NAMESPACES) {
         return refused("namespaces", MOST_NAMESPACES, offset + 1);
     }
-    // The equals signs bound the number of attributes. They need a closer look only if there are many.
-    let equals = |text: &str| memchr_iter(b'=', text.as_bytes()).count();
-    let has_many = equals(text) > MOST_NODES as usize;
+    // These numbers bound those of links and attributes. A closer look is needed only if there are many.
+    let [links, prefixed] = ["<link", ":link"].map(|tag| memmem::find_iter(text.as_bytes(), tag).count());
+    let equals = memchr_iter(b'=', text.as_bytes()).count();
+    let has_many = links + prefixed > MOST_LINKS || equals > MOST_NODES as usize;
     let (mut offset, mut links, mut all_attributes, mut in_comment) = (0, 0, 0, false);
     for end in memchr_iter(b'<', text.as_bytes()).chain([text.len()]) {
+        // An attribute has at least four bytes, as in x="".
+        if !has_many && (end - offset) / 4 <= MOST_ATTRIBUTES {
+            offset = end + 1;
+            continue;
+        }
         let part = &text[offset..end];
         let commented = in_comment || part.starts_with("!--");
         in_comment = commented && !part.contains("-->");
         links += usize::from(!commented && is_link(part));
         let is_attribute = |&at: &usize| part[at + 1..].trim_start().starts_with(['"', '\'']);
-        // An attribute has at least three more bytes, as in x="".
-        let attributes = match part.len() / 4 {
-            few if few <= MOST_ATTRIBUTES && !has_many => 0,
-            _ => memchr_iter(b'=', part.as_bytes()).filter(is_attribute).count(),
-        };
+        let attributes = memchr_iter(b'=', part.as_bytes()).filter(is_attribute).count();
         all_attributes += attributes;
         for (what, count, limit) in [
             ("links", links, MOST_LINKS),
@@ -122,15 +124,16 @@ fn is_link(part: &str) -> bool {
 }
 
 fn refuse_deep_nesting(document: &Document<'_>) -> Result<()> {
-    // Nodes are numbered in the text's order, so a parent's depth is known before those of its children.
-    let mut depths: Vec<usize> = Vec::new();
-    for node in document.root().descendants() {
-        let depth = node.parent().and_then(|parent| depths.get(parent.id().get_usize())).map_or(0, |depth| depth + 1);
-        if node.is_element() && depth > DEEPEST {
+    // Where the elements around the next one end.
+    let mut ends = Vec::new();
+    for element in document.descendants().filter(Node::is_element) {
+        let range = element.range();
+        ends.truncate(ends.iter().rposition(|&end| end > range.start).map_or(0, |last| last + 1));
+        if ends.len() == DEEPEST {
             let reason = format!("elements nested more than {DEEPEST} deep are not accepted");
-            return Err(refuse(node, Reason::Unsupported(reason)));
+            return Err(refuse(element, Reason::Unsupported(reason)));
         }
-        depths.push(depth);
+        ends.push(range.end);
     }
     Ok(())
 }
