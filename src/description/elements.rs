@@ -84,33 +84,56 @@ impl<'input> IgnoredCount<'input> {
     }
 }
 
-/// The elements that are read, each with its attributes and child elements.
-const READ: [(&str, &[&str], &[&str]); 19] = [
-    ("robot", &["name"], &["link", "joint"]),
-    ("link", &["name"], &["inertial", "collision", "visual"]),
-    ("joint", &["name", "type"], &["origin", "parent", "child", "axis", "mimic", "limit"]),
-    ("inertial", &[], &["origin", "mass", "inertia"]),
-    ("collision", &[], &["origin", "geometry"]),
-    ("geometry", &[], &["box", "cylinder", "capsule", "sphere", "mesh"]),
-    ("origin", &["xyz", "rpy"], &[]),
-    ("parent", &["link"], &[]),
-    ("child", &["link"], &[]),
-    ("axis", &["xyz"], &[]),
-    ("mimic", &["joint", "multiplier", "offset"], &[]),
-    ("limit", &["lower", "upper"], &[]),
-    ("mass", &["value"], &[]),
-    ("inertia", &["ixx", "ixy", "ixz", "iyy", "iyz", "izz"], &[]),
-    ("box", &["size"], &[]),
-    ("cylinder", &["radius", "length"], &[]),
-    ("capsule", &["radius", "length"], &[]),
-    ("sphere", &["radius"], &[]),
-    ("mesh", &["filename", "scale"], &[]),
+/// The tags of all elements that are read.
+const READ: [&str; 19] = [
+    "robot",
+    "link",
+    "joint",
+    "inertial",
+    "collision",
+    "geometry",
+    "origin",
+    "parent",
+    "child",
+    "axis",
+    "mimic",
+    "limit",
+    "mass",
+    "inertia",
+    "box",
+    "cylinder",
+    "capsule",
+    "sphere",
+    "mesh",
 ];
+
+/// Returns the attributes and the child elements that are read of elements with this tag; `None` if none are read.
+fn read(tag: &str) -> Option<(&'static [&'static str], &'static [&'static str])> {
+    Some(match tag {
+        "robot" => (&["name"], &["link", "joint"]),
+        "link" => (&["name"], &["inertial", "collision", "visual"]),
+        "joint" => (&["name", "type"], &["origin", "parent", "child", "axis", "mimic", "limit"]),
+        "inertial" => (&[], &["origin", "mass", "inertia"]),
+        "collision" => (&[], &["origin", "geometry"]),
+        "geometry" => (&[], &["box", "cylinder", "capsule", "sphere", "mesh"]),
+        "origin" => (&["xyz", "rpy"], &[]),
+        "parent" | "child" => (&["link"], &[]),
+        "axis" => (&["xyz"], &[]),
+        "mimic" => (&["joint", "multiplier", "offset"], &[]),
+        "limit" => (&["lower", "upper"], &[]),
+        "mass" => (&["value"], &[]),
+        "inertia" => (&["ixx", "ixy", "ixz", "iyy", "iyz", "izz"], &[]),
+        "box" => (&["size"], &[]),
+        "cylinder" | "capsule" => (&["radius", "length"], &[]),
+        "sphere" => (&["radius"], &[]),
+        "mesh" => (&["filename", "scale"], &[]),
+        _ => return None,
+    })
+}
 
 /// Returns whether elements with this tag are read, but not inside elements with the tag `parent`.
 pub(super) fn is_misplaced(parent: &str, tag: &str) -> bool {
-    let inside = READ.iter().find(|(known, ..)| *known == parent);
-    READ.iter().any(|(known, ..)| *known == tag) && inside.is_some_and(|(.., children)| !children.contains(&tag))
+    read(tag).is_some() && read(parent).is_some_and(|(_, children)| !children.contains(&tag))
 }
 
 /// Returns the lower and the upper end of a `<limit>`; a missing end is 0. Limits are not part of the mechanics, so
@@ -157,7 +180,7 @@ pub(super) fn misspelt(robot: Node<'_, '_>) -> Vec<String> {
             let odd = of_link.map(|(child, name)| format!("<{name}> in <visual> on line {} (in <link>?)", line(child)));
             found.extend(odd.take(MOST_MISSPELT - found.len()));
         }
-        let Some((_, attributes, children)) = READ.iter().find(|(known, ..)| *known == tag) else {
+        let Some((attributes, children)) = read(tag) else {
             unread_to = range.end;
             continue;
         };
@@ -187,13 +210,14 @@ pub(super) fn misspelt(robot: Node<'_, '_>) -> Vec<String> {
             meant(name).map(|meant| format!("<{name}> in <{tag}> on line {} (<{meant}>?)", line(child)))
         });
         let around = element.parent().map_or("", |parent| parent.tag_name().name());
-        let takes = |name: &str, of: &str| READ.iter().any(|(tag, _, children)| *tag == of && children.contains(&name));
+        let takes = |name: &str, of: &str| read(of).is_some_and(|(_, children)| children.contains(&name));
         let unread = elements().filter(|(_, name)| !children.contains(name) && meant(name).is_none());
-        let of_others = unread.filter_map(|(child, name)| {
-            let near = children.iter().copied().chain([around]).find(|other| takes(name, other));
-            let owner = near.or_else(|| Some(READ.iter().find(|(.., children)| children.contains(&name))?.0))?;
-            Some(format!("<{name}> in <{tag}> on line {} (in <{owner}>?)", line(child)))
-        });
+        let of_others =
+            unread.filter(|(_, name)| *name == "visual" || read(name).is_some()).filter_map(|(child, name)| {
+                let near = children.iter().copied().chain([around]).chain(READ).find(|other| takes(name, other));
+                let owner = near?;
+                Some(format!("<{name}> in <{tag}> on line {} (in <{owner}>?)", line(child)))
+            });
         let is_no_limit = tag == "limit" && limits(element).is_none_or(|[lower, upper]| lower > upper);
         let limit = is_no_limit.then(|| {
             let [lower, upper] = ["lower", "upper"].map(|end| element.attribute(end).unwrap_or("0"));
@@ -210,10 +234,10 @@ fn owner(name: &str, children: &[&'static str]) -> Option<&'static str> {
     if matches!(name, "name" | "type" | "joint") {
         return None;
     }
-    let child = children.iter().copied().find(|&child| child == name);
-    let of_attribute = || READ.iter().find(|(_, attributes, _)| attributes.contains(&name));
-    let of_element = || READ.iter().find(|(tag, ..)| *tag == name);
-    child.or_else(|| Some(of_attribute().or_else(of_element)?.0))
+    let gives = |tag: &&str| read(tag).is_some_and(|(attributes, _)| attributes.contains(&name));
+    let is_own = |tag: &&str| *tag == name;
+    let child = children.iter().copied().find(is_own);
+    child.or_else(|| READ.into_iter().find(gives)).or_else(|| READ.into_iter().find(is_own))
 }
 
 /// Returns a function that finds the name in `known`, but not `given`, which another name may stand for.

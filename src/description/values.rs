@@ -99,11 +99,13 @@ pub(super) fn mimic(element: Node<'_, '_>, joint: usize) -> Result<Mimic> {
 }
 
 /// Reads the numbers of a required attribute; see [`numbers`].
+#[inline(always)]
 fn required<const N: usize>(element: Node<'_, '_>, name: &str, least: f64) -> Result<[f64; N]> {
     numbers(element, name, xml::required_attribute(element, name)?, least)
 }
 
 /// Reads the numbers of an optional attribute; see [`numbers`].
+#[inline(always)]
 fn optional<const N: usize>(element: Node<'_, '_>, name: &str, least: f64) -> Result<Option<[f64; N]>> {
     element.attribute(name).map(|text| numbers(element, name, text, least)).transpose()
 }
@@ -144,7 +146,7 @@ fn parsed<'t, const N: usize>(mut words: impl Iterator<Item = &'t str>) -> Optio
             // Most numbers.
             "0" => 0.0,
             "1" => 1.0,
-            word => word.parse().ok()?,
+            word => fast_float2::parse(word).ok()?,
         };
     }
     words.next().is_none().then_some(numbers)

@@ -154,6 +154,7 @@ pub(super) type Child<'a, 'input> = Option<Node<'a, 'input>>;
 
 /// Finds the child elements with these tags in one pass. A second element with the same tag is an error, unless it is
 /// written exactly as the first.
+#[inline(always)]
 pub(super) fn named<'a, 'input: 'a, const N: usize>(
     node: Node<'a, 'input>,
     tags: [&str; N],
@@ -185,11 +186,10 @@ pub(super) fn required_child<'a, 'input: 'a>(
 }
 
 /// Returns the attribute `name`, or an error if it is missing or empty.
+#[inline(always)]
 pub(super) fn required_attribute<'a>(node: Node<'a, '_>, name: &str) -> Result<&'a str> {
-    match node.attribute(name) {
-        Some(value) if !value.is_empty() => Ok(value),
-        _ => Err(refuse(node, Reason::Missing(format!("the attribute {name} of <{}>", node.tag_name().name())))),
-    }
+    let missing = || refuse(node, Reason::Missing(format!("the attribute {name} of <{}>", node.tag_name().name())));
+    node.attribute(name).filter(|value| !value.is_empty()).ok_or_else(missing)
 }
 
 /// Converts ascending byte offsets to lines and columns in one pass over a text.

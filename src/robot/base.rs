@@ -31,15 +31,16 @@ pub(super) struct Judgment {
 }
 
 /// Decides on the base, unless `asked` gives it. Planar and floating joints that are not the base become frozen.
-pub(super) fn judge(description: &Description, roles: &mut [Role], asked: Option<Base>) -> Judgment {
+pub(super) fn judge(description: &Description, outward: &[usize], roles: &mut [Role], asked: Option<Base>) -> Judgment {
     let root = description.root;
-    let welded = Welded::new(description, roles);
+    let welded = Welded::new(description, outward, roles);
     let exit = welded.single_exit(root).filter(|&joint| roles[joint] == Role::Free && welded.is_massless(root, 0.0));
     let free = exit.filter(|_| asked != Some(Base::Fixed));
-    for (index, role) in roles.iter_mut().enumerate() {
-        if *role == Role::Free && Some(index) != free {
-            *role = Role::Frozen(FreezeReason::Kind(description.joints[index].kind));
-        }
+    let others = roles.iter_mut().enumerate().filter(|(index, role)| **role == Role::Free && Some(*index) != free);
+    let mut frozen = 0;
+    for (index, role) in others {
+        *role = Role::Frozen(FreezeReason::Kind(description.joints[index].kind));
+        frozen += 1;
     }
     if let Some(joint) = free {
         let UrdfJoint { kind, name, child, .. } = &description.joints[joint];
@@ -47,7 +48,7 @@ pub(super) fn judge(description: &Description, roles: &mut [Role], asked: Option
         return Judgment { base: Base::Floating, root: *child, because, chain: vec![joint], caution: None };
     }
 
-    let welded = Welded::new(description, roles);
+    let welded = if frozen == 0 { welded } else { Welded::new(description, outward, roles) };
     let at_root = |base, because: String| Judgment { base, root, because, chain: Vec::new(), caution: None };
     if asked == Some(Base::Fixed) {
         return at_root(Base::Fixed, "as asked".into());
@@ -102,12 +103,12 @@ struct Welded {
 }
 
 impl Welded {
-    fn new(description: &Description, roles: &[Role]) -> Self {
+    fn new(description: &Description, outward: &[usize], roles: &[Role]) -> Self {
         let Description { links, root, .. } = description;
         let mass = |link: usize| links[link].inertial.as_ref().map_or(0.0, |inertial| inertial.mass);
         let mut group = vec![0; links.len()];
         let (mut masses, mut exits) = (vec![mass(*root)], vec![(0, 0)]);
-        for index in description.outward(description.root) {
+        for &index in outward {
             let joint = &description.joints[index];
             let parent = group[joint.parent];
             if let Role::Frozen(_) = roles[index] {

@@ -123,8 +123,8 @@ pub(super) fn about_file(
     let closing = ignored.iter().filter(|own| closes_loops(own.parent, &own.tag));
     let without_axis = joints.iter().filter(|joint| joint.kind.has_axis() && !joint.has_axis);
     let off = joints.iter().zip(&pose.axes).filter(|(joint, axis)| {
-        let angle = plane.off_normal(**axis);
-        joint.kind == JointKind::Planar && joint.has_axis && angle > pose.tolerance && angle <= OBLIQUE
+        let is_off = |angle| angle > pose.tolerance && angle <= OBLIQUE;
+        joint.kind == JointKind::Planar && joint.has_axis && is_off(plane.off_normal(**axis))
     });
     // Multiples of 0.5 up to 360, at least one of 30 or more.
     let in_degrees = |limit: &f64| (2.0 * limit).fract() == 0.0 && limit.abs() <= 360.0;
@@ -316,7 +316,7 @@ pub(super) fn about_inertias<'l>(
             Some(_) if largest > size * size * (WIDEST * WIDEST * mass).max(SLIGHT * whole) => 2,
             Some(inertia) if !is_planar && !is_physical(inertia) => 3,
             Some(_) if is_planar && moment < ROUNDED * largest => 4,
-            Some(_) if largest > 0.0 && largest < least(*mass, is_planar) && *mass > SLIGHT * whole => 5,
+            Some(_) if *mass > SLIGHT * whole && largest > 0.0 && largest < least(*mass, is_planar) => 5,
             _ => continue,
         };
         found[kind].push(link.name.as_str());

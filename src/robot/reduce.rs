@@ -45,7 +45,7 @@ impl Robot {
     /// # Errors
     /// Returns an error in the cases of [`Description::from_urdf`] and [`Robot::reduce`].
     pub fn from_urdf(text: &str) -> Result<Self> {
-        Self::reduce(&Description::from_urdf(text)?, &Reduction::default())
+        Self::reduce_tree(&Description::from_urdf(text)?, &Reduction::default())
     }
 
     /// Reduces `description` to a plane of its root link.
@@ -65,6 +65,11 @@ impl Robot {
     /// Returns [`Reason::NotFinite`] if sums of sizes or masses exceed the range of f64.
     pub fn reduce(description: &Description, reduction: &Reduction) -> Result<Self> {
         description.check()?;
+        Self::reduce_tree(description, reduction)
+    }
+
+    /// Reduces a description whose links and joints form one tree.
+    fn reduce_tree(description: &Description, reduction: &Reduction) -> Result<Self> {
         let tolerance = reduction.axis_tolerance.unwrap_or(PARALLEL);
         if !(0.0..=Reduction::WIDEST_TOLERANCE).contains(&tolerance) {
             let (what, allowed) = ("`axis_tolerance`".to_owned(), "between 0 and 0.5 rad");
@@ -78,7 +83,7 @@ impl Robot {
         while pose.follow(description, |own, other, turns| role::stays(&roles, tolerance, (own, other), turns)) {
             roles = roles_in(&pose);
         }
-        let found = base::judge(description, &mut roles, reduction.base);
+        let found = base::judge(description, &pose.outward, &mut roles, reduction.base);
         let rotation = product(&plane.axes(), &pose.rotations[found.root]);
         let tree = Tree::grow(description, (&pose, &roles), found.root, rotation, reduction.reductions);
 

@@ -13,6 +13,8 @@ const FOOT: f64 = 0.1;
 
 /// Axes of all joints and poses of all links, with the values of frozen joints.
 pub(super) struct ReferencePose {
+    /// All joints in depth-first order.
+    pub(super) outward: Vec<usize>,
     /// For each joint, the value at which it is to be frozen, if any; also for what mimics it \[rad or m\].
     pub(super) frozen: Vec<Option<f64>>,
     /// For each joint, the joint that it finally mimics, after chains of mimic joints are resolved.
@@ -52,15 +54,16 @@ impl ReferencePose {
         }
         let (axes, links) = (vec![[0.0; 3]; joints.len()], description.links.len());
         let (rotations, places) = (vec![Pose::default().rotation(); links], vec![[0.0; 3]; links]);
-        let mut pose = Self { frozen, mimicked, axes, rotations, places, tolerance };
+        let outward = description.outward(description.root);
+        let mut pose = Self { outward, frozen, mimicked, axes, rotations, places, tolerance };
         pose.turn(description);
         Ok(pose)
     }
 
     /// Computes axes, rotations and places.
     fn turn(&mut self, description: &Description) {
-        let Self { frozen, axes, rotations, places, .. } = self;
-        for index in description.outward(description.root) {
+        let Self { outward, frozen, axes, rotations, places, .. } = self;
+        for &index in &*outward {
             let joint = &description.joints[index];
             let (parent, child) = (joint.parent, joint.child);
             let origin = product(&rotations[parent], &joint.origin.rotation());
@@ -102,7 +105,7 @@ impl ReferencePose {
         let (low, high) = (heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max));
         let mut leads: Vec<bool> = heights().map(|height| height <= low + FOOT * (high - low)).collect();
         let mut legs = vec![false; joints.len()];
-        for index in description.outward(description.root).into_iter().rev() {
+        for &index in self.outward.iter().rev() {
             legs[index] = leads[joints[index].child];
             leads[joints[index].parent] |= legs[index];
         }

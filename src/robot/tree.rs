@@ -64,7 +64,8 @@ impl Tree {
         reductions: Reductions,
     ) -> Self {
         let links = &description.links;
-        let outward = description.outward(root);
+        let beyond = (root != description.root).then(|| description.outward(root));
+        let outward = beyond.as_ref().unwrap_or(&pose.outward);
         // The coordinate or mimic joint of each joint in the file. Both are numbered in the file's order.
         let mut movers = vec![None; roles.len()];
         let (mut coordinates, mut mimics) = (0.., 0..);
@@ -82,7 +83,7 @@ impl Tree {
         places[root] = Some(Place { body: 0, rotation, offset: [0.0; 3] });
         let mut bodies = vec![Body::of(&links[root].name, None)];
         let (mut joints, mut mimic_joints) = (Vec::new(), Vec::new());
-        for index in outward {
+        for &index in outward {
             let joint = &description.joints[index];
             // The walk is outward, so the parent's pose is known.
             let Some(parent) = &places[joint.parent] else { continue };
