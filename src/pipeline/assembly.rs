@@ -30,12 +30,12 @@ pub struct Loads<'a> {
     pub scene: &'a Scene,
     /// q, with the placed base.
     pub position: &'a [f64],
-    /// Whether each body does not rotate, except for the rounding of its rates; an empty list stands for all false.
+    /// For each body whether it does not rotate, up to the rounding of its rates; an empty list means false for all.
     pub steady: &'a [bool],
 }
 
-/// Once loops hold a contact, a row of G is rounding if at most this fraction of it is left: a thousand units in the
-/// last place of a velocity, squared. Nearly dependent rows of K leave more.
+/// A row of G is set to zero if the loops reduce its diagonal entry to this fraction or less: (1000 eps)^2, because G
+/// is quadratic in velocities. Nearly dependent rows of K leave more.
 const HELD: f64 = (1e3 * f64::EPSILON) * (1e3 * f64::EPSILON);
 
 /// How M^-1 is applied.
@@ -70,7 +70,7 @@ pub struct Assembly<T = f64> {
 }
 
 impl Assembly {
-    /// As [`Assembly::delassus`], but rows of contacts that the loops hold are exactly zero, without rounding.
+    /// Does the same as [`Assembly::delassus`], and sets the rows of contacts that the loops hold to exactly zero.
     pub fn rounded_delassus(&mut self) {
         if !self.is_constrained() {
             return self.delassus();
@@ -157,7 +157,7 @@ impl<T: Real> Assembly<T> {
 
     /// Adds the response of the constraints to a `change` of velocity or to an acceleration, as `closed` selects.
     /// Returns the loops' impulses on their points a.
-    pub fn answer(&self, closed: Closed<'_, T>, change: &mut [T]) -> Vec<Vector<T>> {
+    pub fn add_constraint_response(&self, closed: Closed<'_, T>, change: &mut [T]) -> Vec<Vector<T>> {
         if !self.is_constrained() {
             return Vec::new();
         }
@@ -239,9 +239,9 @@ impl<T: Real> Assembly<T> {
         contact_jacobian(&self.plan, &self.points, velocity, stance, &mut self.workspace);
     }
 
-    /// Changes c of the moving contacts to that of the motion nearest to v, by kinetic energy, in which the contacts
-    /// `still` rest: c_i - G_ir lambda with G_rr lambda = c_r, from G and c. Reports each eliminated row of G, what is
-    /// left of c and of the pivot there, and G.
+    /// Replaces c by that of the motion in which the contacts `still` rest and which is nearest to v in kinetic energy:
+    /// c_i - G_ir lambda with G_rr lambda = c_r. Calls `report` for each eliminated row of G with what is left of its c
+    /// and of its pivot, and with G.
     pub fn settle(&mut self, Still { contacts, rows, .. }: &Still, mut report: impl FnMut(usize, Pair<T>, &[T])) {
         let Workspace { delassus, contact_velocity: speeds, .. } = &mut self.workspace;
         if !rows.is_empty() {
@@ -270,8 +270,8 @@ impl<T: Real> Assembly<T> {
         }
     }
 
-    /// Adds to `velocity` the effect of an impulse at a point; `by` must be prepared.
-    pub fn push(&mut self, by: Elimination, impulse: PointImpulse<T>, velocity: &mut [T]) {
+    /// Adds to `velocity` the change M^-1 J^T p by an impulse at a point. M^-1 must be prepared for `by`.
+    pub fn add_impulse(&mut self, by: Elimination, impulse: PointImpulse<T>, velocity: &mut [T]) {
         let Self { plan, workspace, column, motions, .. } = self;
         match by {
             Elimination::Ltl => add_impulse(plan, workspace, impulse, column, velocity),
@@ -281,13 +281,13 @@ impl<T: Real> Assembly<T> {
         }
     }
 
-    /// Adds to `velocity` the effect of an impulse [tangential, normal] at a contact; `by` must be prepared.
-    pub fn strike(&mut self, by: Elimination, contact: usize, [tangential, normal]: Pair<T>, velocity: &mut [T]) {
+    /// Does the same as [`Assembly::add_impulse`] for an impulse [tangential, normal] at a contact.
+    pub fn add_contact_impulse(&mut self, by: Elimination, contact: usize, [t, n]: Pair<T>, velocity: &mut [T]) {
         let point = self.points[contact];
         let axes = point.axes();
-        let vector = axes[0] * tangential + axes[1] * normal;
+        let vector = axes[0] * t + axes[1] * n;
         let arm = point.arm(&self.workspace);
-        self.push(by, PointImpulse { body: point.body, arm, vector }, velocity);
+        self.add_impulse(by, PointImpulse { body: point.body, arm, vector }, velocity);
     }
 
     /// Adds to a `change` of v, by coordinate, the effect of the applied impulses alone, without the constraints.
@@ -296,11 +296,12 @@ impl<T: Real> Assembly<T> {
             let link = &robot.links[applied.link];
             let arm = self.workspace.rotation[link.body].apply(link.point(applied.offset));
             let impulse = PointImpulse { body: link.body, arm, vector: applied.vector.map(T::from_f64) };
-            self.push(self.elimination, impulse, change);
+            self.add_impulse(self.elimination, impulse, change);
         }
     }
 
-    /// Returns c after a `change` of velocity. Only the change goes through J: without it, a contact at rest stays so.
+    /// Returns c after a `change` of velocity. Only the change is multiplied by J, so that contacts at rest may stay
+    /// so.
     pub fn free(&self, before: &[Pair<T>], change: &[T]) -> Vec<Pair<T>> {
         let free = before.iter().zip(&self.points).map(|(&[tangential, normal], point)| {
             let (more, axes) = (self.velocity_of(point, change), point.axes());

@@ -146,7 +146,7 @@ impl<'a> ExactState<'a> {
     pub fn change<T: Real>(&self, assembly: &mut Assembly<T>) -> Vec<T> {
         let mut change = vec![T::zero(); self.position.len()];
         assembly.apply(self.robot, self.scene, &mut change);
-        assembly.answer(Closed::Change, &mut change);
+        assembly.add_constraint_response(Closed::Change, &mut change);
         change
     }
 
@@ -196,21 +196,21 @@ impl<'a> ExactState<'a> {
         let mut parts = match self.asked {
             Asked::Forces(loads) => {
                 let (mut acceleration, drifts) = assembly.acceleration(&velocity, loads);
-                let loops = assembly.answer(Closed::Acceleration(&drifts), &mut acceleration);
+                let loops = assembly.add_constraint_response(Closed::Acceleration(&drifts), &mut acceleration);
                 vec![with(acceleration, loops)]
             }
             Asked::Impact | Asked::Shock(_) => {
                 let mut change = rest.clone();
                 assembly.apply(self.robot, self.scene, &mut change);
-                let loops = assembly.answer(Closed::Change, &mut change);
+                let loops = assembly.add_constraint_response(Closed::Change, &mut change);
                 let still = vec![Vector::zero(); loops.len()];
                 vec![with(velocity, still), with(change, loops)]
             }
         };
         for (contact, own) in impulse.iter().enumerate() {
             let mut change = rest.clone();
-            assembly.strike(assembly.elimination, contact, own.map(T::from_f64), &mut change);
-            let loops = assembly.answer(Closed::Change, &mut change);
+            assembly.add_contact_impulse(assembly.elimination, contact, own.map(T::from_f64), &mut change);
+            let loops = assembly.add_constraint_response(Closed::Change, &mut change);
             parts.push(with(change, loops));
         }
         parts
@@ -234,7 +234,7 @@ impl<'a> ExactState<'a> {
         match self.asked {
             Asked::Forces(loads) => {
                 let (mut acceleration, drifts) = assembly.acceleration(&velocity, loads);
-                assembly.answer(Closed::Acceleration(&drifts), &mut acceleration);
+                assembly.add_constraint_response(Closed::Acceleration(&drifts), &mut acceleration);
                 let free = assembly.contact_accelerations(&acceleration);
                 Contacts { delassus: assembly.workspace.delassus, before: free.clone(), free }
             }

@@ -6,12 +6,12 @@
 //!
 //! This is the contact problem of an impact with the same G and law, but with forces for impulses and accelerations for
 //! velocities. Its contacts neither approach nor leave the ground; those that already slide keep their direction
-//! ([`Law::Sliding`]). No theorem guarantees them exactly one outcome: none and two are Painleve's paradoxes. Without
-//! an outcome the velocities jump, by an impact without approach.
+//! ([`Law::Sliding`]). Then no theorem guarantees exactly one outcome: Painleve's paradoxes have none or two. If there
+//! is none, the velocities jump in an impact without approach.
 
 use super::assembly::{Assembly, Loads};
 use super::exact::{Asked, ExactState};
-use super::response::Unstruck;
+use super::response::FreeMotion;
 use super::resting::Standing;
 use super::springs::Driven;
 use super::still::Still;
@@ -29,8 +29,8 @@ use crate::scalar::{Magnitude, Real, dot};
 use crate::state::{Scene, SpringEnd, SpringLaw, State};
 use std::cmp::Ordering;
 
-/// The fraction of their bounds that the errors of accelerations are likely to reach, as a multiple of that of G. Over
-/// 1,000 states of fifteen robots (also chains of ten links with masses of 1e-4 to 1e4 kg) it was at most 1.1.
+/// The ratio of likely error to error bound of the accelerations, as a multiple of this ratio for G. Over 1,000 states
+/// of fifteen robots (also chains of ten links with masses of 1e-4 to 1e4 kg) it was at most 1.1.
 const LIKELY: f64 = 4.0;
 
 /// The part of an [`Impact`] that describes sustained contact. Its impulses are then forces \[N\], and its velocities
@@ -77,7 +77,7 @@ impl Unforced {
 
 /// Relative accuracy of velocities after an impact, as a fraction of those before it. Smaller rates count as zero.
 const STOPPED: f64 = 1e-10;
-/// A greater gravity gets a note \[m/s^2\]: no planet has it, and some programs count in centimeters.
+/// A greater gravity gets a note, because it may be in cm/s^2 \[m/s^2\].
 const STRONGEST: f64 = 100.0;
 
 impl Pipeline<'_> {
@@ -123,14 +123,14 @@ impl Pipeline<'_> {
         if let Some(analysis) = analysis.as_mut().filter(|_| !self.options.brief) {
             let Unforced { unclosed, free, drifts, likely: errors, .. } = &unforced;
             let closed = Closed::Acceleration(drifts);
-            let unstruck = Unstruck { before: &rest, applied: unclosed, free, errors, closed };
+            let unstruck = FreeMotion { before: &rest, applied: unclosed, free, errors, closed };
             let asked = Asked::Forces(unforced.loads(self.robot, scene));
             self.respond(&mut analysis.outcomes, (state, &prepared, asked), unstruck);
             analysis.proven &= analysis.outcomes.iter().all(|outcome| outcome.proven);
         }
         if let Some(shock) = &mut shock {
             let before = &prepared.velocity;
-            let unstruck = Unstruck { before, applied: &rest, free: before, errors: &[], closed: Closed::Change };
+            let unstruck = FreeMotion { before, applied: &rest, free: before, errors: &[], closed: Closed::Change };
             self.respond(shock, (state, &prepared, Asked::Shock(&slips)), unstruck);
         }
         let left_out = if self.options.brief { Vec::new() } else { self.left_out(scene, &prepared) };
@@ -208,8 +208,8 @@ impl Pipeline<'_> {
         Ok((prepared, slips.into_iter().flatten().collect()))
     }
 
-    /// Computes the forces just after each decided outcome of an impact. The velocities are those that the outcome
-    /// prints, and its modes select the contacts that take part. Returns notes on outcomes for which this fails.
+    /// Computes the forces just after each decided outcome of an impact. The velocities are those of the outcome as
+    /// printed, and its modes select the contacts that take part. Returns notes on outcomes for which this fails.
     pub(super) fn follow(&mut self, state: &State, struck: &Prepared, analysis: &mut Analysis) -> Vec<String> {
         let scene = Scene { impulses: Vec::new(), ..state.scene.clone() };
         let after = State { scene, ..state.clone() };
@@ -227,7 +227,7 @@ impl Pipeline<'_> {
     fn next(&mut self, after: &State, struck: &Prepared, outcome: &Outcome) -> Result<Option<Next>> {
         let mut velocity: Vec<f64> = outcome.velocity().collect();
         let fastest = f64::max(self.fastest(&struck.velocity), self.fastest(&velocity));
-        // A bounce is proportional to the velocity before. If it is within the rounding of that, there is no bounce.
+        // A bounce within the rounding of the velocity before the impact does not count.
         let slip = |(contact, mode): (usize, &Mode)| match mode {
             Mode::Separate => None,
             _ if struck.impact.problem.bounce(contact).abs() > STOPPED * fastest => None,
@@ -277,7 +277,8 @@ impl Pipeline<'_> {
         velocity.iter_mut().zip(stops).filter(|(_, stops)| *stops).for_each(|(rate, _)| *rate = 0.0);
     }
 
-    /// Puts the problem of accelerations in place of that of velocities. `rounding` is that of a sum of rates.
+    /// Replaces the contact problem of velocities by that of accelerations. `rounding` is the relative rounding of a
+    /// sum of joint rates.
     fn pose(&mut self, state: &State, prepared: &mut Prepared, slips: &[Ordering], rounding: f64) -> Result<Unforced> {
         let steady = self.steady(prepared, slips, rounding);
         self.refuse_turning_normals(state, prepared, slips, &steady)?;
@@ -288,7 +289,7 @@ impl Pipeline<'_> {
         let driven = self.driven(&prepared.velocity, loads)?;
         let (unclosed, drifts) = self.assembly.acceleration(&prepared.velocity, loads);
         let mut free = unclosed.clone();
-        self.assembly.answer(Closed::Acceleration(&drifts), &mut free);
+        self.assembly.add_constraint_response(Closed::Acceleration(&drifts), &mut free);
         self.refuse_parting(&state.scene.loops, [&prepared.velocity, &unclosed, &free], &drifts, loads)?;
         for &entry in &free {
             finite(entry, || "an acceleration".into()).map_err(|error| {
@@ -385,7 +386,7 @@ impl Pipeline<'_> {
         let turning = uneven.find(|own| self.turns(own.body, &prepared.velocity, self.rounding_of_rates()));
         let Some(Contact { name, .. }) = turning else { return Ok(()) };
         let reason = format!("circles of different radii touch the ground at one place, {name}, and roll differently");
-        let hint = "name the one that carries in contacts, or switch off the reduction merge";
+        let hint = "name the one that bears the load in `contacts`, or switch off the reduction merge";
         Err(Error::new(Reason::Inconsistent(reason)).hint(hint))
     }
 

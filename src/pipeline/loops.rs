@@ -14,13 +14,14 @@ use crate::robot::Robot;
 use crate::scalar::{Ball, Certified, Magnitude, Real};
 use crate::state::NamedLoop;
 
-/// The greatest gap of a loop, as a fraction of the robot's size: poses are rounded, and simulators have springs.
+/// The greatest gap of a closed loop, as a fraction of the robot's size: poses are rounded, and springs may close
+/// loops.
 const OPEN: f64 = 1e-4;
-/// The greatest fraction of the kinetic energy in a motion that opens the loops: a hundredth of the speed.
+/// The greatest fraction of the kinetic energy in the part of the velocity that opens the loops: 1 % of the speed.
 const OPENING: f64 = 1e-4;
-/// The greatest acceleration that may open a loop, as a fraction of the sum of the terms of its points' accelerations.
+/// The greatest relative acceleration of a loop's points, as a fraction of the sum of the terms of their accelerations.
 const PARTING: f64 = 1e-9;
-/// Below this fraction of the kinetic energy, a motion that opens the loops is rounding and gets no note.
+/// Below this fraction of the kinetic energy, the part that opens the loops is rounding and gets no note.
 const ROUNDING: f64 = 1e-20;
 /// A row of K counts as dependent on others if less than this fraction of its squared reach is left.
 const DEPENDENT: f64 = 1e-22;
@@ -220,7 +221,7 @@ impl Pipeline<'_> {
                 let name = named[index].name(index, robot);
                 let apart = rounded(left[0].max(left[1]));
                 let reason = format!("no acceleration keeps {name} closed: its points part at {apart} m/s^2");
-                let hint = "it moves through a dead point, or is held at rates that it cannot keep: ask beside that pose, or \
+                let hint = "it moves through a dead point, or is held at rates that it cannot keep: ask next to that pose, or \
                             hold fewer joints";
                 return Err(Error::new(Reason::Inconsistent(reason)).at(format!("loops[{index}]")).hint(hint));
             }

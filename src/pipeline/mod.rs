@@ -23,7 +23,7 @@ pub use self::forces::Sustained;
 pub use self::notes::beyond_size;
 pub use self::prepared::NearestFoot;
 pub(crate) use self::prepared::Prepared;
-use self::response::Unstruck;
+use self::response::FreeMotion;
 pub(crate) use self::resting::AT_REST;
 pub use self::springs::{Driven, SpringForce, Unrealized};
 pub use self::unsolved::{Touching, Unsolved};
@@ -196,7 +196,7 @@ pub enum LeftOut {
     OutOfReach(usize),
     /// The number of collision shapes that are not used because the state names its contacts.
     NotAsked(usize),
-    /// Contact points of one body that lie between two others, which act for them.
+    /// Contact points of one body that lie between two others and were merged into these.
     Merged(Merged),
     /// The tangential impulses of these contacts, which have no friction.
     Tangential(Vec<usize>),
@@ -204,7 +204,7 @@ pub enum LeftOut {
     Cone(Vec<usize>),
 }
 
-/// The answer for one state, with the contacts' data that were taken as given.
+/// The answer for one state, with what robustness checks need.
 struct Answer {
     impact: Box<Impact>,
     /// The prepared state behind the answer. Its own `impact` was exchanged for spare memory.
@@ -247,9 +247,9 @@ pub struct Matrices {
 pub struct Pipeline<'r> {
     robot: &'r Robot,
     options: Options,
-    /// Why the options are refused, which every answer then reports.
+    /// The error of refused options, which every answer then returns.
     refused: Option<Error>,
-    /// Whether the reader of the next state has made the checks of [`State::check`].
+    /// Whether the next state has already passed [`State::check`].
     is_checked: bool,
     feet: Feet,
     /// Names of the base's coordinates, and names of the joints.
@@ -259,7 +259,7 @@ pub struct Pipeline<'r> {
     braked: Vec<usize>,
     rotor_inertia: Vec<f64>,
     bounds: RoundingBounds,
-    /// The sums of magnitudes of the terms in a state's accelerations, for their rounding bounds.
+    /// Sums of the magnitudes of all terms in a state's accelerations, for their rounding bounds.
     stretched: Assembly<Magnitude>,
     scratch: Scratch,
     /// Memory for the next state and for the next answers.
@@ -307,7 +307,7 @@ impl<'r> Pipeline<'r> {
     /// field.
     pub fn impact(&mut self, state: &State) -> Result<Box<Impact>> {
         within(self.options.budget, || {
-            let mut answer = self.strike(state, None)?;
+            let mut answer = self.analyze_impact(state, None)?;
             if let Some(uncertainty) = &state.uncertainty {
                 let holds = self.robustness(state, uncertainty, &answer);
                 let impact = &mut answer.impact;
@@ -348,7 +348,7 @@ impl<'r> Pipeline<'r> {
     /// Returns the errors of [`Pipeline::answer`].
     pub fn answer_explaining(&mut self, state: &State, chosen: &[Vec<Mode>]) -> Result<Box<Impact>> {
         within(self.options.budget, || match self.options.aspect {
-            Aspect::Impact => self.strike(state, Some(chosen)).map(|answer| self.finished(answer)),
+            Aspect::Impact => self.analyze_impact(state, Some(chosen)).map(|answer| self.finished(answer)),
             Aspect::Forces => self.sustained(state, Some(chosen)),
         })
     }
@@ -362,7 +362,7 @@ impl<'r> Pipeline<'r> {
     }
 
     /// As [`Pipeline::impact`]. If modes are `chosen`, only the rejected combinations with these modes are listed.
-    fn strike(&mut self, state: &State, chosen: Option<&[Vec<Mode>]>) -> Result<Answer> {
+    fn analyze_impact(&mut self, state: &State, chosen: Option<&[Vec<Mode>]>) -> Result<Answer> {
         let scene = &state.scene;
         let mut prepared = self.prepare(state)?;
         let Prepared { velocity, applied, free, impact, .. } = &*prepared;
@@ -391,7 +391,7 @@ impl<'r> Pipeline<'r> {
             (friction_needed, slides_regardless) = (found.flatten(), found == Some(None));
         }
         if let Some(analysis) = analysis.as_mut().filter(|_| !brief || next) {
-            let unstruck = Unstruck { before: velocity, applied, free, errors: &[], closed: Closed::Change };
+            let unstruck = FreeMotion { before: velocity, applied, free, errors: &[], closed: Closed::Change };
             self.respond(&mut analysis.outcomes, (state, &prepared, Asked::Impact), unstruck);
             analysis.proven &= analysis.outcomes.iter().all(|outcome| outcome.proven);
         }

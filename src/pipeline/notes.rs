@@ -9,7 +9,7 @@ use crate::impact::Outcome;
 use crate::planar::Vector;
 use crate::state::{Scene, State};
 
-/// A falling foot up to this fraction of the robot's size above the ground nearly touches; a deeper foot gets a note.
+/// Greatest height of a falling foot that nearly touches, and least noted depth, as a fraction of the robot's size.
 const NEAR_MISS: f64 = 1e-2;
 
 /// Greatest height of a resting foot that nearly stands, as a fraction of the robot's size.
@@ -40,7 +40,7 @@ impl Pipeline<'_> {
         }));
     }
 
-    /// Notes oddities of the contacts, of the feet that nearly touch (`nearest` and `near`), and of the ground.
+    /// Notes what is unusual about the contacts, the feet that nearly touch (`nearest` and `near`), and the ground.
     pub(super) fn note_contacts(
         &self,
         scene: &Scene,
@@ -199,7 +199,8 @@ impl Pipeline<'_> {
     }
 }
 
-/// Notes that a length, such as a contact tolerance, exceeds the robot's size, as millimeters do; both in \[m\].
+/// Notes that a length, such as a contact tolerance, exceeds the robot's size, as one in millimeters does; both in
+/// \[m\].
 pub fn beyond_size(what: &str, length: f64, size: f64) -> Option<String> {
     (length > size).then(|| {
         let [length, size] = [length, size].map(rounded);

@@ -42,7 +42,7 @@ pub struct Prepared {
     pub velocity: Vec<f64>,
     /// The foot of the stance.
     pub foot: Option<Contact>,
-    /// Contacts that were left out because others act for them.
+    /// Contacts that were merged into others.
     pub merged: Vec<Merged>,
     /// The number of shapes that were too far from the ground to be checked.
     pub out_of_reach: usize,
@@ -156,7 +156,11 @@ impl Pipeline<'_> {
         *levels = self.levels(state, contacts, velocity, *stance);
         self.bound_velocities(contacts, levels, velocity, standing);
         if is_rounding {
-            self.blur(contacts, *stance, opened.iter().zip(&*velocity).map(|(given, closed)| closed - given).collect());
+            self.widen(
+                contacts,
+                *stance,
+                opened.iter().zip(&*velocity).map(|(given, closed)| closed - given).collect(),
+            );
         }
         self.find_resting(state, velocity, contacts, standing, (resting, notes));
         self.assembly.rounded_delassus();
@@ -173,7 +177,7 @@ impl Pipeline<'_> {
         applied.resize(self.robot.dofs(), 0.0);
         self.assembly.apply(self.robot, scene, applied);
         change.clone_from(applied);
-        self.assembly.answer(Closed::Change, change);
+        self.assembly.add_constraint_response(Closed::Change, change);
         free.clear();
         free.extend(velocity.iter().zip(&*change).map(|(before, change)| before + change));
         self.problem(scene, contacts, change, problem)?;
@@ -307,7 +311,7 @@ impl Pipeline<'_> {
         };
         let placement = at(Vector::zero(), memory);
         let footing = self.footing(&state.scene, &placement, surface);
-        // A given tolerance lets a recorded foot be tilted; it then stands on its lower end.
+        // Within a given tolerance a recorded foot may be tilted; it then stands on its lower end.
         let flat = self.options.contact_tolerance.map_or(f64::INFINITY, |_| CONTACT_TOLERANCE * self.feet.size());
         let stance = footing.stance(link, self.tolerance(), flat)?;
         self.assembly.rest(&stance.foot.point_of(), velocity);
@@ -318,7 +322,7 @@ impl Pipeline<'_> {
         Footing { robot: self.robot, feet: &self.feet, scene, placement, surface }
     }
 
-    /// Returns the closed contacts, those for which others act, and the number of shapes out of reach; reuses `memory`.
+    /// Returns the closed contacts, those merged into others, and the number of shapes out of reach; reuses `memory`.
     fn contacts(
         &self,
         footing: &Footing,
@@ -367,7 +371,7 @@ impl Pipeline<'_> {
                     .to_owned()
             }
             (Some(stance), _) if self.robot.links[stance].name == *link => {
-                "the foot that stands is in the ground beside x = 0: correct the pitch or the joints, shift the profile \
+                "the standing foot is in the ground next to x = 0: correct the pitch or the joints, shift the profile \
                  along x, or give `place: lowest` instead of the stance"
                     .to_owned()
             }
@@ -440,8 +444,8 @@ impl Pipeline<'_> {
         bounds.velocities(plan, velocity, foot, |contact| standing.place == Some(contact));
     }
 
-    /// Adds to the bounds of c the contact speeds of a `change` of velocity, which closed the loops up to rounding.
-    fn blur(&mut self, contacts: &[Contact], stance: Option<usize>, change: Vec<f64>) {
+    /// Adds the contact speeds of a `change` of velocity to the error bounds of c. The change closed the loops.
+    fn widen(&mut self, contacts: &[Contact], stance: Option<usize>, change: Vec<f64>) {
         let moving = contacts.iter().enumerate().filter(|(index, _)| stance != Some(*index));
         for (index, contact) in moving.filter(|_| !change.is_empty()) {
             let speed = self.bounds.speed(&self.assembly.plan, contact.arm(self.robot), &change);

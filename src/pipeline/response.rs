@@ -5,8 +5,8 @@
 //!     v+ = v- + M^-1 (applied + J^T L + K^T l)      f64 --likely error too large--> balls ... intervals
 //! ```
 //!
-//! L is used as it is printed. Each entry is right to 1e-10 of the velocity before or, if that is larger, of the
-//! greatest effect of the impulses, sqrt((M^-1)_jj) sum |L_r| sqrt(G_rr).
+//! L is the printed impulse, taken exactly. Each entry is right to 1e-10 of the velocity before or, if that is larger,
+//! of the greatest effect of the impulses, sqrt((M^-1)_jj) sum |L_r| sqrt(G_rr).
 
 use super::assembly::Elimination;
 use super::exact::{Asked, ExactState};
@@ -18,7 +18,7 @@ use crate::state::{Named, State};
 
 /// The robot's motion without contact impulses.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Unstruck<'a> {
+pub(super) struct FreeMotion<'a> {
     /// The velocity before the impact, by coordinate; zero for forces.
     pub before: &'a [f64],
     /// Its change by the applied impulses alone; for forces the acceleration from the loads alone.
@@ -38,7 +38,7 @@ impl Pipeline<'_> {
         &mut self,
         outcomes: &mut [Outcome],
         (state, prepared, asked): (&State, &Prepared, Asked<'_>),
-        unstruck: Unstruck<'_>,
+        unstruck: FreeMotion<'_>,
     ) {
         if !self.assembly.plan.has_mimics && outcomes.iter().any(|outcome| !outcome.impulse.is_empty()) {
             articulated_inertias(&self.assembly.plan, &mut self.assembly.workspace);
@@ -74,25 +74,25 @@ impl Pipeline<'_> {
     }
 
     /// Returns whether f64 likely gives the digits of the motion without contact impulses.
-    fn loads_have_digits(&self, outcome: &Outcome, Unstruck { free, errors, .. }: Unstruck<'_>) -> bool {
+    fn loads_have_digits(&self, outcome: &Outcome, FreeMotion { free, errors, .. }: FreeMotion<'_>) -> bool {
         let sizes = || free.iter().zip(outcome.velocity()).map(|(free, after)| free.abs().max(after.abs()));
         let base = sizes().take(self.robot.base_dofs().min(2)).fold(0.0, f64::max);
         let scale = |(coordinate, size)| if coordinate < 2 { f64::max(base, size) } else { size };
         errors.iter().zip(sizes().enumerate().map(scale)).all(|(error, scale)| *error <= DIGITS * scale)
     }
 
-    fn set_velocity(&mut self, outcome: &mut Outcome, unstruck: Unstruck<'_>) {
-        let Unstruck { before, applied, free, closed, .. } = unstruck;
+    fn set_velocity(&mut self, outcome: &mut Outcome, unstruck: FreeMotion<'_>) {
+        let FreeMotion { before, applied, free, closed, .. } = unstruck;
         let constrained = self.assembly.is_constrained();
         // Articulated bodies keep thirteen digits and more in chains where M = L^T D L leaves eight.
         let by = if self.assembly.plan.has_mimics { Elimination::Ltl } else { Elimination::ArticulatedBodies };
         let mut after = if constrained { applied } else { free }.to_vec();
         for (contact, &own) in outcome.impulse.iter().enumerate() {
-            self.assembly.strike(by, contact, own, &mut after);
+            self.assembly.add_contact_impulse(by, contact, own, &mut after);
         }
         let mut loops = Vec::new();
         if constrained {
-            loops = self.assembly.answer(closed, &mut after);
+            loops = self.assembly.add_constraint_response(closed, &mut after);
             after.iter_mut().zip(before).for_each(|(after, before)| *after += before);
         }
         self.name(outcome, after, loops);
@@ -100,7 +100,7 @@ impl Pipeline<'_> {
 
     fn name(&self, outcome: &mut Outcome, mut rates: Vec<f64>, loops: Vec<Vector>) {
         let [base, joints] = &self.names;
-        // Turns -0 into 0: the sign of a zero means nothing.
+        // Turns -0 into 0.
         rates.iter_mut().for_each(|rate| *rate += 0.0);
         let of_joints = rates.split_off(base.len());
         outcome.loop_impulse = (!loops.is_empty()).then_some(loops);

@@ -1,5 +1,5 @@
-//! Detection of resting contacts. A foot that stands in a simulation has c = J v of some 1e-17 m/s, whose signs mean
-//! nothing; it counts as at rest as far as its velocity is known.
+//! Detection of resting contacts. A foot that stands in a simulation has c = J v of about 1e-17 m/s, whose sign has no
+//! meaning. A contact counts as at rest if its velocity is zero within its error.
 //!
 //! ```text
 //!     |c| <= rounding of J v + D,   D = sum of A_k dv_k + sum of |u_k| dq_k   where |c| <= 1e-4 sum of A_k |v_k|, else 0
@@ -24,14 +24,14 @@ use std::cmp::Ordering;
 use std::fmt;
 use std::ops::RangeInclusive;
 
-/// The digits of the state can explain a velocity only if at most this fraction of the sum of its terms is left.
+/// A velocity may come from rounding of the state's numbers if it is at most this fraction of the sum of its terms.
 const CANCELED: f64 = 1e-4;
 /// A contact whose velocity is at most this fraction of the sum of its terms may be one that stands.
 const SUSPICIOUS: f64 = 1e-3;
-/// Significant digits of a number that was rounded to them. With fewer it is exact, with more it is a full f64.
+/// Numbers with this many significant digits are taken as rounded; those with fewer are exact, with more full f64.
 const ROUNDED: RangeInclusive<usize> = 6..=15;
 
-/// The last place of an f32 number, relative to it, at most.
+/// Upper bound on the last place of an f32 number, relative to the number.
 const ULP_OF_F32: f64 = f32::EPSILON as f64;
 
 /// The text after the contact's name in the note on a resting contact, before the speeds.
@@ -46,7 +46,7 @@ pub(super) struct Standing<'a> {
 }
 
 /// Why a contact is taken as resting, with the limit of its speed \[m/s\].
-enum Because {
+enum RestReason {
     Option(f64),
     Rounding(f64),
     Digits(f64),
@@ -81,7 +81,7 @@ impl Pipeline<'_> {
             }
             let name = &contact.name;
             if let Some(because) = because {
-                // A bound this small only covers underflow. Resting contacts on the foot of the stance need no note.
+                // A smaller bound only covers underflow. Contacts on the foot of the stance need no note.
                 let is_of_foot = self.assembly.loops.is_empty() && foot.is_some_and(|foot| foot.body == contact.body);
                 let is_blurred = bound > f64::MIN_POSITIVE.sqrt() && self.options.resting_speed.is_none();
                 if slow > 0.0 || is_blurred && !is_of_foot {
@@ -170,7 +170,7 @@ impl Pipeline<'_> {
             }
         });
         let speeds = &mut self.assembly.workspace.contact_velocity;
-        // Only a braked joint with a rate can move a held contact. An infinite bound then cannot tell whether it does.
+        // Only a braked joint with a rate can move a held contact. An infinite bound leaves open whether it does.
         let is_driven = self.braked.iter().any(|joint| velocity[self.robot.base_dofs() + joint] != 0.0);
         for &index in &still.held {
             let [slow, bound] = [speeds[index], bounds[index]].map(length);
@@ -194,16 +194,16 @@ impl Pipeline<'_> {
         [slow, bound]: [f64; 2],
         (index, contact): (usize, &Contact),
         foot: Option<&Contact>,
-    ) -> Option<Because> {
+    ) -> Option<RestReason> {
         match self.options.resting_speed {
-            Some(limit) => (slow < limit).then_some(Because::Option(limit)),
+            Some(limit) => (slow < limit).then_some(RestReason::Option(limit)),
             // Loops are closed again in every number type; the rounding of this moves contacts that rest as given.
             None if bound == 0.0 && self.assembly.loops.is_empty() => None,
-            None if slow <= bound => Some(Because::Rounding(bound)),
+            None if slow <= bound => Some(RestReason::Rounding(bound)),
             None if slow > CANCELED * self.bounds.terms(index) => None,
             None => Some(bound + self.digits(state, velocity, contact, foot))
                 .filter(|limit| slow <= *limit)
-                .map(Because::Digits),
+                .map(RestReason::Digits),
         }
     }
 
@@ -267,7 +267,7 @@ impl Pipeline<'_> {
     }
 }
 
-impl fmt::Display for Because {
+impl fmt::Display for RestReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Option(limit) => write!(f, "resting speed {limit} m/s"),
@@ -282,10 +282,10 @@ fn length([t, n]: Pair<f64>) -> f64 {
     if squared.is_normal() { squared.sqrt() } else { libm::hypot(t, n) }
 }
 
-/// Returns half a unit in the last decimal place to which each number was rounded: its own last place if it has six to
-/// fifteen significant digits (in its shortest decimal). A number with fewer has lost zeros at its end: it is taken to
-/// have as many digits as the longest of these, but no place finer than their finest. Others get 0. Numbers of f32, and
-/// lists that may be the text of f32, get the rounding of f32 if that is greater.
+/// Returns half a unit in the last decimal place to which each number was rounded. A number whose shortest decimal has
+/// six to fifteen significant digits was rounded to its last one. A shorter number may have lost trailing zeros: it is
+/// taken to have as many digits as the longest of these, but no place finer than their finest. Others get 0. Numbers of
+/// f32, and lists that may be the text of f32, get the rounding of f32 if that is greater.
 fn half_units(numbers: &[f64]) -> Vec<f64> {
     let last_places: Vec<(usize, i32)> = numbers.iter().map(|&number| last_place(number)).collect();
     let rounded = || last_places.iter().filter(|(digits, _)| ROUNDED.contains(digits));

@@ -7,7 +7,7 @@ use crate::planar::Pair;
 use crate::state::Named;
 use serde::Serialize;
 
-/// What a virtual spring asks for.
+/// The load that a virtual spring requires.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SpringForce {
@@ -19,7 +19,7 @@ pub struct SpringForce {
     pub torque: Named,
 }
 
-/// What virtual springs ask of a floating base, which no joint can give.
+/// The load that virtual springs require on a floating base, which no joint can supply.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Unrealized {

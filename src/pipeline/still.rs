@@ -14,7 +14,7 @@ const REGULAR: f64 = 1e-6;
 /// If the relative error of G is not below this, nothing is known.
 pub const WELL_KNOWN: f64 = 1e-4;
 
-/// The contacts at rest. The c of the others is fitted to them, so that impulses exist that give c of all contacts.
+/// The contacts at rest. The c of other contacts is adjusted to them, so that all of c belongs to one motion.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Still {
     /// Whether each contact is at rest; empty if none is taken so.
@@ -60,10 +60,10 @@ impl Still {
     }
 }
 
-/// An elimination of rows of G that takes the most independent row first.
+/// Elimination of rows of G, the most independent row first.
 struct Pivoting<'a> {
     delassus: &'a [f64],
-    /// A smaller fraction of a row counts as nothing.
+    /// A row of which a smaller fraction is left counts as zero.
     tolerance: f64,
     /// The part of G that is left by the eliminated rows.
     left: &'a mut [f64],

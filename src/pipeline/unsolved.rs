@@ -24,8 +24,8 @@ pub struct Unsolved {
     pub velocity_errors: Vec<Pair<f64>>,
 }
 
-/// The parts of a foot and of the ground that meet at a contact. Where a foot rolls on or slides on they change, but
-/// the contact's name does not.
+/// The parts of a foot and of the ground that meet at a contact. They change as a foot rolls or slides, while the
+/// contact keeps its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Touching {
     /// The index of the contact's corner among all corners of its link's feet; `None` if it is at none, as on a corner
@@ -62,7 +62,7 @@ impl Pipeline<'_> {
             own.flat_map(|foot| foot.outline.corners()).position(|corner| *corner == contact.center)
         };
         let touching = |contact| Touching { corner: corner(contact), ground: surface.part(contact) };
-        // The bounds at hand are those of contact velocities, not of accelerations.
+        // The known bounds are those of contact velocities, not of accelerations.
         let (delassus_error, velocity_errors) = match self.options.aspect {
             Aspect::Impact => (self.bounds.delassus, self.bounds.velocity.clone()),
             Aspect::Forces => (f64::INFINITY, Vec::new()),

@@ -33,7 +33,7 @@ const STIFFNESSES: [f64; 5] = [1e4, 1e6, 1e8, 1e10, 1e12];
 pub struct Comparison {
     /// The rigid outcomes, in the order of the analysis.
     pub outcomes: Vec<Target>,
-    /// Runs that the integrator gave up, or that did not end; they are not counted elsewhere.
+    /// Runs that the integrator aborted, or that did not end; they are not counted elsewhere.
     pub unsettled: usize,
     /// All runs, then those of each value of each parameter.
     pub groups: Vec<Group>,
@@ -236,7 +236,7 @@ fn by_stiffness_of_moving(
 ) -> Result<Vec<ByStiffness>> {
     let mut computation = Computation::<f64>::new(state);
     if computation.assembly.is_constrained() {
-        // Here impulses alone keep a loop closed; the forces that do so in motion are not known.
+        // The equation of motion has no loop forces: only impulses keep a loop closed here.
         return Ok(Vec::new());
     }
     computation.place();
@@ -248,7 +248,7 @@ fn by_stiffness_of_moving(
     let mut after = |impulse: &[Pair<f64>]| {
         let mut velocity = before.clone();
         for (contact, &own) in impulse.iter().enumerate() {
-            assembly.strike(Elimination::Ltl, contact, own, &mut velocity);
+            assembly.add_contact_impulse(Elimination::Ltl, contact, own, &mut velocity);
         }
         velocity
     };

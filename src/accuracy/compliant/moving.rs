@@ -129,7 +129,7 @@ impl Equation<'_> {
             let c = assembly.workspace.contact_velocity[index];
             let depth = up.dot(*start - place);
             let (force, stretch) = self.suspension.force(index, depth, state[2 * dofs + index] * length, c);
-            assembly.strike(Elimination::Ltl, index, force, &mut accelerations);
+            assembly.add_contact_impulse(Elimination::Ltl, index, force, &mut accelerations);
             stretches.push(stretch / self.speed);
             touching.push([force[1], c[1]]);
         }

@@ -50,7 +50,7 @@ impl KeptContacts<'_, '_> {
     /// Returns the state at a point and its analysis; `None` if its contacts differ.
     fn analysis(&mut self, point: &[f64]) -> Option<(State, Analysis)> {
         let state = self.at(point);
-        let answer = self.pipeline.strike(&state, Some(&[])).ok()?;
+        let answer = self.pipeline.analyze_impact(&state, Some(&[])).ok()?;
         let [own, given] = [&answer, self.answer];
         let same_foot = match (&own.prepared.foot, &given.prepared.foot) {
             (Some(one), Some(other)) => {

@@ -16,7 +16,7 @@ const EFFORT: usize = 2048;
 /// With more uncertain quantities than this, each box costs more, so fewer are tried.
 const USUAL: usize = 16;
 
-/// The number of random corners of the whole box that are tried besides those that the open combinations suggest.
+/// The number of random corners of the whole box that are tried in addition to those that open combinations suggest.
 const RANDOM_CORNERS: usize = 8;
 
 impl Pipeline<'_> {
@@ -155,7 +155,7 @@ fn weigh_open<const N: usize>(
 ) {
     let determinant = &combination.determinant;
     let sign = if determinant.to_f64() < 0.0 { -1.0 } else { 1.0 };
-    // The center of each numerator as a part of its radius: 0 if it is most open, 1 or -1 if it is just decided.
+    // The center of each numerator divided by its radius: 0 if it is most undecided, 1 or -1 if it is just decided.
     let slacks = combination.numerators.iter().filter(|(inequality, _)| inequality.is_some());
     let slacks = slacks.map(|(_, number)| (number, sign * number.to_f64() / number.error()));
     let undecided = |number: &Affine<N>| number.sign() == Sign::Undecided;
