@@ -5,8 +5,8 @@
 //!                                                                     or undecided --escalate--> Analysis
 //! ```
 //!
-//! Each combination is first read in f64 with error bounds. What lies within the bounds is decided with more digits, so
-//! that every sign in an answer was shown and none is guessed.
+//! The signs of each combination are first computed in f64 with error bounds. Signs that the bounds leave open are
+//! computed with more digits, so that none is guessed.
 
 use super::collected::{
     AnalysisOptions, Collected, EXPLAINED, Findings, FoundFamilies, ListedRejections, OutcomeMemory,
@@ -37,7 +37,7 @@ pub fn too_many_contacts(contacts: usize) -> Error {
         .hint("leave out the contacts that matter least")
 }
 
-/// A note is given if contacts push against each other this many times harder than their motion needs.
+/// A note is given if impulses are this many times larger than the change of motion requires.
 const HARD: f64 = 1e3;
 
 impl Analysis {
@@ -47,14 +47,14 @@ impl Analysis {
         self.energy_note().into_iter().chain(self.balance_note(problem, mass)).chain(self.unlisted_note())
     }
 
-    /// A note if contacts push against each other far harder than they move: then the last digits of the input decide.
+    /// A note if contacts push against each other so hard that the last digits of the input decide.
     pub(crate) fn balance_note(&self, problem: &ContactProblem, mass: impl FnOnce() -> f64) -> Option<String> {
         if self.verdict == Verdict::NoImpact {
             return None;
         }
         let most = |list: &[Pair<f64>]| list.as_flattened().iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
         let fastest = most(problem.velocity_before()).max(most(problem.velocity_free()));
-        // An impulse that a light foot passes on moves the whole robot, so its own mobility would overstate the motion.
+        // A light foot passes its impulse on to the whole robot, so the foot's own mobility would overstate the motion.
         let hardest = |lightest: f64| {
             let excess = |outcome: &Outcome| {
                 let rows = outcome.impulse.as_flattened().iter().enumerate();
@@ -221,7 +221,7 @@ impl Scratch {
             }
         }
         let F64Pass { mut regular, mut undecided, .. } = pass;
-        // Slow contacts often lack only digits of their own velocities, which are computed quickly.
+        // For slow contacts often only the velocities lack digits, and these are quick to compute.
         let is_blurred = !undecided.is_empty() && self.scale.is_slow() && !is_spent();
         let sharper = if is_blurred { source.velocity() } else { None }.map(|velocity| problem.moving(&velocity));
         let (mut problem, mut errors, mut scale) = (problem, errors, &self.scale);
@@ -267,8 +267,8 @@ impl Scratch {
                 let found = families.found;
                 pass.collected.add_families(found);
             }
-            // Reasons are solved last, so that a budget that ends here leaves no outcome open.
-            if pass.turns_to_reasons() {
+            // Reasons of rejections are computed last, so that a budget that ends here leaves no outcome open.
+            if pass.begin_reasons() {
                 climb(&mut pass);
             }
         }

@@ -132,7 +132,7 @@ pub enum Corner {
 pub struct Findings {
     pub outcomes: Vec<Outcome>,
     pub families: Vec<Family>,
-    /// The rejected combinations that are listed, and the number of those that were asked for but are not listed.
+    /// The rejected combinations that are listed, and the number of those that were requested but are not listed.
     pub rejected: Vec<Rejection>,
     pub unlisted: u64,
     pub effort: Effort,
@@ -284,7 +284,7 @@ impl<'a> Collected<'a> {
 
     /// Adds an outcome. It is built in place, because a large value that was just written is slow to move.
     pub fn push(&mut self, number: u64, Solution { modes, numbers, index, margin, range, mut at_zero }: Solution) {
-        let Numbers { motion, energy_loss, friction_needed, are_sharp } = numbers;
+        let Numbers { motion, energy_loss, friction_needed, are_precise } = numbers;
         let border = match self.options.brief {
             true => None,
             false => border(&modes, self.problem.laws(), &at_zero, &motion, self.name),
@@ -308,7 +308,7 @@ impl<'a> Collected<'a> {
             margin,
             border,
             family: false,
-            proven: self.options.prove && are_sharp,
+            proven: self.options.prove && are_precise,
             decided: true,
             next: None,
         });
@@ -334,7 +334,7 @@ fn border(
     let mut border = Border { at_zero: Vec::new(), neighbours: Vec::new() };
     for (contact, (&mode, law)) in modes.iter().zip(laws).enumerate() {
         let own = || at_zero.iter().filter(|(place, _)| *place == contact).map(|&(_, inequality)| inequality);
-        // Without normal impulse, the friction cone is zero as well and says nothing more.
+        // Without normal impulse, the slack of the friction cone is zero as well.
         let unpressed = own().find(|&inequality| inequality == Inequality::NormalImpulse);
         let Some(inequality) = unpressed.or_else(|| own().next()) else { continue };
         border.at_zero.push(AtZero { contact: name(contact), inequality });
@@ -360,7 +360,7 @@ mod tests {
         for (tangential, at_zero, expected, neighbours) in [
             // At the edge of its cone, a contact may begin the slide that its friction resists.
             (0.5, vec![(0, FrictionCone)], vec![("0", FrictionCone)], vec![[Mode::SlideMinus, Mode::Stick]]),
-            // A contact without pressure may do anything next.
+            // Without normal impulse, any mode may follow.
             (
                 0.0,
                 vec![(0, NormalImpulse), (0, FrictionCone), (1, NormalImpulse)],

@@ -1,4 +1,4 @@
-//! Solves one combination of modes in numbers that know their own signs.
+//! Solves one combination of modes in numbers with error bounds.
 
 use super::digits::{Numbers, after};
 use super::enumerate::Tableau;
@@ -14,15 +14,15 @@ use crate::scalar::{Ordered, Sign};
 
 impl Solved {
     /// Whether the numbers of the outcome have the promised digits; true if there is no outcome yet.
-    pub fn is_sharp(&self) -> bool {
+    pub fn is_precise(&self) -> bool {
         match self {
-            Self::Outcome(own) => own.numbers.are_sharp,
+            Self::Outcome(own) => own.numbers.are_precise,
             Self::Rejected(_) | Self::Family(()) => true,
         }
     }
 
-    /// Whether the combination is rejected but some number is not finite or its reason is provisional.
-    pub fn is_vague(&self) -> bool {
+    /// Whether the combination is rejected, but its reason is provisional or a number is not finite.
+    pub fn is_provisional(&self) -> bool {
         match self {
             Self::Rejected(Rejection { margin, motion, .. }) => {
                 !(motion.as_ref().is_none_or(Motion::is_finite) && margin.is_none_or(f64::is_finite))
@@ -88,7 +88,7 @@ impl<'e, T: Ordered> CombinationSolver<'e, T> {
             let mut numbers = Numbers::of((exact, scale), modes, &impulse, &velocity);
             slacks(&leaf, modes, exact.laws(), |slack| {
                 let error = scale.scaled(&slack, slack.number.error());
-                numbers.are_sharp &= error <= scale.digits() * reading.margin.unwrap_or(0.0).max(1.0);
+                numbers.are_precise &= error <= scale.digits() * reading.margin.unwrap_or(0.0).max(1.0);
             });
             Ok(Solved::Outcome(reading.solution(modes.to_vec(), index, numbers)))
         })

@@ -13,8 +13,8 @@
 //!     a robot in f64     V >= min(S sqrt(G_ii), the fastest contact's |c|), P >= min(S / sqrt(G_nn), the greatest |L|)
 //! ```
 //!
-//! with S of [`Scale`]. Each number is right to 1e-10 of its scale. If the errors at hand exceed [`DIGITS`], it is
-//! computed with more digits; the larger scales of the last line spare that to contacts that hardly feel a blow.
+//! with S of [`Scale`]. Each number is right to 1e-10 of its scale. A number whose error exceeds [`DIGITS`] is computed
+//! again with more digits. The larger scales of the last line avoid this for contacts that the impact hardly affects.
 
 use super::enumerate::Leaf;
 use super::generators::Generators;
@@ -81,19 +81,19 @@ pub struct Numbers {
     /// |L_t| / L_n of each sticking contact that is pressed on the ground.
     pub friction_needed: Vec<Option<f64>>,
     /// Whether all numbers have the promised digits.
-    pub are_sharp: bool,
+    pub are_precise: bool,
 }
 
 impl Numbers {
-    /// The numbers that f64 computed; [`f64_serves`] checks their digits. `friction` is reused memory.
+    /// The numbers as f64 computed them; [`f64_has_digits`] checks their digits. `friction` is reused memory.
     pub fn of_motion(motion: Motion, modes: &[Mode], problem: &ContactProblem, mut friction: Vec<Option<f64>>) -> Self {
         let energy_loss = energy_loss(problem.velocity_before(), &motion.impulse, &motion.velocity_after);
         friction.clear();
         friction.extend(friction_needed(modes, problem.laws(), &motion.impulse));
-        Self { motion, energy_loss, friction_needed: friction, are_sharp: true }
+        Self { motion, energy_loss, friction_needed: friction, are_precise: true }
     }
 
-    /// The numbers of a combination, which know their errors: `impulse`, and velocities `xi` as `[c_t, xi_n]`.
+    /// The numbers of a combination from an `impulse` and velocities `xi`, `[c_t, xi_n]`, with error bounds.
     pub fn of<T: Ordered>(
         (problem, scale): (&ContactProblem<T>, &Scale),
         modes: &[Mode],
@@ -115,7 +115,7 @@ impl Numbers {
             after.iter().all(|&entry| known(entry, speed)) && known(n, of_n) && known(t, of_t)
         };
         Self {
-            are_sharp: is_known(energy, 0.0, scale.digits()) && (0..modes.len()).all(of_contact),
+            are_precise: is_known(energy, 0.0, scale.digits()) && (0..modes.len()).all(of_contact),
             energy_loss: energy.to_f64(),
             friction_needed: friction_needed(modes, laws, &motion.impulse).collect(),
             motion,
@@ -126,7 +126,7 @@ impl Numbers {
     pub fn take_friction<T: Ordered>(&mut self, needed: &[Option<T>], laws: &[Law], digits: f64) {
         let known =
             |(needed, law): (&Option<T>, &Law)| needed.is_none_or(|ratio| is_known(ratio, least_friction(law), digits));
-        self.are_sharp &= needed.iter().zip(laws).all(known);
+        self.are_precise &= needed.iter().zip(laws).all(known);
         let nearest = |(needed, law): (&Option<T>, &Law)| needed.map(|ratio| law.friction().limit(ratio.to_f64()));
         self.friction_needed = needed.iter().zip(laws).map(nearest).collect();
     }
@@ -166,7 +166,7 @@ impl Scale {
 }
 
 /// Whether the error of a number is at most `digits` times its magnitude, or times `scale` if that is larger. A number
-/// that f64 cannot hold is not known.
+/// beyond the range of f64 is not known.
 pub fn is_known<T: Ordered>(number: T, scale: f64, digits: f64) -> bool {
     let magnitude = number.to_f64().abs();
     magnitude.is_finite() && number.error() <= digits * scale.max(magnitude)
@@ -206,15 +206,15 @@ fn friction_needed(modes: &[Mode], laws: &[Law], impulse: &[Pair<f64>]) -> impl 
 
 /// Whether the f64 numbers of a leaf, including the `margin`, have the promised digits, judged by their likely errors,
 /// or else by their sensitivity to the errors of the problem.
-pub fn f64_serves(
+pub fn f64_has_digits(
     leaf: &Leaf<'_, Rounded>,
     modes: &[Mode],
     (problem, scale): (&ContactProblem, &Scale),
     (motion, margin): (&Motion, Option<f64>),
 ) -> bool {
     let candidate = Candidate { leaf, modes, problem, scale, motion, margin: margin.unwrap_or(0.0).max(1.0) };
-    candidate.serves(|contact| leaf.numbers(contact).map(|own| scale.likely_part * own.error))
-        || candidate.serves_by_sensitivity()
+    candidate.has_digits(|contact| leaf.numbers(contact).map(|own| scale.likely_part * own.error))
+        || candidate.has_digits_by_sensitivity()
 }
 
 /// An outcome in f64.
@@ -230,7 +230,7 @@ struct Candidate<'a> {
 
 impl Candidate<'_> {
     /// Whether all numbers have their digits if each contact's two numbers ([`Leaf::numbers`]) are off by `errors`.
-    fn serves(&self, errors: impl Fn(usize) -> [f64; 2]) -> bool {
+    fn has_digits(&self, errors: impl Fn(usize) -> [f64; 2]) -> bool {
         let Self { modes, problem, scale, motion, margin, .. } = self;
         let scales = Scales::of(scale, problem.velocity_before(), motion, scale.likely_rounding != 0.0);
         let noise = scale.likely_noise * scale.speed;
@@ -268,7 +268,7 @@ impl Candidate<'_> {
         doubt <= DIGITS * f64::abs(work) && (!is_pressed || f64::abs(work) > LEAST_WORK)
     }
 
-    /// Does the same as [`Candidate::serves`] with errors computed entry by entry from the sensitivity of lambda
+    /// Does the same as [`Candidate::has_digits`] with errors computed entry by entry from the sensitivity of lambda
     /// (Higham 2002, section 7.2); B is the matrix of the generators.
     ///
     /// ```text
@@ -277,7 +277,7 @@ impl Candidate<'_> {
     ///
     /// A is scaled by the mobilities. X, its inverse in f64, is verified: with R = I - A X and r < 1 the greatest row
     /// sum of |R|, |A^-1| y <= |X| (y + r / (1 - r) max y).
-    fn serves_by_sensitivity(&self) -> bool {
+    fn has_digits_by_sensitivity(&self) -> bool {
         let Self { leaf, modes, problem, scale, .. } = self;
         let impulse: Vec<f64> =
             (0..modes.len()).flat_map(|contact| leaf.impulse(contact)).map(|own| own.value).collect();
@@ -321,6 +321,6 @@ impl Candidate<'_> {
             Some(place) => lambda[place],
             None => velocity(row),
         };
-        self.serves(|contact| [number(2 * contact), number(2 * contact + 1)])
+        self.has_digits(|contact| [number(2 * contact), number(2 * contact + 1)])
     }
 }

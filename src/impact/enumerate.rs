@@ -8,9 +8,9 @@
 //! The modes of the contacts are decided one after the other. Each decision eliminates the contact's impulses from a
 //! tableau that expresses everything by the impulses of the contacts not yet decided. Combinations that begin alike
 //! share this work: a tree of Schur complements. The contact law says which impulses a mode allows. The product of the
-//! pivots is det A (paper, section 2). No number is compared with another here.
+//! pivots is det A (paper, section 2). This module compares no numbers.
 //!
-//! Cost: 4^n leaves of O(n) each. A frictionless contact counts 2 in place of 4, since its closed modes are one leaf.
+//! Cost: 4^n leaves of O(n) each; a frictionless contact counts 2 in place of 4: its closed modes share a leaf.
 
 use super::problem::ContactProblem;
 use crate::law::{Friction, Impulse, Law, Mode};
@@ -35,7 +35,7 @@ pub struct Tableau<T> {
     pivots: Vec<T>,
 }
 
-/// [`Visitor::ends`] is asked before each visit of all combinations of this many last contacts.
+/// [`Visitor::ends`] is called before each visit of all combinations of this many last contacts.
 const AT_ONCE: usize = 6;
 
 /// One combination of modes and its numbers.
@@ -54,12 +54,12 @@ pub trait Visitor<T> {
     fn leaf(&mut self, leaf: &Leaf<'_, T>);
 
     /// Whether to skip a combination of which only the numbers of the last contact are known yet. A visitor that skips
-    /// combinations counts them itself. [`Tableau::visit_one`] does not ask.
+    /// combinations counts them itself. [`Tableau::visit_one`] does not call this.
     fn drops(&mut self, _modes: &[Mode], _last: Pair<T>) -> bool {
         false
     }
 
-    /// Whether to stop the visit; asked once before each few thousand combinations.
+    /// Whether to stop the visit; called once before each few thousand combinations.
     fn ends(&mut self) -> bool {
         false
     }
@@ -189,7 +189,7 @@ impl<T: Real> Tableau<T> {
     /// Computes the contact's own rows after its impulses are eliminated; returns the depth that holds them.
     fn decide_own(&mut self, contact: usize, impulse: Impulse, source: usize) -> usize {
         if impulse == Impulse::Zero {
-            // The contact's columns are simply not read any more.
+            // The contact's columns are not read any more.
             self.pivots[contact] = T::one();
             return source;
         }

@@ -3,7 +3,7 @@
 //! ```text
 //!     M_c c+ = L + X      M_c: the contact's block of G^-1,   X: its rows of G^-1 c_free
 //!     beta  = atan(M_nt / M_tt)       angle of the impulse that causes a purely tangential velocity change
-//!     gamma = atan2(X_n, X_t)         angle of what the contact takes over from the rest
+//!     gamma = atan2(X_n, X_t)         angle of the reversed impulse that would stop the contact
 //! ```
 //!
 //! All other contacts stick.

@@ -12,7 +12,7 @@ use crate::scalar::Ordered;
 pub struct FamiliesPass<'a, 'c> {
     pub pending: Vec<Pending>,
     pub collected: &'c Collected<'a>,
-    /// What the last attempted kind of numbers found.
+    /// The result of the last number type that was tried.
     pub found: FoundFamilies,
 }
 
@@ -33,7 +33,7 @@ impl FamiliesPass<'_, '_> {
         let mut known: Vec<(Vec<Mode>, Vec<T>)> = Vec::new();
         for pending in &self.pending {
             match self.family(pending, exact, &mut known, &mut found) {
-                Ok(Some(is_sharp)) => settled &= is_sharp,
+                Ok(Some(is_precise)) => settled &= is_precise,
                 open => {
                     settled &= open.is_ok();
                     found.open.push(pending.clone());
@@ -54,7 +54,7 @@ impl FamiliesPass<'_, '_> {
     ) -> Result<Option<bool>, Unsettled> {
         let scale = &Scale::of(exact);
         let Some((dimension, corners)) = Equations::of(exact, scale, &pending.modes).family()? else { return Ok(None) };
-        let (mut is_sharp, mut places, mut new) = (true, Vec::new(), Vec::new());
+        let (mut is_precise, mut places, mut new) = (true, Vec::new(), Vec::new());
         for velocity in corners {
             let modes = modes_of(&velocity, exact.laws())?;
             let mut place = None;
@@ -71,7 +71,7 @@ impl FamiliesPass<'_, '_> {
                 Corner::Isolated(place)
             } else {
                 let outcome = T::freeing(|| Equations::of(exact, scale, &modes).outcome_at(&velocity))?;
-                is_sharp &= outcome.numbers.are_sharp;
+                is_precise &= outcome.numbers.are_precise;
                 let own = self.pending.iter().find(|other| other.modes == modes).unwrap_or(pending);
                 Corner::OfFamily(own.number, outcome)
             };
@@ -82,6 +82,6 @@ impl FamiliesPass<'_, '_> {
             found.corners.push(corner);
         }
         found.families.push((pending.clone(), dimension, places));
-        Ok(Some(is_sharp))
+        Ok(Some(is_precise))
     }
 }

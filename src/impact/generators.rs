@@ -48,8 +48,8 @@ impl Generators {
         self.rays.iter().map(entry).collect()
     }
 
-    /// The index in lambda of number 0 or 1, `which`, of a contact with impulses. The inequalities of impulses are
-    /// functions of these two numbers; with a ray both mean its lambda.
+    /// The index in lambda of a contact's number `which` (0 or 1). The inequalities of impulses are functions of these
+    /// two numbers; for a contact with a ray both are its lambda.
     pub fn place(&self, contact: usize, which: usize) -> usize {
         let own = self.rays.iter().take_while(|(other, _)| *other < contact).count();
         let free = self.rays.get(own + 1).is_some_and(|(other, _)| *other == contact);

@@ -4,8 +4,8 @@
 //!     slack s = N / det A      N and det A are as smooth as the problem; s changes its sign at N = 0 and det A = 0
 //! ```
 //!
-//! A set of outcomes changes only where some N passes zero. The numbers are hints to search by. Their error bounds show
-//! which of them are nothing but rounding: contacts that are close together make it large, and its sign means nothing.
+//! A set of outcomes changes only where some N passes zero. The numbers only guide a search. Their error bounds show
+//! which of them are only rounding, whose sign has no meaning; contacts that are close together make it large.
 //!
 //! Cost: that of the enumeration, 4^n combinations of n contacts.
 

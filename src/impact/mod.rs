@@ -1,4 +1,4 @@
-//! Finds every outcome of a contact problem. This room does not depend on robots.
+//! Finds every outcome of a contact problem. This module does not depend on robots.
 //!
 //! Read the files in this order: `problem`, `enumerate` (the numbers of each combination), `slack` (its inequalities),
 //! and `analysis`, which uses them all.

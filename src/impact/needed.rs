@@ -19,7 +19,7 @@ use std::cmp::Ordering;
 
 /// The relative error of the least friction of several contacts: a tenth of the promised one.
 const KNOWN: f64 = 1e-11;
-/// If this friction does not hold the contacts, only infinite friction does.
+/// If this friction does not hold the contacts, infinite friction is taken to be necessary.
 const GREATEST: f64 = 1e24;
 /// The cap of slacks in linear programs.
 const ENOUGH: f64 = 1e3;
@@ -139,7 +139,7 @@ fn least_common<'a, T: Ordered + 'a>(
         }
         let by_halves = turn % 3 == 0 || at_high == 0.0;
         let zero = if by_halves { 0.5 * (low + high) } else { between(low, high, [at_low, at_high]) };
-        // The estimate is moved slightly past the zero, as seen from the nearer end, so that both ends close in.
+        // The estimate is moved slightly past the zero, away from the nearer end, so that both ends converge.
         let aside = if zero - low < high - zero { 0.4 * known } else { -0.4 * known };
         let friction = (zero + aside).clamp(low + 0.4 * known, high - 0.4 * known);
         match room(friction)? {

@@ -57,45 +57,44 @@ pub struct Outcome {
     pub impulse: Vec<Pair<f64>>,
     /// Contact velocities after the impact, [tangential, normal] per contact \[m/s\].
     pub velocity_after: Vec<Pair<f64>>,
-    /// Velocity of the base after the impact \[m/s, rad/s\]; only of a robot that is not bolted to the world.
+    /// Velocity of the base after the impact \[m/s, rad/s\]; absent without a floating base.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub base_velocity_after: Option<Named>,
-    /// Rates of the joints after the impact, braked ones included \[rad/s, m/s\]; only of a robot.
+    /// Rates of the joints after the impact, braked ones included \[rad/s, m/s\]; absent without a robot.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub joint_velocity_after: Option<Named>,
-    /// Impulse on point a of each loop, [x, z] in the world \[N s\]; the opposite acts on b. Only of a state with
-    /// loops.
+    /// Impulse on point a of each loop, [x, z] in the world \[N s\]; the opposite acts on b. Absent without loops.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub loop_impulse: Option<Vec<Vector>>,
-    /// Kinetic energy that the contacts took, -1/2 L.(c- + c+) \[J\]; negative if Newton's law with friction adds some.
-    /// Of forces the power that they take \[W\].
+    /// Kinetic energy that the contacts dissipate, -1/2 L.(c- + c+) \[J\]; negative if Newton's restitution with
+    /// friction adds energy. For forces the power that they dissipate \[W\].
     pub energy_loss: f64,
     /// False if other admissible impulses give the same velocity; `impulse` then has the least sum of squares.
     pub impulse_unique: bool,
-    /// Least and greatest of every entry of `impulse`, null if it has no bound; only if `impulse` is not unique.
+    /// Least and greatest value of every entry of `impulse`, null without a bound; present if `impulse` is not unique.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub impulse_range: Option<Vec<Pair<Range>>>,
-    /// |L_t| / L_n of each sticking contact that is pressed on the ground; null for others. If `impulse` is not unique,
-    /// it is the least friction that holds all contacts that share it, as those of one foot, or, if their frictions
-    /// differ, the least admissible ratio of each alone.
+    /// |L_t| / L_n of each sticking contact that is pressed on the ground; null for others. If `impulse` is not unique:
+    /// the least friction that holds all contacts that share the impulse, such as those of one foot, or, if their
+    /// frictions differ, the least admissible ratio of each contact.
     pub friction_needed: Vec<Option<f64>>,
     /// Sign of det A (paper, section 2); null if it is not defined, as on a border.
     pub index: Option<i8>,
     /// The smallest slack of the outcome's inequalities, free of units; null if there is no inequality.
     pub margin: Option<f64>,
-    /// What is exactly zero, and the lists of modes beyond; only on a border.
+    /// The impulse inequalities that are exactly zero, and the modes beyond; present on a border.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub border: Option<Border>,
-    /// True, and only then present, of a corner of a [`Family`].
+    /// Whether the outcome is a corner of a [`Family`]; absent if not.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub family: bool,
-    /// Every sign is shown by an error bound, and every number of this list is right to 1e-10 of its scale.
+    /// Whether error bounds show every sign, and every number of this outcome is right to 1e-10 of its scale.
     pub proven: bool,
-    /// The forces just after the impact, if asked for; of a robot.
+    /// The forces just after the impact, if requested; absent without a robot.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub next: Option<Next>,
-    /// False, and only then present, if no precision settled a sign, or the budget of work was spent before: the
-    /// combination is neither shown nor excluded.
+    /// False if the combination is neither shown nor excluded, because no precision settled a sign or the budget of
+    /// work was spent; absent if true.
     #[serde(default = "yes", skip_serializing_if = "Clone::clone")]
     pub decided: bool,
 }
@@ -106,27 +105,26 @@ pub struct Outcome {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Next {
-    /// The answer in one word, as of forces.
+    /// The verdict on the forces.
     pub verdict: Verdict,
-    /// Every sign is shown by an error bound, at the velocities as they are printed and with the outcome's modes.
+    /// Whether error bounds show every sign, for the velocities as printed and with the outcome's modes.
     pub proven: bool,
-    /// The modes of every set of forces, one per contact of the impact; null of one that has left the ground.
+    /// The modes of every set of forces, one per contact of the impact; null for a contact that has left the ground.
     pub modes: Vec<Vec<Option<Mode>>>,
 }
 
-/// Velocities of one list of modes that are all outcomes: a convex set that is bounded.
+/// A bounded convex set of velocities with the same modes, all of which are outcomes.
 ///
-/// It is open but for those of its faces on which only an impulse inequality is zero; velocities on its other faces
-/// have other modes.
+/// Faces on which only an impulse inequality is zero belong to the set. Velocities on its other faces have other modes.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Family {
     /// One mode per contact.
     pub modes: Vec<Mode>,
-    /// 1 of a segment, 2 of an area, and so on.
+    /// 1 for a segment, 2 for an area, and so on.
     pub dimension: usize,
-    /// The corners of its closure, by their place in `outcomes` from 0; each has the modes of its own velocity.
+    /// Indices into `outcomes` of the corners of its closure; each corner has the modes of its own velocity.
     pub corners: Vec<usize>,
 }
 
@@ -140,8 +138,8 @@ pub type Range = [Option<f64>; 2];
 pub struct Border {
     /// The impulse inequalities that are exactly zero.
     pub at_zero: Vec<AtZero>,
-    /// The lists of modes beyond, each different in one contact; where several inequalities are zero, so are
-    /// combinations.
+    /// The lists of modes beyond the border, each different in one contact. If several inequalities are zero,
+    /// combinations of these are neighbors, too.
     pub neighbours: Vec<Vec<Mode>>,
 }
 
@@ -151,7 +149,7 @@ pub struct Border {
 pub struct AtZero {
     /// The contact's name.
     pub contact: String,
-    /// What is zero there.
+    /// The inequality that is zero.
     #[cfg_attr(feature = "schema", schemars(with = "ZeroImpulse"))]
     pub inequality: Inequality,
 }
@@ -236,12 +234,12 @@ impl Rejection {
     }
 
     /// Marks the reason as provisional: more digits may find another one. A NaN margin is the mark.
-    pub(super) fn vague(self) -> Self {
+    pub(super) fn provisional(self) -> Self {
         Self { margin: Some(f64::NAN), ..self }
     }
 }
 
-/// How much of an undecided problem is open.
+/// The number of combinations that an undecided problem leaves open.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename = "Open")]
@@ -251,7 +249,7 @@ pub struct OpenCombinations {
     pub combinations: u64,
     /// How many of these are neither shown nor excluded. Up to 100 of them are listed, with `decided` false.
     pub undecided: u64,
-    /// Whether the budget of work ended: a greater one may decide more.
+    /// Whether the budget of work was spent: a greater one may decide more.
     pub beyond_budget: bool,
 }
 
@@ -285,16 +283,16 @@ impl RejectionReason {
     }
 }
 
-/// The paper's section 4 for each contact: the body as seen from it while all other contacts stick.
+/// beta, gamma and region of each contact while all others stick (paper, section 4).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "Explained"))]
 #[non_exhaustive]
 pub struct Explanation {
     /// Angle of the impulse that a purely tangential velocity change needs, atan(M_nt / M_tt) \[rad\].
     pub beta: Vec<f64>,
-    /// Angle of the impulse that the contact takes over from the rest, atan2(X_n, X_t) \[rad\].
+    /// Angle of the reversed impulse that would stop the contact, atan2(X_n, X_t) \[rad\].
     pub gamma: Vec<f64>,
-    /// What infinite friction does there.
+    /// The effect of infinite friction.
     pub region: Vec<ImpulseRegion>,
 }
 
@@ -360,14 +358,13 @@ pub struct Analysis {
     pub open: Option<OpenCombinations>,
     /// The families: combinations with more than one velocity, all of which are outcomes. `outcomes` has their corners.
     pub families: Vec<Family>,
-    /// The rejected combinations, if asked for. Of many contacts only those are listed that a search does not exclude.
+    /// The rejected combinations, if requested. For many contacts, only those that a search does not exclude.
     pub rejected: Vec<Rejection>,
-    /// The number of rejected combinations that were asked for but are not listed.
+    /// The number of rejected combinations that were requested but are not listed.
     pub unlisted: u64,
     /// The sum of the outcomes' indices; `None` if an outcome has no index.
     pub index_sum: Option<i32>,
-    /// The rank of the Delassus matrix; `None` if it was not asked for, or if no precision, within the budget, shows
-    /// it.
+    /// The rank of the Delassus matrix; `None` if it was not requested or if no precision within the budget shows it.
     pub rank: Option<usize>,
     /// The condition number of the Delassus matrix scaled to a unit diagonal; `None` if it is singular or not known.
     pub condition: Option<f64>,
@@ -375,7 +372,7 @@ pub struct Analysis {
     pub no_slip_consistent: Option<bool>,
     /// How many combinations each kind of numbers decided.
     pub effort: Effort,
-    /// The body as seen from each contact (paper, section 4), if asked for; `None` if the Delassus matrix is singular.
+    /// beta, gamma and region of each contact, if requested; `None` if the Delassus matrix is singular.
     pub explanation: Option<Explanation>,
 }
 

@@ -2,7 +2,7 @@
 
 use super::collected::{Collected, OutcomeLists, Pending};
 use super::combination::CombinationSolver;
-use super::digits::{Numbers, after, f64_serves};
+use super::digits::{Numbers, after, f64_has_digits};
 use super::enumerate::{Labels, Leaf, Visitor};
 use super::kernel::Kernel;
 use super::linear::Unsettled;
@@ -67,12 +67,12 @@ impl Visitor<Rounded> for F64Pass<'_, '_> {
             let motion = |memory| motion(leaf, after, memory);
             let pending = || Pending { number, modes: modes.to_vec() };
             if reading.sign == Sign::Negative {
-                let is_vague = reading.is_vague();
+                let is_provisional = reading.is_provisional();
                 let rejection = || Rejection::read(modes, reading, || motion(Motion::default()));
-                return match is_vague {
+                return match is_provisional {
                     true => {
-                        let blunt = Some(Solved::Rejected(rejection()));
-                        undecided.push(Undecided { pending: pending(), blunt });
+                        let imprecise = Some(Solved::Rejected(rejection()));
+                        undecided.push(Undecided { pending: pending(), imprecise });
                     }
                     false => collected.reject(number, modes, rejection),
                 };
@@ -80,7 +80,7 @@ impl Visitor<Rounded> for F64Pass<'_, '_> {
             if reading.sign == Sign::Positive {
                 let OutcomeLists { modes: mut own_modes, motion: memory, friction_needed } = collected.lists();
                 let motion = motion(memory);
-                if f64_serves(leaf, modes, (problem, scale), (&motion, reading.margin)) {
+                if f64_has_digits(leaf, modes, (problem, scale), (&motion, reading.margin)) {
                     let sign = |sign: i8, pivot: &Rounded| if pivot.value < 0.0 { -sign } else { sign };
                     let index = leaf.pivots.iter().fold(1, sign);
                     modes.clone_into(&mut own_modes);
@@ -88,7 +88,7 @@ impl Visitor<Rounded> for F64Pass<'_, '_> {
                     return collected.push(number, reading.solution(own_modes, index, numbers));
                 }
             }
-            undecided.push(Undecided { pending: pending(), blunt: None });
+            undecided.push(Undecided { pending: pending(), imprecise: None });
         });
     }
 }
@@ -102,7 +102,7 @@ fn is_free(modes: &[Mode], laws: &[Law]) -> bool {
 pub struct Undecided {
     pub pending: Pending,
     /// The solution so far, if only its numbers or the reason of a rejection lack digits.
-    blunt: Option<Solved>,
+    imprecise: Option<Solved>,
 }
 
 /// The pass over the combinations that need more digits than f64 has.
@@ -120,16 +120,16 @@ pub struct UndecidedPass<'a, 'c> {
 }
 
 impl UndecidedPass<'_, '_> {
-    /// Makes the rejected combinations the undecided ones, to find their reasons; returns false if there are none.
-    pub fn turns_to_reasons(&mut self) -> bool {
+    /// Starts the search for the reasons of the rejected combinations; returns false if there are none.
+    pub fn begin_reasons(&mut self) -> bool {
         (self.undecided, self.is_decided) = (std::mem::take(&mut self.rejected), true);
         !self.undecided.is_empty()
     }
 
     /// Adds the combinations that no precision finished: those whose numbers lack digits, and those with open signs.
     pub fn finish(&mut self) {
-        for Undecided { pending, blunt } in std::mem::take(&mut self.undecided) {
-            if let Some(solved) = blunt {
+        for Undecided { pending, imprecise } in std::mem::take(&mut self.undecided) {
+            if let Some(solved) = imprecise {
                 self.collected.add(&pending, solved);
             } else if let Some(because) = self.excludes(&pending) {
                 let rejection = || Rejection::of(&pending.modes, because);
@@ -159,7 +159,7 @@ impl PrecisionTask for UndecidedPass<'_, '_> {
         if !self.is_decided {
             // Combinations that are rejected, or excluded by the kernel, are solved later, only to find the reason.
             let is_no = |own: &Undecided| {
-                matches!(own.blunt, Some(Solved::Rejected(_))) || self.excludes(&own.pending).is_some()
+                matches!(own.imprecise, Some(Solved::Rejected(_))) || self.excludes(&own.pending).is_some()
             };
             let (no, perhaps): (Vec<_>, _) = open.into_iter().partition(is_no);
             self.rejected.extend(no.into_iter().filter(|own| rejections.contain(&own.pending.modes)));
@@ -168,13 +168,13 @@ impl PrecisionTask for UndecidedPass<'_, '_> {
         let is_last = precision == Precision::Interval;
         let (rounds, most) = if is_last { (ROUNDS, PRECISE_COMBINATIONS) } else { (1, usize::MAX) };
         let mut solver = CombinationSolver::new(exact, scale);
-        for (place, Undecided { pending, blunt }) in open.into_iter().enumerate() {
+        for (place, Undecided { pending, imprecise }) in open.into_iter().enumerate() {
             let stops = place >= most || is_spent_after(rounds);
             let solved = if stops { Err(Unsettled) } else { solver.solve(&pending.modes) };
             match solved {
-                Ok(solved) if solved.is_vague() && rejections.contain(&pending.modes) => {
+                Ok(solved) if solved.is_provisional() && rejections.contain(&pending.modes) => {
                     let left = if self.is_decided { &mut self.undecided } else { &mut self.rejected };
-                    left.push(Undecided { pending, blunt: Some(solved) });
+                    left.push(Undecided { pending, imprecise: Some(solved) });
                 }
                 // The velocity is that of other combinations because contacts are dependent, not because of a border.
                 Ok(Solved::Rejected(Rejection { because: RejectionReason::OnBorder, .. }))
@@ -183,9 +183,9 @@ impl PrecisionTask for UndecidedPass<'_, '_> {
                     let twin = Rejection::of(&pending.modes, RejectionReason::RedundantTwin);
                     self.collected.add(&pending, Solved::Rejected(twin));
                 }
-                Ok(solved) if solved.is_sharp() => self.collected.add(&pending, solved),
-                Ok(solved) => self.undecided.push(Undecided { pending, blunt: Some(solved) }),
-                Err(Unsettled) => self.undecided.push(Undecided { pending, blunt }),
+                Ok(solved) if solved.is_precise() => self.collected.add(&pending, solved),
+                Ok(solved) => self.undecided.push(Undecided { pending, imprecise: Some(solved) }),
+                Err(Unsettled) => self.undecided.push(Undecided { pending, imprecise }),
             }
         }
         if !self.is_decided {

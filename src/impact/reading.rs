@@ -30,7 +30,7 @@ impl CombinationReading {
     }
 
     /// Whether the combination is rejected because it lies on a border, although it may also violate an inequality.
-    pub fn is_vague(&self) -> bool {
+    pub fn is_provisional(&self) -> bool {
         self.is_open && self.because == RejectionReason::OnBorder
     }
 }
@@ -39,10 +39,10 @@ impl Rejection {
     /// The rejection of a combination whose reading is negative; no `motion` solves contradictory equations.
     pub(super) fn read(modes: &[Mode], reading: CombinationReading, motion: impl FnOnce() -> Motion) -> Self {
         let solved = !matches!(reading.because, RejectionReason::NothingHolds { .. });
-        let is_vague = reading.is_vague();
+        let is_provisional = reading.is_provisional();
         let rejection =
             Self { margin: reading.margin, motion: solved.then(motion), ..Self::of(modes, reading.because) };
-        if is_vague { rejection.vague() } else { rejection }
+        if is_provisional { rejection.provisional() } else { rejection }
     }
 }
 

@@ -36,7 +36,7 @@ use std::cmp::Ordering;
 /// The first cap of the least slack, free of units: it keeps the impulses small if they are unbounded.
 const CAP: f64 = 1e3;
 
-/// A least slack that reaches this has unbounded impulses.
+/// If the least slack reaches this, the impulses are unbounded.
 const UNBOUNDED: f64 = 1e12;
 
 /// Violated inequalities within this relative distance of the worst one count as equal when one of them is named.
@@ -146,7 +146,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
             Ok((inside, .., Ordering::Less)) => return Ok(Solved::Rejected(self.rejected(&space, &inside))),
             Ok(_) if is_of_others => return Ok(Solved::Rejected(twin)),
             // The combination may also violate an inequality.
-            Err(_) if is_of_others => return Ok(Solved::Rejected(twin.vague())),
+            Err(_) if is_of_others => return Ok(Solved::Rejected(twin.provisional())),
             found => found?,
         };
         if space.is_one_velocity()? {
@@ -387,14 +387,14 @@ impl<'a, T: Ordered> Equations<'a, T> {
         let margin = (!inequalities.is_empty() && bounded).then_some(least);
         let velocity: Vec<T> = velocity.iter().map(|row| row.constant).collect();
         let mut numbers = Numbers::of((problem, scale), modes, impulse.as_chunks().0, velocity.as_chunks().0);
-        numbers.are_sharp &= margin.is_none_or(|margin| is_known(margin, 1.0, scale.digits()));
+        numbers.are_precise &= margin.is_none_or(|margin| is_known(margin, 1.0, scale.digits()));
         if !unique {
             let shortest = impulse.as_chunks().0;
             let needed = friction_needed(modes, problem.laws(), shortest, entries.as_chunks().0, &shifted)?;
             numbers.take_friction(&needed, problem.laws(), scale.digits());
         }
         let range = |(&ends, &own): (&[Option<T>; 2], &T)| {
-            numbers.are_sharp &= is_known_range(ends, own, scale.digits());
+            numbers.are_precise &= is_known_range(ends, own, scale.digits());
             ends.map(|end| end.map(T::to_f64))
         };
         let ranges: Option<Vec<Range>> = (!unique).then(|| ranges.iter().zip(&impulse).map(range).collect());

@@ -73,7 +73,7 @@ impl Scale {
             self.speed = bounces.fold(0.0, f64::max);
         }
         if self.speed == 0.0 {
-            // Speeds that underflow in the division do not mean rest; so tiny a scale leaves them to other numbers.
+            // Speeds that underflow in the division are not zero; this tiny scale leaves their signs undecided in f64.
             let at_rest = problem.velocity_free().iter().flatten().all(|&c| c == 0.0);
             self.speed = if at_rest { 1.0 } else { f64::MIN_POSITIVE };
         }
@@ -90,7 +90,7 @@ impl Scale {
         self.likely_part = likely / (errors.delassus + self.noise + ROUNDINGS);
     }
 
-    /// The magnitudes of a problem in numbers that know their errors.
+    /// The magnitudes of a problem in numbers with error bounds.
     pub fn of<T: Ordered>(problem: &ContactProblem<T>) -> Self {
         let mut scale = Self::default();
         scale.measure(&problem.map(T::to_f64), Errors::NONE);

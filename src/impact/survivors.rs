@@ -1,8 +1,8 @@
 //! A search tree over the modes of many contacts, which finds the combinations that are not excluded.
 //!
 //! The modes of the contacts are decided one after the other. If the [`Relaxation`] shows that the modes chosen so far
-//! are impossible, all combinations that begin with them are excluded. If its error bound does not show it, numbers
-//! that know their signs may, and otherwise the search continues below.
+//! are impossible, all combinations that begin with them are excluded. If its error bound does not show this, numbers
+//! with more digits may. Otherwise the search continues below.
 
 use super::collected::ListedRejections;
 use super::kernel::Kernel;
@@ -65,7 +65,7 @@ impl<'a> Search<'a> {
         search
     }
 
-    /// Searches below the modes that are decided; `shown` says what is known of modes that f64 finds impossible.
+    /// Searches below the modes that are decided. `shown` checks modes that f64 finds impossible.
     fn descend(&mut self, shown: &mut impl FnMut(&mut Relaxation, &[Mode], Lack) -> Finding) {
         let contact = self.modes.len();
         if contact == self.laws.len() {
@@ -99,7 +99,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// What is known of the modes of the first contacts.
+/// What is known about the modes of the first contacts.
 enum Finding {
     Possible,
     Impossible,

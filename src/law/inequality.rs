@@ -31,7 +31,7 @@ pub enum Inequality {
     TangentialAcceleration,
     /// With infinite friction: f_t acts against the slide, in sustained contact.
     TangentialForce,
-    /// f is finite: in sustained contact it may grow without bound, and turn its sign there.
+    /// f is finite: in sustained contact it may grow without bound and change its sign at the pole.
     UnboundedForce,
 }
 
@@ -61,7 +61,7 @@ impl Inequality {
         usize::from(!matches!(self.of_forces(), Self::TangentialAcceleration | Self::TangentialForce))
     }
 
-    /// The meaning of its violation, as a clause about the contact named `name`.
+    /// Describes its violation, as a clause about the contact named `name`.
     pub fn violated_by(self, name: &str) -> String {
         match self {
             Self::NormalVelocity => format!("{name} moves into the ground"),
@@ -75,7 +75,7 @@ impl Inequality {
         }
     }
 
-    /// What happens on its border, as a clause about the contact named `name`.
+    /// Describes its border, as a clause about the contact named `name`.
     pub fn reached_by(self, name: &str) -> String {
         let zero = |what: &str| format!("the {what} of {name} reaches zero");
         match self {
@@ -92,7 +92,7 @@ impl Inequality {
         }
     }
 
-    /// The meaning of its violation, without naming a contact.
+    /// Describes its violation, without naming a contact.
     pub fn violation(self) -> &'static str {
         match self {
             Self::NormalVelocity => "a contact would move into the ground",

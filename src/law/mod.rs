@@ -7,7 +7,7 @@
 //!
 //! The conditions on velocities are those of [`Mode`], with Newton's restitution in Moreau's form: xi_n = c_n+ + e
 //! min(c_n-, 0). The conditions on impulses depend on the law. All of a law is in [`Law`]: code that enumerates, bounds
-//! or reads combinations asks it and does not match on modes or friction itself.
+//! or checks combinations calls it, and does not match on modes or friction itself.
 //!
 //! In sustained contact, the same conditions hold for contacts at rest, with forces in place of impulses and
 //! accelerations in place of velocities. A contact that already slides has a given direction, which also determines the

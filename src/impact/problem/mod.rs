@@ -45,7 +45,7 @@ pub struct ContactProblem<T = f64> {
     origin: Origin,
 }
 
-/// Where the numbers of a problem come from if no other [`Source`] stands behind it.
+/// The origin of the numbers of a problem that has no other [`Source`].
 #[derive(Debug, Clone, Default, PartialEq)]
 enum Origin {
     #[default]
@@ -81,7 +81,7 @@ impl<T: Real> ContactProblem<T> {
         Self { laws: vec![law; self.contacts()], ..self.clone() }
     }
 
-    /// Contact velocities if the ground gave no impulse, [tangential, normal] per contact \[m/s\].
+    /// Contact velocities without contact impulses, [tangential, normal] per contact \[m/s\].
     pub fn velocity_free(&self) -> &[Pair<T>] {
         &self.velocity_free
     }

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! "Balls" and all later numbers also carry a residue that shows whether a number is exactly zero (see
-//! [`Residue`](crate::scalar::Residue)). Plain balls have none; they cost less than half and serve where no zeros are
+//! [`Residue`](crate::scalar::Residue)). Plain balls have none. They cost less than half, and are used if no zeros are
 //! expected. Thus borders and dependent contacts are recognized, and enough digits show the sign of every other number.
 
 use super::{ContactProblem, Origin};
@@ -33,7 +33,7 @@ pub trait Source {
         None
     }
 
-    /// Whether the numbers are exactly those that the user asked about, so that signs shown of them are proven.
+    /// Whether the numbers are exactly the user's, so that their signs count as proven.
     fn is_exact(&self) -> bool {
         true
     }
@@ -98,7 +98,7 @@ impl<'a> Remembered<'a> {
     }
 }
 
-/// A kind of numbers on the ladder of increasing precision.
+/// A number type in the order of increasing precision.
 pub trait Rung: Ordered + Trigonometry {
     /// The problem of a source in numbers of this kind.
     fn problem(of: &Remembered<'_>) -> ContactProblem<Self>;

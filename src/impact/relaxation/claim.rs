@@ -1,4 +1,4 @@
-//! Checks claims that f64 makes, in numbers that know their signs.
+//! Checks claims of f64 in numbers with error bounds.
 
 use super::dictionary::Lack;
 use super::ranges::{Range, Ranges, Ray};

@@ -1,4 +1,4 @@
-//! The dual simplex method in f64, which only searches: its results are shown elsewhere.
+//! The dual simplex method in f64. It only searches; other modules prove its results.
 
 use super::ranges::Ranges;
 use std::cmp::Ordering;
@@ -51,7 +51,7 @@ impl Dictionary {
         }
     }
 
-    /// Pivots until all variables are in their ranges. Returns one that cannot get there; `None` also if it gives up.
+    /// Pivots until all variables are in their ranges. Returns one that cannot; `None` also if it gives up.
     pub fn impossible(&mut self) -> Option<Lack> {
         let width = self.width;
         for _ in 0..PIVOTS * self.basic.len() {

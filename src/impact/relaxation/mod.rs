@@ -14,8 +14,8 @@
 //!     y . xi + sigma . lambda = y . xi_free < 0,   sigma = -y G rays,   although no term on the left is negative
 //! ```
 //!
-//! No f64 result is trusted: a [`Claim`] is shown by an error bound ([`Relaxation::shows`]), or in numbers that know
-//! their signs ([`Claim::shown`]).
+//! No f64 result is trusted: a [`Claim`] is shown by an error bound ([`Relaxation::shows`]), or in numbers with more
+//! digits ([`Claim::shown`]).
 
 mod ranges;
 mod dictionary;
@@ -218,7 +218,7 @@ impl Relaxation {
         }
     }
 
-    /// Learns what the kernel's relations exclude, as nogoods with y = z and y = -z.
+    /// Adds what the kernel's relations exclude, as nogoods with y = z and y = -z.
     pub fn learn_from(&mut self, kernel: &Kernel) {
         for Relation { terms, constant } in &kernel.relations {
             for (constant, turned) in [(*constant, false), (constant.reverse(), true)] {
