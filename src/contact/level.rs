@@ -19,7 +19,7 @@ use crate::planar::Vector;
 /// bounds, [`RoundingBounds`](crate::dynamics::RoundingBounds), allow at least 48 epsilons for each point.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// Largest number of bodies in a row that are taken for one: on longer paths the bounds count too few roundings.
+/// Largest number of bodies in a row that count as one: on longer paths the bounds count too few roundings.
 const MOST_BODIES: usize = 8;
 
 /// The position of a contact that is level with another contact of its rigid part.

@@ -13,12 +13,12 @@
 use super::Contact;
 use crate::planar::Vector;
 
-/// Contacts of one body that were left out, and the contacts that act for them.
+/// Contacts of one body that were left out, and the contacts into which they were merged.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Merged {
     /// Number of contacts that are left out.
     pub inner: usize,
-    /// Indices after merging of the contacts that act for them: the rearmost and the foremost, or one if all coincide.
+    /// Indices after merging of the remaining contacts: the rearmost and the foremost, or one if all coincide.
     pub outer: Vec<usize>,
     /// Largest distance, along the normal, of the inner contacts from the line between the outer ones \[m\]; 0 if it is
     /// only rounding.

@@ -99,7 +99,7 @@ impl Footing<'_> {
                     of_sides.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), z| (least.min(z), most.max(z)));
                 let near =
                     |a: &&Vector<f64>, b: &&Vector<f64>| (a.x - corner.x).abs().total_cmp(&(b.x - corner.x).abs());
-                // A ground corner beside all sides may still be within the rim of a foot's corner.
+                // A ground corner past all sides may still be within the rim of a foot's corner.
                 let beside = || outline.corners.iter().min_by(near).map_or(0.0, |nearest| nearest.z);
                 corner.z - if least <= most { 0.5 * (least + most) } else { beside() }
             })

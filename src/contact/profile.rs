@@ -223,7 +223,7 @@ fn on_segment(terrain: &Terrain, segment: usize, outline: &Outline, corner: usiz
         let beside = outline.beside_corner(corner);
         beside.is_none_or(|beside| beside.into_iter().all(|neighbor| face.clears(center, neighbor, slack, true)))
     };
-    // Behind both segments at a convex corner, the contact belongs to the segment with the shorter way out.
+    // If the point is behind both segments at a convex corner, the contact belongs to the segment that is nearer.
     let height = face.height(center);
     let nearer = |other: usize, convex: bool| {
         let beside = terrain.face(other);

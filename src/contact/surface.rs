@@ -91,7 +91,7 @@ impl Surface {
             }
         };
         touching.map_err(|depth| {
-            // The digits that the remedy leaves out are within the tolerance.
+            // The remedy is rounded by less than the tolerance.
             let enough = shortest_within(depth * along, 0.5 * close.tolerance * along);
             let remedy =
                 format!("{how} by {enough:?} m, correct the pose, or accept it by a greater `contact_tolerance`");

@@ -101,7 +101,7 @@ pub fn add_articulated_impulse<T: Real>(
 }
 
 /// Replaces the joint forces tau in `column` (nv, columns of the plan; N, N m) by the accelerations M^-1 (tau - b).
-/// Requires the results of [`demands`](super::demands), and uses them up: b is never formed.
+/// Requires the results of [`demands`](super::demands), which it overwrites: b is never formed.
 pub fn articulated_acceleration<T: Real>(
     plan: &Plan<T>,
     workspace: &mut Workspace<T>,

@@ -1,4 +1,4 @@
-//! Error bounds of G computed by articulated bodies, from the momentum that its motions leave unbalanced.
+//! Error bounds of G computed by articulated bodies, from the residual momentum of its motions.
 //!
 //! For a unit impulse along row r, let u_r be the velocities of all bodies b, with |u|^2 = sum of u_b . I_b u_b, which
 //! is twice the kinetic energy. Then G_rs = J_s u_r, and |u_r|^2 = G_rr. Let w be any motion that the joints allow, and

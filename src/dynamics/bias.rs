@@ -57,7 +57,7 @@ pub fn demands<T: Real>(plan: &Plan<T>, velocity: &[T], gravity: T, steady: &[bo
     }
 }
 
-/// Computes b (nv, columns of the plan; N, N m). It calls [`demands`] with the same arguments.
+/// Computes b (nv, columns of the plan; N, N m). Calls [`demands`] with the same arguments.
 pub fn bias<T: Real>(plan: &Plan<T>, velocity: &[T], gravity: T, steady: &[bool], workspace: &mut Workspace<T>) {
     demands(plan, velocity, gravity, steady, workspace);
     let Workspace { arm, direction, demand, bias, .. } = workspace;

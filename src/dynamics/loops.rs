@@ -266,7 +266,7 @@ pub fn close<T: Real>(
     // The velocity before the impact may have any rate at a kept coordinate. Only there a foot is kept at rest.
     let used = if is_velocity { all } else { kept.len() + rows.len() };
     if used == 0 {
-        // Nothing is to be closed. A robot without loops may have no factor.
+        // Without constraints, M may have no factor.
         return Vec::new();
     }
     let own = |i: usize| match (kept.get(i), i.checked_sub(kept.len()).and_then(|row| rows.get(row))) {

@@ -146,7 +146,7 @@ impl Sign {
     }
 }
 
-/// A number that knows its own sign, or knows that its precision is not enough to tell.
+/// A number with an error bound, whose sign is either proven or undecided.
 pub trait Ordered: Real {
     /// The sign of the number; never guessed.
     fn sign(self) -> Sign;
