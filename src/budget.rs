@@ -1,12 +1,11 @@
 //! A budget of time for computing an answer.
 //!
 //! ```text
-//!     Budget::within --work--> loops that have no fixed bound ask is_spent --yes--> unfinished parts stay undecided
+//!     Budget::within --work--> loops without a fixed bound call is_spent --yes--> unfinished parts stay undecided
 //! ```
 //!
 //! This crate reads no clock; the caller supplies one with the budget. A budget covers everything that its thread does
-//! within it, at any depth of calls: a linear program inside a proof stops as early as the proof itself. A sign that is
-//! not computed in time counts as unknown, which is never wrong.
+//! within it, at any depth of calls. A sign that is not computed in time counts as unknown.
 
 use std::cell::{Cell, RefCell};
 use std::sync::Arc;

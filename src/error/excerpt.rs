@@ -1,7 +1,7 @@
 //! The line that a refusal is about, with the place marked. A long line is cut to what is near the place.
 
 use crate::error::Location;
-use crate::error::visible::is_obeyed;
+use crate::error::visible::controls_terminal;
 use std::ops::Range;
 
 /// The greatest length of a line that is shown whole \[bytes\].
@@ -28,8 +28,8 @@ pub struct Excerpt {
 
 impl Excerpt {
     /// Returns the line of `text` that contains `place`; `text` begins on line `first`. Bytes that are not UTF-8 and
-    /// characters that a terminal would obey are each replaced by one character. `None` if there is no such line, or if
-    /// it is empty.
+    /// characters that a terminal would interpret are each replaced by one character. `None` if there is no such line,
+    /// or if it is empty.
     pub fn around(text: &[u8], first: usize, place: Location) -> Option<Self> {
         let line = text.split(|&byte| byte == b'\n').nth(place.line.checked_sub(first)?)?;
         let line = line.strip_suffix(b"\r").unwrap_or(line);
@@ -40,7 +40,7 @@ impl Excerpt {
         let ahead = place.column.saturating_sub(1);
         let kept = if line.len() <= WHOLE { 0..line.len() } else { near(line, ahead) };
         let left = line[..kept.start].iter().filter(|&&byte| begins(byte)).count();
-        let shown = |letter: char| if letter != '\t' && is_obeyed(letter) { '\u{fffd}' } else { letter };
+        let shown = |letter: char| if letter != '\t' && controls_terminal(letter) { '\u{fffd}' } else { letter };
         let middle: String = String::from_utf8_lossy(&line[kept.clone()]).chars().map(shown).collect();
         let (before, after) = (if kept.start > 0 { CUT } else { "" }, if kept.end < line.len() { CUT } else { "" });
         let marked = token(&middle, ahead.saturating_sub(left));

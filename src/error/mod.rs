@@ -1,7 +1,7 @@
 //! Errors: what was refused, where, and the remedy.
 //!
-//! Physical results are values, and only refusals are errors: "no outcome" and "on the border" are data, and an
-//! [`Error`] always means that an input was not accepted. It names its place and, where one is known, the remedy.
+//! Physical results such as "no outcome" and "on the border" are values. An [`Error`] always means that an input was
+//! not accepted. It names the place and, if one is known, the remedy.
 
 mod visible;
 pub mod excerpt;
@@ -220,7 +220,7 @@ impl From<Reason> for Error {
     }
 }
 
-/// The greatest length of names that are compared \[bytes\], because comparison takes the product of their lengths.
+/// The greatest length of names that are compared \[bytes\], because the cost is the product of their lengths.
 const LONGEST_NAME: usize = 200;
 
 /// The greatest number of known names that are listed where none is near.
@@ -268,7 +268,7 @@ pub(crate) fn shortest_within(value: f64, tolerance: f64) -> f64 {
     (0..17).filter_map(with_digits).find(|short: &f64| (short - value).abs() <= tolerance).unwrap_or(value)
 }
 
-/// Formats a number as 0.5 if that has at most 18 characters or is not the longer form, else as 1e-300.
+/// Formats a number without an exponent if that is shorter or has at most 18 characters, else as 1e-300.
 fn brief(value: f64) -> String {
     let (plain, scientific) = (value.to_string(), format!("{value:e}"));
     if plain.len() <= scientific.len().max(18) { plain } else { scientific }

@@ -1,23 +1,23 @@
-//! Makes names, ids and texts of files safe to show to people: what a terminal would obey or hide becomes visible.
+//! Makes texts from files safe to print: characters that a terminal would interpret or hide become visible.
 
 use std::borrow::Cow;
 
 /// Returns the text with every control character (C0, DEL, C1), line break and control of the writing direction as an
 /// escape, as in `\n` and `\u{1b}`. Every message, note and text for people passes text from files through it.
 pub fn visible(text: &str) -> Cow<'_, str> {
-    if !text.chars().any(is_obeyed) {
+    if !text.chars().any(controls_terminal) {
         return Cow::Borrowed(text);
     }
     let escaped = |letter: char| match letter {
         '\n' | '\r' | '\t' => letter.escape_default().collect::<String>(),
-        letter if is_obeyed(letter) => letter.escape_unicode().collect(),
+        letter if controls_terminal(letter) => letter.escape_unicode().collect(),
         letter => letter.to_string(),
     };
     Cow::Owned(text.chars().map(escaped).collect())
 }
 
-/// Returns whether a terminal acts on the character instead of showing it.
-pub(super) fn is_obeyed(letter: char) -> bool {
+/// Returns whether a terminal interprets the character instead of showing it.
+pub(super) fn controls_terminal(letter: char) -> bool {
     let turns_direction = matches!(
         letter,
         '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}'

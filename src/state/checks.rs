@@ -1,4 +1,4 @@
-//! What is refused of a state and of options, however they were made; `read` adds line and column.
+//! Checks of states and options, whether they come from text or from code; `read` adds line and column.
 
 use super::{
     AppliedImpulse, ByLink, Ground, LinkPoint, NamedContact, Scene, SpringEnd, State, Uncertainty, check_length,
@@ -148,7 +148,7 @@ pub(crate) fn placed_twice() -> Error {
     Error::new(reason).hint("leave out either the stance or \"place\"")
 }
 
-/// The error for a robot without a floating base, which cannot be what it is asked to be.
+/// The error for a request that a robot without a floating base cannot fulfill; `what` names it.
 pub(crate) fn bolted(what: &str) -> Error {
     let reason = Reason::Inconsistent(format!("the robot is bolted to the world, {what}"));
     Error::new(reason).hint("leave it out, or give `base: floating`")

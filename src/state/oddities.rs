@@ -13,7 +13,7 @@ const ROUNDING: f64 = 1e-6;
 /// Greater speeds get a note: no legged robot moves faster \[m/s\], and few parts rotate faster \[rad/s\].
 const FASTEST: f64 = 100.0;
 
-/// A coefficient of friction between these is none of a foot: in percent or degrees. Greater ones stand for infinite.
+/// A coefficient of friction between these is probably in percent or degrees. Greater ones mean infinite.
 const ROUGH: [f64; 2] = [10.0, 100.0];
 
 /// A slope beyond this was probably meant in degrees \[rad\].
@@ -103,8 +103,8 @@ impl State {
     }
 
     /// Finds the pitch and the joints without limits whose angle exceeds a turn, or as a whole number half a turn, as
-    /// degrees do: name and angle \[rad\]. Wheels, which carry no other joint, do turn so far: for them only whole
-    /// numbers count, as in degrees by hand.
+    /// degrees do: name and angle \[rad\]. Wheels, which carry no other joint, may turn that far: for them only whole
+    /// numbers count.
     fn like_degrees<'r>(&self, robot: &'r Robot) -> impl Iterator<Item = (&'r str, f64)> {
         let base = robot.base_dofs();
         let is_free_angle = move |at: usize| match at.checked_sub(base) {
