@@ -1,11 +1,11 @@
 //! Decides how the root is attached, after links on fixed and frozen joints are merged.
 //!
 //! ```text
-//!     root still massless before a complete chain of x, z and pitch joints, or a planar or floating joint
-//!                                      -> this is the floating base itself: the robot begins behind it
-//!     root still massless before a single joint or an incomplete chain (a rail), or else named `world`
+//!     root massless, followed by a complete chain of x, z and pitch joints, or by a planar or floating joint
+//!                                      -> this chain or joint is the floating base; the robot begins after it
+//!     root massless, followed by a single joint or an incomplete chain (a rail), or else named `world`
 //!                                      -> fixed to the world
-//!     root with mass, or massless before several joints
+//!     root with mass, or massless and followed by several joints
 //!                                      -> floats
 //! ```
 
@@ -14,7 +14,7 @@ use super::role::Role;
 use super::{Axis, Base, FreezeReason};
 use crate::description::{Description, UrdfJoint};
 
-/// A link with at most this fraction of the robot's mass may have a mass only because some programs require one.
+/// A link with at most this fraction of the robot's mass may be massless in reality: some programs require a mass.
 const LIGHT: f64 = 1e-2;
 
 /// The decision on how the root is attached.
@@ -30,7 +30,8 @@ pub(super) struct Judgment {
     pub(super) caution: Option<String>,
 }
 
-/// Decides on the base, unless `asked` gives it. Planar and floating joints that are not the base become frozen.
+/// Decides on the base, unless the user `asked` for one. Planar and floating joints that are not the base become
+/// frozen.
 pub(super) fn judge(description: &Description, outward: &[usize], roles: &mut [Role], asked: Option<Base>) -> Judgment {
     let root = description.root;
     let welded = Welded::new(description, outward, roles);

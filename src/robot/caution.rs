@@ -16,9 +16,9 @@ use std::f64::consts::TAU;
 
 /// An axis that is off the normal by at most this angle \[rad\] may have been meant to be parallel to it.
 const NEARLY: f64 = 0.35;
-/// An axis that is off by at most this angle is so because the file has few digits \[rad\].
+/// An axis that is off by at most this angle was rounded in the file \[rad\].
 const SLIGHTLY: f64 = 0.02;
-/// No part of a legged robot is longer than this \[m\].
+/// Upper bound on the length of any part of a legged robot \[m\].
 pub(crate) const LONGEST: f64 = 10.0;
 /// Mass of a steel ball with a radius of 1 m \[kg\]: an upper bound.
 const DENSEST: f64 = 33_000.0;
@@ -29,15 +29,15 @@ const WIDEST: f64 = 2.0;
 const SLIGHT: f64 = 1e-3;
 /// A moment below this fraction of the link's largest moment is a rounding error of rotations.
 const ROUNDED: f64 = 1e-9;
-/// A link of a planar model with a smaller radius of gyration is a point \[m\].
+/// A link of a planar model with a smaller radius of gyration counts as a point \[m\].
 const POINT: f64 = 1e-4;
-/// No material has a higher density \[kg/m^3\].
+/// Upper bound on the density of materials \[kg/m^3\].
 const HEAVIEST: f64 = 23_000.0;
-/// The geometry of a mesh is at least this large \[m\].
+/// Lower bound on the size of a mesh \[m\].
 const SMALLEST: f64 = 1e-3;
 /// Limits count as containing zero if they miss it by at most this \[rad or m\].
 const AT_ZERO: f64 = 0.02;
-/// Number of hinges that are tried as the one that could align an axis.
+/// Largest number of hinges for which it is checked whether holding them aligns an axis.
 const TRIED: usize = 3;
 /// Largest number of joints or links that a caution names.
 const NAMED: usize = 3;
@@ -492,7 +492,7 @@ fn remedy(seen: &Seen, joint: usize, stays: &[bool]) -> Remedy {
         let limits = description.joints[hinge].limits;
         limits.is_none_or(|[lower, upper]| (lower..=upper).contains(&angle))
     });
-    if let Some((hinge, angle)) = turned.take(TRIED).find(|&turn| serves_all(seen, turn, stays)) {
+    if let Some((hinge, angle)) = turned.take(TRIED).find(|&turn| aligns_all(seen, turn, stays)) {
         return ("hold", hinge, format!("`hold: {}={angle:.6}`", description.joints[hinge].name));
     }
     let in_line = |axes: &Matrix| {
@@ -538,7 +538,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 /// Returns whether this rotation of a hinge aligns all joints beyond it that `stays` marks, up to the file's digits.
-fn serves_all(seen: &Seen, (hinge, angle): (usize, f64), stays: &[bool]) -> bool {
+fn aligns_all(seen: &Seen, (hinge, angle): (usize, f64), stays: &[bool]) -> bool {
     let Seen { description, pose, .. } = seen;
     let turned = turn(pose.axes[hinge], angle);
     description.outward(description.joints[hinge].child).into_iter().filter(|&joint| stays[joint]).all(|joint| {

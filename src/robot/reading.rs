@@ -38,7 +38,7 @@ pub enum PlaneReason {
     /// No revolute or continuous joint on the paths to the lowest links rotates in x-z or y-z, and y-z keeps more of
     /// all of them than x-z.
     Most,
-    /// It is the usual sagittal plane of URDF, and the axes do not suggest another.
+    /// It is the usual sagittal plane (x-z), and the axes do not suggest another.
     #[default]
     Usual,
 }
@@ -52,7 +52,7 @@ pub struct FrozenJoint {
     pub reason: FreezeReason,
     /// The body that the joint's child is welded into. For a joint of the base, the robot's root link.
     pub body: String,
-    /// False if the joint's child is a separate body, which is then `body`.
+    /// Whether the joint's child is part of `body`; if false, the child is a separate body, which is `body`.
     pub welded: bool,
 }
 

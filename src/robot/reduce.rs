@@ -36,7 +36,7 @@ impl Reduction {
     pub const WIDEST_TOLERANCE: f64 = 0.5;
 }
 
-/// The size that a robot without shapes has at least \[m\].
+/// Lower bound on the size of a robot without shapes \[m\].
 const USUAL: f64 = 1.0;
 
 impl Robot {
@@ -51,10 +51,10 @@ impl Robot {
     /// Reduces `description` to a plane of its root link.
     ///
     /// The plane is the one whose normal is parallel to all revolute and continuous axes. If there is none, it is x-z
-    /// or y-z, whichever is normal to more of these axes on the paths to the lowest links, or if to none, to more of
-    /// all axes. Joints that rotate about the normal or slide in the plane, both within the tolerance, are kept. All
-    /// others are frozen at zero, with the inertia that their links have there. The base floats, is fixed to the world,
-    /// or is a chain of the file's own joints. [`Robot::reading`] reports these choices with reasons, and
+    /// or y-z, whichever is normal to more of these axes on the paths to the lowest links, or if it is normal to none
+    /// of those, to more of all axes. Joints that rotate about the normal or slide in the plane, within the tolerance,
+    /// are kept. All others are frozen at zero, with the inertia that their links have there. The base floats, is fixed
+    /// to the world, or is a chain of the file's own joints. [`Robot::reading`] reports these choices with reasons, and
     /// [`Robot::left_out`] lists what does not enter the analysis.
     ///
     /// # Errors
@@ -235,7 +235,7 @@ fn frozen(description: &Description, roles: &[Role], tree: &Tree, found: &base::
                 let welded = !matches!(body.joint, Some(ParentJoint::Fixed { .. }));
                 Some((index, FrozenJoint { name, reason: reason.clone(), body: body.name.clone(), welded }))
             }
-            // A frozen joint between links of the base says nothing about the robot.
+            // Frozen joints between links of the base are not part of the robot.
             (role, outside) if found.chain.contains(&index) || outside.is_none() && matches!(role, Role::Frozen(_)) => {
                 let root = description.links[found.root].name.clone();
                 Some((index, FrozenJoint { name, reason: FreezeReason::Base, body: root, welded: true }))
