@@ -21,7 +21,7 @@ pub(super) struct Arrival<'a, 'r, S> {
 }
 
 impl<S: Clone> Arrival<'_, '_, S> {
-    /// Returns the sample at the moment of a strike. Its row and source are those of the row before.
+    /// Returns the sample at the moment of a strike, with the row and source of the row before.
     pub fn sample(&mut self, &Strike { point, row, height, smooth, onward }: &Strike) -> Sample<S> {
         match (onward, height) {
             (Way::Through(rows), height) => return self.through(point, row, rows, height),

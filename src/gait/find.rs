@@ -1,4 +1,4 @@
-//! Finds the touchdowns of a recording sample by sample, and keeps only the last moments in memory.
+//! Finds the touchdowns of a recording sample by sample, and keeps only the last samples in memory.
 
 use super::arrival::{Arrival, is_difference};
 use super::carry::{Interpolation, REACH};
@@ -7,7 +7,7 @@ use super::noise::MEASURED;
 use super::points::Points;
 use super::seen::Seen;
 use super::strike::{Strike, Way};
-use super::window::{FORETOLD, Frame, SMOOTH, Window};
+use super::window::{Frame, PREDICTED, SMOOTH, Window};
 use super::{At, Heights, Landing, Sample, Sampled, Thresholds, Touching};
 use crate::contact::Feet;
 use crate::pipeline::CONTACT_TOLERANCE;
@@ -76,14 +76,14 @@ pub struct Touchdowns<'r, S, I> {
     robot: &'r Robot,
     points: Points<'r>,
     thresholds: Thresholds,
-    /// A greater depth is not that of a foot that sinks \[m\].
+    /// A foot deeper than this does not merely sink into the ground \[m\].
     deep: f64,
     at: At,
     touching: Touching,
     heights: Heights,
     /// With true heights, a point that stops at most this high is on the ground \[m\].
     level: f64,
-    /// Collects what is seen of the recording.
+    /// Collects observations about the recording, for notes.
     seen: Option<&'r Mutex<Seen>>,
     clock: Clock,
     /// The number of samples so far, including refused ones.
@@ -149,7 +149,7 @@ impl<'r, S, I> Touchdowns<'r, S, I> {
         Self { heights, ..self }
     }
 
-    /// Adds what is seen of the recording to `seen`.
+    /// Adds observations about the recording to `seen`.
     pub fn noting(self, seen: &'r Mutex<Seen>) -> Self {
         Self { seen: Some(seen), ..self }
     }
@@ -175,7 +175,7 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
         }
         // A point that falls at `slow` or faster was `above` its level at most this long ago. Twice that time is kept.
         let oldest = sample.time - 2.0 * self.thresholds.above / self.thresholds.slow;
-        let kept = if self.heights == Heights::True { SMOOTH + FORETOLD + 1 } else { 3 * MEASURED };
+        let kept = if self.heights == Heights::True { SMOOTH + PREDICTED + 1 } else { 3 * MEASURED };
         while self.window.frames.get(kept).is_some_and(|frame| frame.sample.time < oldest) {
             self.window.frames.pop_front();
         }
@@ -352,8 +352,8 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
         Strike { row: row.min(last), smooth: last, ..strike }
     }
 
-    /// Marks the touchdown of a strike in the row before it. Returns the strike from which its state is computed, and
-    /// whether true heights show no velocity between it and another touchdown.
+    /// Marks the row before a strike as followed by a touchdown. Returns the strike from which its state is computed,
+    /// and whether true heights show no velocity between it and another touchdown.
     fn mark(&mut self, strike: Strike) -> (Strike, bool) {
         let Frame { sample, strikes, .. } = &self.window.frames[strike.row];
         let (is_true, differences, shares) = (self.heights == Heights::True, is_difference(sample), *strikes > 0);

@@ -5,9 +5,9 @@
 //!     --[find]--> touchdowns: time, state, Landing (row, striking contact)
 //! ```
 //!
-//! Recorded feet do not reach z = 0: they float or sink by centimeters, sink slowly while they stand, and may scuff
-//! over the ground. A touchdown is therefore recognized by motion: the height of every point that can touch (the lowest
-//! of a circle, the corners of a polygon) is followed. A *descent* is a run of rows in which a point falls faster than
+//! In recordings feet seldom touch exactly at z = 0: they float or sink by centimeters, sink slowly during stance, and
+//! may scuff over the ground. A touchdown is therefore detected from the motion of every point that can touch: the
+//! lowest point of a circle, the corners of a polygon. A *descent* is a run of rows in which a point falls faster than
 //! [`Thresholds::slow`]. It is a touchdown if the point has come down by [`Thresholds::drop`] or more since it last
 //! stopped falling, ends no higher than [`Thresholds::ground`] above z = 0, and is free toward the ground: on ground of
 //! some slope m near to level, it is the lowest of its body.
@@ -16,16 +16,16 @@
 //!     z_i - m x_i <= z_j - m x_j  for all points j of the body of i,        with one |m| <= 0.15
 //! ```
 //!
-//! The toe of a flat foot therefore touches down even if the heel is recorded a little lower, but the upper side of a
-//! sole or points inside a round foot do not. The thresholds are lengths ([`Touchdowns::with`]), because the floating
-//! of feet depends on the recording and not on the robot. A robot smaller than [`SMALL`] lifts its feet less, so its
-//! thresholds are proportionally smaller.
+//! The toe of a flat foot can therefore touch down even if the heel is recorded a little lower; the upper side of a
+//! sole and points inside a round foot cannot. The thresholds are lengths ([`Touchdowns::with`]), because the errors of
+//! recorded heights depend on the recording and not on the robot. A robot smaller than [`SMALL`] lifts its feet less,
+//! so its thresholds are proportionally smaller.
 //!
 //! The *noise* of a point's height is measured on the last rows of the clip. It is the median distance of a row from
-//! the polynomial through the six rows before it, divided by 0.67 and by the factor by which this distance amplifies a
-//! noise of one. If the noise from row to row is faster than [`Thresholds::slow`], the rate of a row is the slope of
-//! the least-squares line through the last n rows. n is such that the noise of this slope is two thirds of that
-//! threshold. The descent then ends on the mean height of the later half of these rows.
+//! the polynomial through the six rows before it, divided by 0.67 (median over standard deviation) and by the factor by
+//! which the extrapolation amplifies noise. If the noise from row to row is faster than [`Thresholds::slow`], the rate
+//! of a row is the slope of the least-squares line through the last n rows. The noise of this slope is then two thirds
+//! of that threshold. The descent then ends on the mean height of the later half of these rows.
 //!
 //! The moment of contact is one of three:
 //!
@@ -65,13 +65,13 @@
 //! when it crosses z = 0, or stops within a millionth of the robot's size of it, after a descent of
 //! [`Thresholds::drop`] or more. At the moment of contact its height is zero if all coordinates continue on the
 //! polynomial through up to six rows before. None of these rows is before the last touchdown, or before two rows of one
-//! time. If that leaves one or two rows, they continue from the last touchdown, unless it is too near to the first of
-//! them to show a rate; a single row without recorded velocity then leaves the row before that touchdown. With six rows
-//! and more, each coordinate and each rate uses as many rows as have predicted its last two values best, because a
+//! time. If that leaves one or two rows, the last touchdown is used, too, unless it is too near to them to show a rate.
+//! If only a row without recorded velocity is left then, the state is the row before that touchdown. With six rows and
+//! more, each coordinate and each rate uses as many rows as have predicted its last two values best, because a
 //! controller may make accelerations jump. Recorded velocities are extrapolated; differences are replaced by the rates
 //! of the polynomial. If the polynomial does not reach the ground before the next row, time and positions are on the
-//! line between both rows. A clip that ends aloft ends without a touchdown. A point that rises between two rows has
-//! bounced if its motion before leads into the ground, and no other point into the ground before it.
+//! line between both rows. A clip that ends in the air ends without a touchdown. A point that rises between two rows
+//! has bounced if its motion before leads into the ground, and no other point into the ground before it.
 //!
 //! A jump back in time starts a new clip, and so does a step more than ten times the longest of the clip so far. A
 //! refused sample is passed on in its place and left out of the motion. Touchdowns come in the order in which their

@@ -9,7 +9,7 @@
 //! ```
 //!
 //! P holds the axes of the robot's plane ([`Plane`]). The heading is that of the clip, not of the row: a body that yaws
-//! during its stride does not walk in circles. Turning or shifting a whole clip about the world's z therefore changes
+//! during its stride still walks straight ahead. Turning or shifting a whole clip about the world's z therefore changes
 //! only where x begins. The heading is known at the end of a clip, so the whole clip is held in memory.
 
 use super::clip::{Clock, ClockStep};
@@ -24,7 +24,7 @@ use std::sync::Mutex;
 /// The greatest error of a quaternion's length; rounding to two digits stays below it.
 const UNIT: f64 = 0.01;
 
-/// The part of a base's place and orientation that the plane does not hold.
+/// The part of a base's position and orientation that is outside the plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spatial {
     /// x and y of the root link's origin \[m\].

@@ -17,18 +17,18 @@ pub(super) struct Strike {
     pub height: Option<f64>,
     /// The last row before the impact.
     pub smooth: usize,
-    /// The way to the state from the rows before.
+    /// How the state is extrapolated from the rows before.
     pub onward: Way,
 }
 
 /// The extrapolation of a motion to a touchdown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Way {
-    /// The point slows down, to a height above the end of its descent: by the last rows.
+    /// By the last rows, to a height above the end of the descent: the point slows down.
     Soft,
-    /// To the end of the descent, by the polynomial through this many rows.
+    /// By the polynomial through this many rows, to the end of the descent.
     Through(usize),
-    /// To the end of the descent, by the least-squares line through this many rows.
+    /// By the least-squares line through this many rows, to the end of the descent.
     Along(usize),
 }
 
@@ -66,7 +66,7 @@ impl<S> Window<S> {
             let times = self.times(rows.iter().copied());
             let onward = Interpolation::at(self.frames[row + 1].sample.time, &times);
             let height = |at: usize| self.height(point, rows[at]);
-            // Twice as fast as a point whose descent has ended.
+            // Twice the speed below which a descent has ended.
             let hits = rows.len() > 1 && onward.value(height) <= end && onward.rate(height) < -2.0 * slow;
             hits.then_some(Strike { point, row, height: Some(end), smooth: row, onward: Way::Through(through) })
         })

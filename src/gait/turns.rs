@@ -1,4 +1,4 @@
-//! Continues angles across full turns that a recording gives within one turn only.
+//! Unwraps angles that a recording gives within one turn only.
 
 use super::clip::{Clock, ClockStep};
 use super::{Sample, Sampled};
@@ -15,7 +15,7 @@ pub fn unwrapped<'r, S>(
     robot: &'r Robot,
 ) -> impl Iterator<Item = Sampled<S>> + 'r {
     let pitch = (robot.base == Base::Floating).then_some(2);
-    // A mimic joint that follows by a fraction of the angle would be elsewhere after a turn.
+    // A mimic joint with a multiplier that is not whole would be in another pose after a turn.
     let is_whole = |at: usize| {
         let mut followers = robot.mimic_joints.iter().filter(|mimic| mimic.mimicked == at);
         followers.all(|mimic| mimic.joint.axis.is_revolute() && mimic.multiplier.fract() == 0.0)

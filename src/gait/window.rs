@@ -11,7 +11,7 @@ pub(super) const BEFORE: usize = 3;
 pub(super) const SMOOTH: usize = 6;
 
 /// The number of rows that show how well the rows before them predict a motion.
-pub(super) const FORETOLD: usize = 2;
+pub(super) const PREDICTED: usize = 2;
 /// With fewer rows than this, predictions are not compared.
 const LEAST: usize = 6;
 
@@ -27,8 +27,8 @@ pub(super) struct Frame<S> {
     pub sample: Sample<S>,
     pub row: usize,
     pub places: Vec<Vector<f64>>,
-    /// The distance of each point's height from the one to which the rows before lead, scaled to the standard deviation
-    /// of a random noise \[m\]. Empty if rows are missing.
+    /// The distance of each point's height from the extrapolation of the rows before, scaled to the standard deviation
+    /// of the noise \[m\]. Empty if rows are missing.
     pub noise: Vec<f64>,
     /// Whether the next sample has the same time.
     pub before_impact: bool,
@@ -66,7 +66,7 @@ impl<S> Window<S> {
     /// each coordinate uses as many rows as have predicted it best. If there are fewer than [`BEFORE`], it begins with
     /// the touchdown before them.
     pub fn motion(&self, row: usize, most: usize, exact: bool) -> Motion {
-        let mut rows = self.smooth_rows(row, if exact { most + FORETOLD } else { most });
+        let mut rows = self.smooth_rows(row, if exact { most + PREDICTED } else { most });
         let state = |at: usize| &self.frames[rows[at]].sample.state;
         let coordinates = state(0).position.len();
         if !exact || rows.len() < LEAST {
@@ -76,19 +76,19 @@ impl<S> Window<S> {
         }
         let times = self.times(rows.iter().copied());
         // For each number of rows, the predicted rows (counted back from the last one) with their weights.
-        let foretelling: Vec<Vec<(usize, Interpolation)>> = (1..=most.min(rows.len() - 1))
+        let predictions: Vec<Vec<(usize, Interpolation)>> = (1..=most.min(rows.len() - 1))
             .map(|used| {
-                let of = (0..FORETOLD).filter(|back| back + used < times.len());
+                let of = (0..PREDICTED).filter(|back| back + used < times.len());
                 of.map(|back| (back, Interpolation::at(times[back], &times[back + 1..][..used]))).collect()
             })
             .collect();
         let used = |value: &dyn Fn(usize) -> f64| {
             let off = |(back, by): &(usize, Interpolation)| (by.value(|at| value(back + 1 + at)) - value(*back)).abs();
-            let off: Vec<f64> = foretelling.iter().map(|of| of.iter().map(off).fold(0.0, f64::max)).collect();
+            let off: Vec<f64> = predictions.iter().map(|of| of.iter().map(off).fold(0.0, f64::max)).collect();
             let least = off.iter().copied().fold(f64::INFINITY, f64::min);
             let used = off.iter().position(|&off| off == least).map_or(1, |place| place + 1);
-            // Predictions by more rows are unknown: if the greatest number was best, one more may be.
-            if used == foretelling.len() { (used + 1).min(most) } else { used }
+            // Predictions by more rows are unknown. If the greatest number was best, one more may be better.
+            if used == predictions.len() { (used + 1).min(most) } else { used }
         };
         let position = (0..coordinates).map(|entry| used(&|at| state(at).position[entry])).collect();
         let velocity = (0..coordinates).map(|entry| used(&|at| state(at).velocity[entry])).collect();
