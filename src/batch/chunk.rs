@@ -38,8 +38,8 @@ pub struct Chunks<R> {
     quotes: Option<Quotes>,
     /// The number of columns, if it is known.
     columns: Option<usize>,
-    /// No quote that is open at the end of a line before this line is closed correctly.
-    hopeless: usize,
+    /// Quotes that are open at the end of a line before this line are never closed correctly.
+    unclosed_before: usize,
     line: usize,
     /// Whether nothing was read yet.
     fresh: bool,
@@ -49,7 +49,7 @@ impl<R: Read + Send> Chunks<R> {
     /// Reads an input with one record per line.
     pub fn of_lines(input: R) -> Self {
         let input = BufReader::with_capacity(READ, input);
-        Self { input, again: (Vec::new(), 0), quotes: None, columns: None, hopeless: 0, line: 1, fresh: true }
+        Self { input, again: (Vec::new(), 0), quotes: None, columns: None, unclosed_before: 0, line: 1, fresh: true }
     }
 
     /// Reads an input as a table of this form.
@@ -83,7 +83,7 @@ impl<R: Read + Send> Chunks<R> {
         Ok(None)
     }
 
-    /// Returns the first line for which `decide` returns something: its number and that. All lines are read again.
+    /// Returns the number and result of the first line for which `decide` returns `Some`. All lines are read again.
     pub fn peek<T>(&mut self, decide: impl Fn(&[u8]) -> Option<T>) -> Result<Option<(usize, T)>> {
         let (mut seen, mut start, mut line) = (Vec::new(), 0, self.line);
         let decided = loop {
@@ -207,13 +207,13 @@ impl<R: Read + Send> Chunks<R> {
             }
             let line = &chunk.bytes[line_start..];
             match self.quotes.as_mut().map_or(Quoting::Closed, |quotes| quotes.after(line)) {
-                Quoting::Open if !at_end && self.line > self.hopeless => {
+                Quoting::Open if !at_end && self.line > self.unclosed_before => {
                     line_start = chunk.bytes.len();
                     continue;
                 }
                 Quoting::Open => self.end_with_line(&mut chunk, (start, first), self.line),
                 Quoting::Misplaced => self.end_with_line(&mut chunk, (start, first), self.line - 1),
-                Quoting::Closed if line_start > start && self.swallows_rows(&chunk.bytes[start..]) => {
+                Quoting::Closed if line_start > start && self.encloses_rows(&chunk.bytes[start..]) => {
                     self.end_with_line(&mut chunk, (start, first), self.line - 1);
                 }
                 Quoting::Closed if chunk.bytes.len() > start => chunk.ends.push((first, chunk.bytes.len())),
@@ -227,14 +227,14 @@ impl<R: Read + Send> Chunks<R> {
     }
 
     /// Returns whether the quotes of a record of several lines enclose other rows.
-    fn swallows_rows(&self, record: &[u8]) -> bool {
-        self.quotes.zip(self.columns).is_some_and(|(quotes, columns)| quotes.swallow_rows(record, columns))
+    fn encloses_rows(&self, record: &[u8]) -> bool {
+        self.quotes.zip(self.columns).is_some_and(|(quotes, columns)| quotes.enclose_rows(record, columns))
     }
 
     /// Ends the record that begins at `start` on line `first` after that line; the lines behind it are read again. No
-    /// quote that is open at the end of a line before `hopeless` is closed correctly, so no line is read a third time.
-    fn end_with_line(&mut self, chunk: &mut Chunk, (start, first): (usize, usize), hopeless: usize) {
-        self.hopeless = self.hopeless.max(hopeless);
+    /// quote that is open before the line `unclosed_before` is closed correctly, so no line is read a third time.
+    fn end_with_line(&mut self, chunk: &mut Chunk, (start, first): (usize, usize), unclosed_before: usize) {
+        self.unclosed_before = self.unclosed_before.max(unclosed_before);
         self.quotes = self.quotes.map(Quotes::fresh);
         let lines = &chunk.bytes[start..];
         let end = start + memchr(b'\n', lines).map_or(lines.len(), |newline| newline + 1);

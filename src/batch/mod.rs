@@ -36,12 +36,12 @@ use crate::write::{self, Columns, Detail, Refused, Report, Touchdown, short_id};
 use crate::{Error, Reason, Result, Robot};
 use serde_json::Value;
 
-/// The question to all states of a batch, and the form of its answers.
+/// What to compute for all states of a batch, and in what form.
 #[derive(Debug, Clone)]
 pub struct Question<'r> {
     /// The robot of all states.
     pub robot: &'r Robot,
-    /// Settings of the pipeline. The summary counts the friction needed if it is computed.
+    /// Settings of the pipeline. If the friction needed is computed, the summary includes it.
     pub options: Options,
     /// Values for states that do not give their own.
     pub defaults: Defaults,
@@ -90,7 +90,7 @@ pub struct Batch<'q> {
 struct Answerer<'q> {
     question: &'q Question<'q>,
     pipeline: Pipeline<'q>,
-    /// Whether what the rows of a typed table have in common passes [`State::check`]; their cells are checked as read.
+    /// Whether the common data of the rows of a typed table pass [`State::check`]; their cells are checked when read.
     #[cfg(feature = "columnar")]
     are_rows_checked: bool,
 }
@@ -370,7 +370,6 @@ impl Answerer<'_> {
         answer.map(|impact| self.pipeline.recycle(impact))
     }
 
-    /// Appends a refusal.
     fn refuse(&self, error: Error, id: Option<Value>, around: Around<'_>, block: &mut Block) {
         self.keep(id.as_ref(), around, block, || Keyframe::refused(error.clone()));
         let refused = Refused::new(id, around.line, &error);
@@ -397,7 +396,7 @@ impl Answerer<'_> {
 
 /// Adds a hint to the error if the line is one of a table, or holds no whole state or several.
 fn with_remedy(error: Error, record: &[u8]) -> Error {
-    // The names of a table's columns begin so.
+    // The names of a table's columns begin like this.
     let is_column = |name: &[u8]| name.starts_with(b"q_") || name.starts_with(b"v_");
     let hint = match error.reason() {
         _ if record.trim_ascii_start().starts_with(b"[") => {

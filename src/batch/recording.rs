@@ -1,4 +1,4 @@
-//! Tables whose rows depend on each other: they are read in order, and their states answered like any others.
+//! Tables whose rows depend on each other. They are read in order; their states are then answered like any others.
 
 use super::chunk::{Chunks, too_long};
 use crate::error::excerpt::Excerpt;

@@ -71,7 +71,7 @@ pub struct RefusedRecord {
 ///
 /// The source returns the next task, or `None` at the end. It is not called again after `None` or an error. The buffer
 /// holds `ahead` blocks per thread, usually [`AHEAD`]. The sink receives the answers in the order of the tasks, on the
-/// thread that has the next one. The following answer may take long, so a sink that others read should hold none back.
+/// thread that has the next one. The next answer may take long, so a sink that feeds a reader should not buffer blocks.
 /// After an error the sink is not called again.
 ///
 /// # Errors
@@ -98,7 +98,7 @@ fn in_threads<T, B: Send, F: FnMut(T) -> B>(
     // The source, until it ends or fails.
     let source = Mutex::new(Some(source));
     let buffer = ReorderBuffer::new(ahead * threads.max(1), sink);
-    // Returns the next task and its number. Here a thread waits for the others, for input and for the sink.
+    // Returns the next task and its number. Threads wait here for each other, for input and for the sink.
     let next_task = || {
         let mut source = source.lock().ok()?;
         let next = source.as_mut().filter(|_| buffer.wait_for_room())?();

@@ -183,7 +183,7 @@ pub struct ModeCount {
     pub modes: Vec<Mode>,
     /// How many outcomes have these modes.
     pub outcomes: u64,
-    /// A hash by which most different lists are distinguished quickly.
+    /// A hash of the lists, so that they are compared quickly.
     #[serde(skip)]
     key: u64,
 }
@@ -207,7 +207,7 @@ impl Summary {
             let ends = impact.contacts.iter().zip(&outcome.modes);
             let ends = ends.map(|(contact, &mode)| 4 * contact.link as u64 + mode as u64);
             let key = ends.fold(0, |key: u64, end| key.rotate_left(7) ^ end);
-            // Most names are not only equal but the same.
+            // Most equal names share one allocation.
             let is_named = |(own, name): (&Arc<str>, &Arc<str>)| Arc::ptr_eq(own, name) || own == name;
             let known = |list: &&mut ModeCount| {
                 let is_alike = list.key == key && list.modes == outcome.modes;
@@ -282,7 +282,7 @@ impl Summary {
         }
     }
 
-    /// Inserts behind states that are equally near, which came earlier.
+    /// Inserts after states that are equally near, which come earlier in the input.
     fn insert(&mut self, near: Nearest) {
         let at = self.smallest_margins.partition_point(|other| other.margin.abs() <= near.margin.abs());
         if at < NAMED {

@@ -59,7 +59,7 @@ impl Names {
     }
 }
 
-/// The functions that an expression can call. `log` is left out, because it is natural to some and decimal to others.
+/// The functions that an expression can call. `log` is left out, because its base may be e or 10.
 pub(crate) const FUNCTIONS: [&str; 31] = [
     "sqrt", "cbrt", "abs", "sign", "exp", "ln", "log2", "log10", "sin", "cos", "tan", "asin", "acos", "atan", "atan2",
     "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "floor", "ceil", "round", "trunc", "pow", "hypot", "min", "max",

@@ -18,7 +18,7 @@ pub struct Problem {
     pub contact: ContactProblem,
 }
 
-/// Fields that another name may be meant for: only long ones, because short names resemble each other.
+/// Fields that are suggested for a similar name: only long ones, because short names resemble each other.
 const LONG: [&str; 7] =
     ["friction", "restitution", "delassus", "velocity_before", "mass_matrix", "contact_jacobian", "velocity"];
 

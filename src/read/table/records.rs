@@ -1,5 +1,5 @@
-//! Finds the ends of fields and records in the bytes of a table, by the rules of the csv crate, and the quotes that the
-//! crate would take for plain characters, so that the rows between them would be lost.
+//! Finds the ends of fields and records in the bytes of a table, by the rules of the csv crate. Also finds misplaced
+//! quotes, which the crate accepts and by which it would join several rows.
 //!
 //! ```text
 //! Start --"--> Quoted --"--> Closing --"--> Quoted (a doubled quote stands for one)
@@ -71,7 +71,7 @@ enum Inside {
     Misplaced,
 }
 
-/// How the quotes stand at the end of a line.
+/// The state of the quotes at the end of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quoting {
     /// The record ends here.
@@ -154,7 +154,7 @@ impl Quotes {
 
     /// Returns whether the quotes of a record with several lines contain other rows: the record has not `columns`
     /// fields, as the header has, or each of its lines would have.
-    pub(crate) fn swallow_rows(self, record: &[u8], columns: usize) -> bool {
+    pub(crate) fn enclose_rows(self, record: &[u8], columns: usize) -> bool {
         /// With fewer columns, text in quotes may have the right number of delimiters by chance.
         const FEWEST: usize = 3;
         let fields = |bytes: &[u8]| {

@@ -1,4 +1,4 @@
-//! Decides whether the name of a column may be meant as another name.
+//! Decides whether the name of a column may be a variant of another name.
 //!
 //! ```text
 //!     name, known --[plain]--> the same, the coordinate alone or with another word for position or velocity,
@@ -51,7 +51,7 @@ impl Compared {
     /// punctuation, names the coordinate alone or with another word for position or velocity, or has one or two wrong
     /// letters.
     pub fn resembles(&self, known: &Self) -> bool {
-        // Matches "restitution_coefficient" and "friction of the left foot", but not what friction causes or needs.
+        // Matches "restitution_coefficient" and "friction of the left foot", but not "friction_force".
         const OTHER_QUANTITIES: [&str; 7] = ["needed", "force", "torque", "loss", "power", "margin", "joint"];
         let (name, known_name) = (self.plain.as_str(), known.plain.as_str());
         let mut parts = name.split('_');

@@ -1,4 +1,4 @@
-//! The types of typed columns: as what they are read, and their names for people.
+//! The types of typed columns: the types to which they are cast, and their names in messages.
 
 use arrow_schema::DataType;
 
