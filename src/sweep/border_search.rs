@@ -2,15 +2,15 @@
 //!
 //! ```text
 //!     a set of outcomes changes only where a numerator N of some combination passes zero (see `impact::inequalities`):
-//!     N at five points --quartic--> sign changes, least |N| --bisected on N itself--> places to ask
+//!     N at five points --quartic--> sign changes, least |N| --bisected on N itself--> candidates
 //! ```
 //!
-//! Both sides of each change of contacts are asked, too, and the numbers are followed only between two changes: a foot
-//! that rolls from one corner to another stands on both for a moment.
+//! Both sides of each change of contacts are candidates, too, because a foot that rolls from one corner to another
+//! stands on both for a moment. The numbers are followed only between two changes.
 //!
 //! A combination is not followed where one clearly violated inequality excludes it, on the whole interval or near a
-//! zero. This search decides nothing: wherever a zero may be, the regime itself is asked for. It does not see changes
-//! of N between the five points beyond its fourth differences; that part is not guaranteed.
+//! zero. This search only proposes candidates, at which the caller then computes the regime. It is not guaranteed to
+//! find all: it misses changes of N between the five points that its fourth differences do not show.
 //!
 //! If the regimes of two points differ, [`decisive_zero`] returns the likely place of the border between them.
 
@@ -32,7 +32,7 @@ const NODE_RESOLUTION: f64 = 1e-9;
 const SMOOTH: f64 = 0.05;
 const HALVINGS: usize = 5;
 
-/// The number of times that an interval is divided where contacts change; then the nodes between are asked.
+/// The number of times that an interval is divided where contacts change; then the nodes become candidates.
 const DIVISIONS: usize = 3;
 
 /// A minimum of |N| is searched for if the quartic comes as near to zero as this fraction of the numbers.
@@ -41,7 +41,7 @@ const NEAR: f64 = 0.05;
 /// The rounding of a zero in f64, as a fraction of the numbers.
 const ROUNDING: f64 = 1e-9;
 
-/// The greatest number of places that are asked in one interval.
+/// The greatest number of candidates in one interval.
 const MOST: usize = 200;
 
 /// A quantity that is followed, by its index in [`Watched`].
@@ -197,7 +197,7 @@ impl<W: FnMut(f64) -> Seen> Search<'_, W> {
         let Zeros { mut crossed, touched } = zeros;
         crossed.sort_by(f64::total_cmp);
         if !crossed.is_empty() {
-            // An end of the interval may be a zero up to rounding, whose sign means nothing.
+            // An end of the interval may be a zero up to rounding.
             crossed.insert(0, a);
             crossed.push(b);
         }
@@ -238,7 +238,7 @@ impl<W: FnMut(f64) -> Seen> Search<'_, W> {
             let watched = watch(x).filter(|watched| quantity.is_in(watched, &nodes[0]));
             watched.map_or(f64::NAN, |watched| quantity.value(&watched))
         };
-        // Its sign means nothing between two places where it is only rounding.
+        // Between two places where the quantity is only rounding, its sign has no meaning.
         let is_skipped = |watch: &mut W, window: [f64; 2]| {
             let mut is_rounding = |at: usize, x: f64| {
                 let watched = watch(place(x)).filter(|watched| quantity.is_in(watched, &nodes[0]));

@@ -16,7 +16,7 @@ const FOUND: f64 = 1e-9;
 /// The number of times that a chord is halved, at most.
 const BENDS: usize = 6;
 
-/// The place where a cell is divided: near its middle, since the middle itself may be a special place.
+/// Where a cell is divided: near its middle, because the middle itself may be a special point.
 const HALF: f64 = 0.506_17;
 
 /// A cell: its least and its greatest corner, and its edges below, to the right, above and to the left.

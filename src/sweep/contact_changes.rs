@@ -1,12 +1,12 @@
-//! Finds where the contacts change between two places: which there are, and what touches at each.
+//! Finds where the contacts change between two places: which contacts are closed, and what touches at each.
 //!
 //! ```text
 //!     corner 0 ... corner 3 --bisected--> 0 | 0 and 1 | 1 | 1 and 2 | 2 ...: each | to the accuracy of borders
 //! ```
 //!
 //! A foot that rolls over several corners, or over several segments of a ground profile, stands on two of them at once
-//! wherever it changes from one to the next. Every place that has other contacts than both ends divides the search.
-//! What changes and changes back between two places with the same contacts is not found.
+//! wherever it changes from one to the next. The search is divided at every place that has other contacts than both
+//! ends. Contacts that change and change back between two places with the same contacts are not found.
 
 use super::model::Watched;
 use crate::budget::is_spent;

@@ -1,4 +1,4 @@
-//! Points well inside areas, where the letters of the areas are written.
+//! Points well inside areas, for the letters of the areas.
 
 use crate::planar::Vector;
 use std::collections::VecDeque;

@@ -16,10 +16,10 @@ pub const RESOLUTION: f64 = 1e-12;
 /// The number of times that a stretch is searched, each time between the borders found before.
 const SEARCHES: usize = 3;
 
-/// The distance from a zero at which regimes are asked for, as a fraction of the resolution: less than half of it.
+/// The distance from a zero at which regimes are computed, as a fraction of the resolution: less than half of it.
 const BESIDE: f64 = 0.499;
 
-/// The questions that a search asks along a line in the space of parameters.
+/// What a search evaluates along a line in the space of parameters.
 pub trait Landscape {
     /// Returns the regime of a place.
     fn regime(&mut self, at: f64) -> Arc<Regime>;
@@ -27,7 +27,7 @@ pub trait Landscape {
     fn watched(&mut self, at: f64) -> Option<Arc<Watched>>;
 }
 
-/// A line in the space of all parameters, whose places a solver answers.
+/// A line in the space of all parameters, evaluated by a solver.
 pub(super) struct Along<'s, 'm, P> {
     pub solver: &'s mut Solver<'m>,
     /// The values of all parameters at a place.
@@ -76,8 +76,8 @@ pub type Stretch = [Probe; 2];
 ///
 /// If the regimes of two places differ, the border between them is narrowed down, and so are the borders of all other
 /// regimes met on the way. If they are the same, the stretch between them is searched for hidden regimes (see
-/// `border_search`). In the end every neighboring pair of asked places agrees or brackets a border. Nothing is found
-/// once a budget is spent.
+/// `border_search`). In the end every two neighboring evaluated places have the same regime or bracket a border.
+/// Nothing is found once a budget is spent.
 pub fn brackets(line: &mut impl Landscape, a: &Probe, b: &Probe, resolution: f64) -> Vec<Bracket> {
     let found = bisect(line, a, b, resolution);
     search_between(line, a, b, found, resolution, SEARCHES)
@@ -106,7 +106,7 @@ fn search_between(
     all
 }
 
-/// Bisects where the regimes of two places differ. The first places asked are next to the deciding quantity's zero.
+/// Bisects between two places of different regimes. It begins next to the zero of the deciding quantity.
 pub(super) fn bisect(line: &mut impl Landscape, a: &Probe, b: &Probe, resolution: f64) -> Vec<Bracket> {
     let (mut below, mut above) = (a.clone(), b.clone());
     if below.regime == above.regime || is_spent() {
@@ -228,7 +228,7 @@ mod tests {
     fn borders_lie_where_a_number_passes_zero() {
         check(|x| vec![x - 0.123_456_789], &[0.123_456_789]);
         check(|x| vec![(x - 0.31) * (0.32 - x)], &[0.31, 0.32]);
-        // Borders behind one that hides them: between 0.4 and 0.5 the number is negative, positive, negative, positive.
+        // Borders between two samples of different regimes: between 0.4 and 0.5 the sign is -, +, -, +.
         check(|x| vec![(x - 0.41) * (x - 0.410_01) * (x - 0.48)], &[0.41, 0.410_01, 0.48]);
         // A single place is no region.
         check(|x| vec![(x - 0.3).abs()], &[]);

@@ -181,7 +181,6 @@ impl<'p> Grid<'p> {
         [snapped(x, &self.xs, self.parameters[0]), snapped(y, &self.ys, self.parameters[1])]
     }
 
-    /// Returns the place of a node.
     fn node(&self, k: usize) -> [f64; 2] {
         [self.xs[k % self.xs.len()], self.ys[k / self.xs.len()]]
     }
@@ -199,7 +198,6 @@ impl<'p> Grid<'p> {
     }
 }
 
-/// Returns the index of the area of a regime.
 fn index(areas: &[Area], regime: &Arc<Regime>) -> Option<usize> {
     areas.iter().position(|area| area.regime == *regime)
 }

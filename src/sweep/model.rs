@@ -40,7 +40,7 @@ pub struct Solver<'a> {
     scratch: InequalityScratch,
     /// All regimes that were found so far.
     known: Vec<Arc<Regime>>,
-    /// The quantities at the points that were asked last, because neighboring stretches share their ends.
+    /// The quantities at the points that were evaluated last, because neighboring stretches share their ends.
     recent: VecDeque<(Vec<f64>, Option<Arc<Watched>>)>,
 }
 
@@ -113,7 +113,7 @@ impl RobotStudy<'_> {
     }
 
     /// Notes that the parameter of a study without borders affects neither the state nor its contact problem at some
-    /// places. It is then one on which an impact does not depend.
+    /// places, so that the impact seems not to depend on it.
     pub(super) fn idle_parameter(&self) -> Option<String> {
         let [parameter] = self.study.parameters() else { return None };
         let varies_more = self.study.question() == Aspect::Forces || self.study.varies_the_robot();

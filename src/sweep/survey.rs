@@ -83,7 +83,7 @@ impl Survey {
                 kinds.push(Arc::clone(&regime));
                 kinds.len() - 1
             });
-            // The middle may lie in a thinner region that was not found; the beginning was asked before.
+            // The middle may lie in a thinner region that was not found; the regime of the beginning is known.
             let middle = 0.5 * (from + to);
             let at = if solver.regime(&[middle]) == regime { middle } else { begin };
             let inside = samples.iter().filter(|own| own.regime == regime && from <= own.at && own.at <= to);

@@ -19,11 +19,11 @@ use serde::Serialize;
 pub struct EndedOutcome {
     /// The contact's name.
     pub contact: String,
-    /// What of it is zero.
+    /// The inequality that is zero.
     pub inequality: Inequality,
     /// The outcome that begins or ends there.
     pub modes: Vec<Mode>,
-    /// On which side of the border it is an outcome.
+    /// The side of the border on which it is an outcome.
     #[serde(rename = "valid")]
     pub side: Side,
 }
