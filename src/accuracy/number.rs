@@ -8,7 +8,7 @@ pub trait Number: Trigonometry {
     fn parts(self) -> [f64; 2];
 }
 
-/// f32 has about half the digits of f64; it serves for comparison only.
+/// f32 has about half the digits of f64, and is used for comparison only.
 impl Real for f32 {
     fn from_f64(value: f64) -> Self {
         value as f32

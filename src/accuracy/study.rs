@@ -32,7 +32,7 @@ const TOO_LONG: &str = "with more than 300 coordinates it takes seconds";
 #[derive(Debug, Clone, Default, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CaseStudy {
-    /// What the case is called.
+    /// The name of the case.
     pub name: String,
     /// Coordinates of the robot; `None` for a problem given as matrices.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -46,7 +46,7 @@ pub struct CaseStudy {
     #[serde(skip_serializing_if = "Option::is_none", serialize_with = "as_text")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<String>"))]
     pub refused: Option<Error>,
-    /// How much rounding grows.
+    /// Condition numbers, by which rounding errors grow.
     pub condition: ConditionNumbers,
     /// The results of each method; empty for a refused case.
     pub methods: Vec<Method>,
@@ -84,7 +84,7 @@ pub struct ConditionNumbers {
     pub delassus: Option<f64>,
 }
 
-/// One way to G, or to the whole answer.
+/// A method to compute G or the whole answer.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Method {

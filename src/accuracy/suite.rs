@@ -1,4 +1,4 @@
-//! Named stiff and extreme cases: masses, lengths, poses, friction and speeds at the ends of what f64 can hold.
+//! Named stiff and extreme cases: masses, lengths, poses, friction and speeds near the limits of f64.
 //!
 //! Every case must be answered with its condition, or refused with a reason; none may give NaN, panic or be dropped.
 
@@ -46,7 +46,7 @@ const RAMONE_HIP: f64 = 0.8729729102424726;
 /// Returns all cases of the suite.
 ///
 /// # Errors
-/// Returns an error only if one of this crate's own robots is invalid, which no user can bring about.
+/// Returns an error only if one of this crate's own robots is invalid.
 pub fn cases() -> Result<Vec<Case>> {
     let mut suite = Suite::default();
     suite.masses()?;
@@ -93,7 +93,7 @@ impl Suite {
             let robot = robots::with_bodies(robots::ramone()?, |body| body.moment *= factor);
             self.state(format!("{name} inertias"), robot, |robot| ramone(robot, 0.5));
         }
-        // A leg whose point mass lies 1 nm from its hinge turns at a touch.
+        // A leg whose point mass lies 1 nm from its hinge has almost no moment of inertia.
         for (name, com, end) in [("1 nm off", -1e-9, Expected::Answered), ("at", 0.0, Expected::Singular)] {
             let mut robot = robots::minimalistic()?;
             robot.bodies[1].com = Vector::new(0.0, com);
@@ -161,7 +161,7 @@ impl Suite {
             let name = format!("{name}, point masses");
             self.ending(Expected::Singular, name, robots::minimalistic()?, |robot| walker(robot, alpha));
         }
-        // At this moment of inertia and angle every outcome touches every other.
+        // At this moment of inertia and angle all outcomes have a common border.
         for (name, angle) in [("degenerate walker", FRAC_PI_4), ("one ulp beside it", FRAC_PI_4.next_up())] {
             self.state(name, robots::walker(0.24)?, |robot| walker(robot, angle));
         }

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 /// Limits for measuring the run time of one method.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sampling {
-    /// The time for all runs but the first together; a first run that alone takes this long is the only sample.
+    /// The total time for all runs except the first; a first run that alone takes this long is the only sample.
     pub time: Duration,
     /// The greatest number of samples.
     pub samples: usize,
@@ -51,7 +51,7 @@ pub fn quantile(sorted: &[f64], share: f64) -> f64 {
     if below == above { below } else { below + (above - below) * place.fract() }
 }
 
-/// The least time of a sample, which has as many runs as that needs: the clock's own steps are some 30 ns.
+/// The least time of a sample, which repeats the work until then: the clock has a resolution of about 30 ns.
 const SAMPLE: Duration = Duration::from_micros(20);
 
 /// Measures the run time of `work` in repeated runs.

@@ -1,4 +1,4 @@
-//! Integrates the stiff equations of a compliant impact, from first contact until nothing more happens.
+//! Integrates the stiff equations of a compliant impact, from first contact until all contacts are open or at rest.
 //!
 //! ```text
 //! y' = f(y)   from y(0)   until the model has ended, or to the horizon
