@@ -121,7 +121,7 @@ impl Arrays {
         }
     }
 
-    /// Removes all answers but keeps the allocated memory.
+    /// Removes all answers, and keeps the allocated memory.
     pub fn clear(&mut self) {
         self.offsets.clear();
         self.offsets.push(0);

@@ -224,7 +224,7 @@ impl ColumnWriter {
                 for field in schema.fields() {
                     let path = ColumnPath::new(vec![field.name().clone()]);
                     properties = match field.data_type() {
-                        // Minima and maxima of text are of no use, nor is a dictionary of ids, which all differ.
+                        // Minima and maxima of text are useless, and so is a dictionary of ids, which all differ.
                         DataType::Utf8 | DataType::LargeUtf8 | DataType::Utf8View => properties
                             .set_column_dictionary_enabled(path.clone(), field.name() != "id")
                             .set_column_statistics_enabled(path, EnabledStatistics::None),

@@ -117,7 +117,7 @@ pub struct Layout {
     pub next: bool,
     /// Whether to leave out impulses, velocities after, `border` and `notes`.
     pub brief: bool,
-    /// Whether to put an apostrophe before every text cell that a spreadsheet would take for a formula: one that begins
+    /// Whether to put an apostrophe before every text cell that a spreadsheet would read as a formula: one that begins
     /// with =, +, -, @, a tab or a carriage return. Numbers stay numbers.
     pub guarded: bool,
     /// The file format.

@@ -54,17 +54,17 @@ impl Report<'_> {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename = "Forces")]
 pub struct ForcesRecord<'a> {
-    /// What the user calls it.
+    /// The user's name for the input.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<super::result::Id>"))]
     pub id: Option<&'a Value>,
-    /// The line on which the input begins, from 1; in a batch.
+    /// The line on which the input begins, from 1; present in a batch.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub line: Option<usize>,
-    /// The answer in one word; absent next to an `error`.
+    /// The answer in one word; absent if there is an `error`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub verdict: Option<Verdict>,
-    /// Every combination is decided by an error bound; absent next to an `error`.
+    /// Whether error bounds decide every combination; absent if there is an `error`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub proven: Option<bool>,
     /// The contacts that take part, in the order of all lists per contact.
@@ -72,7 +72,7 @@ pub struct ForcesRecord<'a> {
     /// The lowest foot that does not touch; absent if every foot touches.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub nearest: Option<&'a NearestRecord<'a>>,
-    /// Every outcome; absent next to an `error`.
+    /// Every outcome; absent if there is an `error`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub outcomes: Option<Vec<ForceOutcome<'a>>>,
     /// With the verdict `none`, the outcomes of the impact without approach by which the velocities jump; null if these
@@ -80,23 +80,23 @@ pub struct ForcesRecord<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(extend("x-may-be-null" = true)))]
     pub shock: Option<Option<&'a [Outcome]>>,
-    /// How much is open, of an undecided state.
+    /// What an undecided state leaves open.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub open: Option<OpenCombinations>,
-    /// Lists of modes with many accelerations, all of which are outcomes; only if there are some.
+    /// Lists of modes with many accelerations, all of which are outcomes; absent if there are none.
     #[serde(skip_serializing_if = "<[Family]>::is_empty")]
     pub families: &'a [Family],
-    /// Every other combination, if asked for.
+    /// Every other combination, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rejected: Option<Vec<RejectedForces<'a>>>,
     /// Gravity along -z of the world \[m/s^2\].
     pub gravity: f64,
-    /// All that acts at each joint, virtual springs included \[N m, N\].
+    /// Torque or force at each joint, virtual springs included \[N m, N\].
     pub torque: &'a Named,
-    /// What the virtual springs ask for, in the order of the state; only if it has some.
+    /// The loads that the virtual springs require, in the order of the state; absent without springs.
     #[serde(rename = "virtual", skip_serializing_if = "<[SpringForce]>::is_empty")]
     pub springs: &'a [SpringForce],
-    /// What the virtual springs ask of a floating base, which no joint can give: it is not applied. Only with springs.
+    /// The springs' load on a floating base, which no joint can supply and is not applied; absent without springs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unrealized: Option<Unrealized>,
     /// Kinetic energy \[J\].
@@ -109,29 +109,29 @@ pub struct ForcesRecord<'a> {
     /// Rank of the Delassus matrix.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rank: Option<usize>,
-    /// What of the robot's file and of the scene does not enter the analysis.
+    /// Parts of the robot's file and of the scene that do not enter the analysis.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub left_out: Option<&'a [LeftOutRecord<'a>]>,
-    /// What a reader should know, in whole sentences.
+    /// Notes for the reader, in whole sentences.
     #[serde(skip_serializing_if = "<[String]>::is_empty")]
     pub notes: &'a [String],
-    /// Names of the kept coordinates in the order of q, if asked for.
+    /// Names of the kept coordinates in the order of q, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub coordinates: Option<&'a [String]>,
-    /// M, if asked for.
+    /// M, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mass_matrix: Option<&'a [Vec<f64>]>,
-    /// J, rows tangential and normal per contact, if asked for.
+    /// J, rows tangential and normal per contact, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contact_jacobian: Option<&'a [Vec<f64>]>,
-    /// G = J M^-1 J^T, without what the loops do not let move; if asked for.
+    /// G = J M^-1 J^T under the loop constraints, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub delassus: Option<&'a [Vec<f64>]>,
-    /// Fields of the table that the state comes from and that mean nothing here, as they stand there.
+    /// Columns of the input table that are copied unchanged.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<std::collections::BTreeMap<String, serde_json::Value>>"))]
     pub carried: Option<&'a Named<CarriedValue>>,
-    /// Why there are no outcomes although the matrices are known.
+    /// The reason why there are no outcomes although the matrices are known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<&'a ErrorObject>,
 }
@@ -142,8 +142,7 @@ pub struct ForcesRecord<'a> {
 pub struct SustainedContact<'a> {
     /// The URDF link that carries the shape.
     pub link: Option<&'a str>,
-    /// Its name, which is its link's, or link/0, link/1 ... if a link has several (link//0 if others are called
-    /// link/0).
+    /// Its name: that of its link, or link/0, link/1 ... if the link has several (link//0 if others are called link/0).
     pub name: &'a str,
     /// The contact point in the world \[m\].
     pub point: Option<Vector<f64>>,
@@ -153,9 +152,9 @@ pub struct SustainedContact<'a> {
     pub gap: Option<f64>,
     /// Its velocity, [tangential, normal] \[m/s\].
     pub velocity: Pair<f64>,
-    /// "+" or "-" of a contact that slides along t or against it; null of one at rest.
+    /// "+" or "-" for a contact that slides along or against t; null for one at rest.
     pub slip: Option<&'static str>,
-    /// Its acceleration if the ground gave no force, [tangential, normal] \[m/s^2\].
+    /// Its acceleration without contact forces, [tangential, normal] \[m/s^2\].
     pub acceleration_free: Pair<f64>,
 }
 
@@ -183,26 +182,26 @@ impl<'a> SustainedContact<'a> {
 #[derive(Debug, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ForceOutcome<'a> {
-    /// One mode per contact; of one that slides already `slide+` or `slide-` is to slide on.
+    /// One mode per contact. If a contact already slides, `slide+` or `slide-` means that it keeps sliding.
     pub modes: &'a [Mode],
     /// Contact forces, [tangential, normal] per contact \[N\].
     pub force: &'a [Pair<f64>],
     /// Contact accelerations, [tangential, normal] per contact \[m/s^2\].
     pub contact_acceleration: &'a [Pair<f64>],
-    /// Acceleration of the base \[m/s^2, rad/s^2\]; only of a robot that is not bolted to the world.
+    /// Acceleration of the base \[m/s^2, rad/s^2\]; absent if the robot is bolted to the world.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub base_acceleration: Option<&'a Named>,
     /// Accelerations of the joints, braked ones included \[rad/s^2, m/s^2\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub joint_acceleration: Option<&'a Named>,
-    /// Force on point a of each loop, [x, z] in the world \[N\]; the opposite acts on b. Only of a state with loops.
+    /// Force on point a of each loop, [x, z] in the world \[N\]; the opposite acts on b. Absent without loops.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub loop_force: Option<&'a [Vector]>,
     /// Power of the contact forces \[W\]; negative where friction takes energy.
     pub power: f64,
     /// False if other admissible forces give the same accelerations; `force` then has the least sum of squares.
     pub force_unique: bool,
-    /// Least and greatest of every entry of `force`, null if it has no bound; only if `force` is not unique.
+    /// Least and greatest value of every entry of `force`, null without a bound; present if `force` is not unique.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub force_range: Option<&'a [Pair<Range>]>,
     /// |f_t| / f_n of each sticking contact that is pressed on the ground, as in an impact; null for others.
@@ -211,15 +210,15 @@ pub struct ForceOutcome<'a> {
     pub index: Option<i8>,
     /// The smallest slack of the outcome's inequalities, free of units; null if there is no inequality.
     pub margin: Option<f64>,
-    /// What is exactly zero, and the lists of modes beyond; only on a border. An impulse there is a force.
+    /// The force inequalities that are exactly zero, and the modes beyond; present on a border.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub border: Option<&'a Border>,
-    /// True, and only then present, of a corner of a family.
+    /// Whether the outcome is a corner of a family; absent if not.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub family: bool,
-    /// Every sign is shown by an error bound, and every force and contact acceleration is right to 1e-10 of its scale.
+    /// Whether error bounds show every sign, and every force and contact acceleration is right to 1e-10 of its scale.
     pub proven: bool,
-    /// False, and only then present, if the combination is neither shown nor excluded.
+    /// False if the combination is neither shown nor excluded; absent if true.
     #[serde(skip_serializing_if = "Clone::clone")]
     pub decided: bool,
 }
@@ -253,9 +252,9 @@ impl<'a> ForceOutcome<'a> {
 pub struct RejectedForces<'a> {
     /// One mode per contact.
     pub modes: &'a [Mode],
-    /// Why it is none, with the contact's name.
+    /// The reason, with the contact's name.
     pub because: &'a str,
-    /// The smallest slack, negative; null if the combination has no solution at all.
+    /// The smallest slack, negative; null if the combination has no solution.
     pub margin: Option<f64>,
     /// The forces that it would have needed \[N\].
     pub force: Option<&'a [Pair<f64>]>,

@@ -83,7 +83,7 @@ pub struct Detail {
 /// Appends `value` to `out` as one line of JSON.
 pub fn append_line<T: Serialize>(out: &mut Vec<u8>, value: &T) {
     let start = out.len();
-    // Writing into memory cannot fail, and every key of a report is a string. If it fails all the same, nothing stays.
+    // Writing into memory cannot fail, and every key of a report is a string. A failure would append nothing.
     match serde_json::to_writer(&mut *out, value) {
         Ok(()) => out.push(b'\n'),
         Err(_) => out.truncate(start),

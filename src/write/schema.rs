@@ -135,7 +135,7 @@ fn strict(schema: &mut Schema) {
     let required = schema.get("required").and_then(Value::as_array).cloned().unwrap_or_default();
     if let Some(Value::Object(properties)) = schema.get_mut("properties") {
         for (name, property) in properties {
-            // A default stands for an absent field in reading; it is no part of what is written.
+            // A default replaces an absent field when reading; what is written has no defaults.
             property.as_object_mut().map(|property| property.remove("default"));
             if !required.iter().any(|required| required == name) {
                 without_null(property);

@@ -61,7 +61,7 @@ pub(super) fn number_text(number: f64) -> String {
     String::from_utf8_lossy(&digits).into_owned()
 }
 
-/// Returns whether a spreadsheet would take the text of a cell for a formula.
+/// Returns whether a spreadsheet would read the text of a cell as a formula.
 fn is_formula(text: &[u8]) -> bool {
     let is_number = || std::str::from_utf8(text).is_ok_and(|text| text.parse::<f64>().is_ok());
     matches!(text.first(), Some(b'=' | b'+' | b'-' | b'@' | b'\t' | b'\r')) && !is_number()

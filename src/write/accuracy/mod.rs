@@ -57,7 +57,7 @@ fn in_words(factorization: Factorization) -> &'static str {
     }
 }
 
-/// Ways in f64 whose digits differ by less count as equally exact, because the last bits are chance.
+/// Methods in f64 whose digits differ by less than this count as equally exact, because the last bits are random.
 const SAME_DIGITS: f64 = 0.5;
 
 #[derive(Debug, Clone, Copy)]

@@ -23,10 +23,10 @@ pub struct OutcomeInBrief<'a> {
     pub index: Option<i8>,
     /// The smallest slack of the outcome's inequalities, free of units.
     pub margin: Option<f64>,
-    /// The forces just after it, if asked for.
+    /// The forces just after the impact, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub next: Option<Cow<'a, Next>>,
-    /// False, and only then present, if the combination is neither shown nor excluded.
+    /// False if the combination is neither shown nor excluded; absent if true.
     #[serde(default = "yes", skip_serializing_if = "bool::clone")]
     pub decided: bool,
 }
@@ -43,11 +43,11 @@ pub struct ContactInBrief<'a> {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Brief<'a> {
-    /// What the user calls it.
+    /// The user's name for the input.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<Id>"))]
     pub id: Option<Cow<'a, Value>>,
-    /// The line on which the input begins, from 1; in a batch.
+    /// The line on which the input begins, from 1; present in a batch.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub line: Option<usize>,
     /// Where the state was found.
@@ -56,10 +56,10 @@ pub struct Brief<'a> {
     /// The answer in one word.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub verdict: Option<Verdict>,
-    /// Every combination is decided by an error bound.
+    /// Whether error bounds decide every combination.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub proven: Option<bool>,
-    /// Whether every state of the box has the same outcomes; of an uncertain state.
+    /// Whether every state of the box has the same outcomes; absent without an uncertainty.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub holds: Option<HoldsRecord>,
     /// The closed contacts, in the order of the modes.
@@ -67,17 +67,17 @@ pub struct Brief<'a> {
     /// Every outcome.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub outcomes: Option<Vec<OutcomeInBrief<'a>>>,
-    /// How much is open, of an undecided state or problem.
+    /// What an undecided state or problem leaves open.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub open: Option<OpenCombinations>,
-    /// Lists of modes with many velocities, all of which are outcomes; only if there are some.
+    /// Lists of modes with many velocities, all of which are outcomes; absent if there are none.
     #[serde(default, skip_serializing_if = "<[Family]>::is_empty")]
     pub families: Cow<'a, [Family]>,
-    /// Fields of the table that are named as foreign.
+    /// Columns of the input table that are named as foreign.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<std::collections::BTreeMap<String, Value>>"))]
     pub carried: Option<Named<CarriedValue>>,
-    /// Why there are no outcomes.
+    /// The reason why there are no outcomes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<ErrorObject>,
 }

@@ -1,4 +1,4 @@
-//! What does not enter the analysis of a state, in words.
+//! Describes what does not enter the analysis of a state.
 
 use crate::contact::Merged;
 use crate::pipeline::{Impact, LeftOut};
@@ -7,14 +7,14 @@ use crate::{Robot, description};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
-/// Something of the robot's file or of the scene that does not enter the analysis.
+/// A part of the robot's file or of the scene that does not enter the analysis.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename = "LeftOut")]
 pub struct LeftOutRecord<'a> {
-    /// What, as in `joint "left_ankle"`.
+    /// The part, as in `joint "left_ankle"`.
     pub what: Cow<'a, str>,
-    /// Why, as in `fixed: welded into left_shank`.
+    /// The reason, as in `fixed: welded into left_shank`.
     pub why: Cow<'a, str>,
 }
 

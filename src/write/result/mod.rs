@@ -53,26 +53,26 @@ use std::borrow::Cow;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]
 pub struct Report<'a> {
-    /// What the user calls it.
+    /// The user's name for the input.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<Id>"))]
     pub id: Option<Cow<'a, Value>>,
-    /// The line on which the input begins, from 1; in a batch.
+    /// The line on which the input begins, from 1; present in a batch.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub line: Option<usize>,
-    /// Where the state was found; of a touchdown in a recording.
+    /// Where the state was found; present for a touchdown in a recording.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub touchdown: Option<Touchdown<'a>>,
-    /// The answer in one word; absent next to an `error`.
+    /// The answer in one word; absent if there is an `error`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub verdict: Option<Verdict>,
-    /// Every combination is decided by an error bound; absent next to an `error`.
+    /// Whether error bounds decide every combination; absent if there is an `error`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub proven: Option<bool>,
-    /// Whether every state of the box has the same lists of modes: true, false or "unknown"; of an uncertain state.
+    /// Whether every state of the box has the same modes: true, false or "unknown"; absent without an uncertainty.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub holds: Option<HoldsRecord>,
-    /// A state of the box with other outcomes; if `holds` is false.
+    /// A state of the box with other outcomes; present if `holds` is false.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub counterexample: Option<CounterexampleRecord<'a>>,
     /// The closed contacts, in the order of all lists per contact.
@@ -80,26 +80,26 @@ pub struct Report<'a> {
     /// The lowest foot that does not touch; absent if every foot touches.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub nearest: Option<NearestRecord<'a>>,
-    /// Every outcome; absent next to an `error`.
+    /// Every outcome; absent if there is an `error`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub outcomes: Option<Cow<'a, [Outcome]>>,
-    /// How much is open, of an undecided state or problem.
+    /// What an undecided state or problem leaves open.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub open: Option<OpenCombinations>,
-    /// Lists of modes with many velocities, all of which are outcomes; only if there are some.
+    /// Lists of modes with many velocities, all of which are outcomes; absent if there are none.
     #[serde(default, skip_serializing_if = "<[Family]>::is_empty")]
     pub families: Cow<'a, [Family]>,
-    /// Every other combination, if asked for; of many contacts those that a search does not exclude, as a note says.
+    /// Every other combination, if requested; for many contacts those that a search does not exclude.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rejected: Option<Vec<Rejected<'a>>>,
-    /// Kinetic energy before the impact \[J\]; of a robot.
+    /// Kinetic energy before the impact \[J\]; absent without a robot.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub kinetic_energy: Option<f64>,
-    /// Whether some outcome has no sliding contact; null if that is undecided, absent next to an `error`.
+    /// Whether some outcome has no sliding contact; null if that is undecided, absent if there is an `error`.
     #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(extend("x-may-be-null" = true)))]
     pub no_slip_consistent: Option<Option<bool>>,
-    /// The paper's section 4 for each contact, if asked for; null for a singular Delassus matrix.
+    /// beta, gamma and region of each contact (paper, section 4), if requested; null for a singular Delassus matrix.
     #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(extend("x-may-be-null" = true)))]
     pub explain: Option<Option<Cow<'a, Explanation>>>,
@@ -114,34 +114,33 @@ pub struct Report<'a> {
     /// Rank of the Delassus matrix.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rank: Option<usize>,
-    /// What of the robot's file and of the scene does not enter the analysis; of a robot.
+    /// Parts of the robot's file and of the scene that do not enter the analysis; absent without a robot.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub left_out: Option<Vec<LeftOutRecord<'a>>>,
-    /// What a reader should know, in whole sentences.
+    /// Notes for the reader, in whole sentences.
     #[serde(default, skip_serializing_if = "<[String]>::is_empty")]
     pub notes: Cow<'a, [String]>,
-    /// Names of the kept coordinates in the order of q, if asked for.
+    /// Names of the kept coordinates in the order of q, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub coordinates: Option<Cow<'a, [String]>>,
-    /// M, if asked for.
+    /// M, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mass_matrix: Option<Cow<'a, [Vec<f64>]>>,
-    /// J, rows tangential and normal per contact, if asked for.
+    /// J, rows tangential and normal per contact, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contact_jacobian: Option<Cow<'a, [Vec<f64>]>>,
     /// G = J M^-1 J^T, without what the loops do not let move; if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub delassus: Option<Cow<'a, [Vec<f64>]>>,
-    /// Fields of the table that the state comes from and that mean nothing here, as they stand there: as text, from
-    /// JSON and columns with types as values.
+    /// Columns of the input table that are copied unchanged: as text or, from JSON and typed columns, as values.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<std::collections::BTreeMap<String, Value>>"))]
     pub carried: Option<Named<CarriedValue>>,
-    /// Why there are no outcomes although the matrices are known.
+    /// The reason why there are no outcomes although the matrices are known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<ErrorObject>,
-    /// Of a state in sustained contact: what it has in addition, and the contacts' accelerations without forces; it is
-    /// written under other names.
+    /// For a state in sustained contact, its additional data and the contacts' accelerations without forces. Such a
+    /// result is written under other names.
     #[serde(skip)]
     pub sustained: Option<(&'a Sustained, &'a [Pair<f64>])>,
 }
@@ -152,9 +151,9 @@ pub struct Report<'a> {
 pub struct Rejected<'a> {
     /// One mode per contact.
     pub modes: Cow<'a, [Mode]>,
-    /// Why it is none, with the contact's name.
+    /// The reason, with the contact's name.
     pub because: String,
-    /// The smallest slack, negative; null if the combination has no solution at all.
+    /// The smallest slack, negative; null if the combination has no solution.
     pub margin: Option<f64>,
     /// The impulses that it would have needed \[N s\].
     pub impulse: Option<Cow<'a, [Pair<f64>]>>,
@@ -167,19 +166,18 @@ pub struct Rejected<'a> {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename = "Contact")]
 pub struct ContactRecord<'a> {
-    /// The URDF link that carries the shape; of a robot.
+    /// The URDF link that carries the shape; absent without a robot.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub link: Option<Cow<'a, str>>,
-    /// Its name, which is its link's, or link/0, link/1 ... if a link has several (link//0 if others are called
-    /// link/0).
+    /// Its name: that of its link, or link/0, link/1 ... if the link has several (link//0 if others are called link/0).
     pub name: Cow<'a, str>,
-    /// The contact point in the world \[m\]; of a robot.
+    /// The contact point in the world \[m\]; absent without a robot.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub point: Option<Vector<f64>>,
-    /// Unit normal of the ground, toward the robot; of a robot.
+    /// Unit normal of the ground, toward the robot; absent without a robot.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub normal: Option<Vector<f64>>,
-    /// Height above the ground along the normal \[m\]; of a robot.
+    /// Height above the ground along the normal \[m\]; absent without a robot.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gap: Option<f64>,
     /// Its velocity before the impact, [tangential, normal] \[m/s\].
@@ -195,7 +193,7 @@ pub struct NearestRecord<'a> {
     pub name: Cow<'a, str>,
     /// Height of its lowest point above the ground along the normal \[m\], negative below it.
     pub height: f64,
-    /// How that point moves before the impact, [tangential, normal] \[m/s\].
+    /// Velocity of that point before the impact, [tangential, normal] \[m/s\].
     pub velocity: Pair<f64>,
 }
 
@@ -207,13 +205,13 @@ pub struct Touchdown<'a> {
     pub row: usize,
     /// The time of the state \[s\].
     pub time: f64,
-    /// The contact that reached the ground; of several at once the first.
+    /// The contact that reached the ground; the first one of several at once.
     pub striking: Cow<'a, str>,
-    /// What was added to the base's z so that this contact is at height 0 \[m\].
+    /// The shift of the base along z that puts this contact at height 0 \[m\].
     pub shift_z: f64,
     /// `crossing` if the state lies between two rows, `row` if it is one.
     pub at: Cow<'a, str>,
-    /// Which other feet take part: `strike`, `slow:SPEED,HEIGHT` or `near:HEIGHT`.
+    /// Which other feet touch the ground: `strike`, `slow:SPEED,HEIGHT` or `near:HEIGHT`.
     pub touching: String,
     /// The state before the impact, to be fed back.
     #[cfg_attr(feature = "schema", schemars(schema_with = "any_object"))]
@@ -378,7 +376,7 @@ pub(crate) fn short_id(id: Value) -> Value {
     }
 }
 
-/// What the user calls a state or a problem.
+/// The user's name for a state or a problem.
 #[cfg(feature = "schema")]
 #[derive(schemars::JsonSchema)]
 #[serde(untagged)]
@@ -391,7 +389,7 @@ pub(super) enum Id {
     Number(f64),
 }
 
-/// Condition number above which the last digits alone decide whether a matrix is regular.
+/// Above this condition number, the last digits of a matrix decide whether it is regular.
 const ILL_CONDITIONED: f64 = 1e14;
 
 fn notes(problem: &Problem, analysis: &Analysis) -> Cow<'static, [String]> {

@@ -8,17 +8,17 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::fmt::{self, Display};
 
-/// What stands in place of the result of a refused input.
+/// The record that replaces the result of a refused input.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Refused {
-    /// What the user calls it, if that can be read; of a long one the beginning and `... (cut)`.
+    /// The user's name for the input, if it can be read; a long one is cut and ends with `... (cut)`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<Id>"))]
     pub id: Option<Value>,
     /// The line on which the input begins, from 1.
     pub line: usize,
-    /// Why it was refused.
+    /// The reason.
     pub error: ErrorObject,
 }
 
@@ -28,10 +28,10 @@ pub struct Refused {
 pub struct ErrorObject {
     /// Why.
     pub message: String,
-    /// Where inside the input, as in `position.joints.left_hip`.
+    /// The place inside the input, as in `position.joints.left_hip`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub place: Option<String>,
-    /// What to do.
+    /// The remedy.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hint: Option<String>,
     /// The foot that is too deep in the ground.

@@ -33,7 +33,7 @@ pub struct Sweep<'a> {
     pub parameter: &'a str,
     /// The regions, from the least to the greatest value.
     pub regions: Vec<RegionRecord<'a>>,
-    /// The border between each two of them.
+    /// The borders between neighboring regions.
     pub borders: &'a [RegionBorder],
     /// Limits of the search, and what is odd about the states, as sentences.
     pub notes: Vec<String>,
@@ -72,14 +72,14 @@ pub struct RegionRecord<'a> {
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Happening<'a> {
-    /// What is asked.
+    /// The question.
     #[serde(skip)]
     pub question: Aspect,
     /// Names of the closed contacts; absent if states are refused.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contacts: Option<&'a [String]>,
-    /// The answer in one word, as at its middle, and `no_impact` only if nothing strikes at its samples, or at a map's
-    /// nodes; absent if states are refused, and of a map's region without room for a point well inside.
+    /// The verdict at its middle; `no_impact` only if nothing strikes at its samples or, in a map, at the nodes. Absent
+    /// if states are refused, or if a region of a map has no room for a point well inside.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub verdict: Option<Verdict>,
     /// The modes of every outcome; absent if states are refused.
@@ -88,7 +88,7 @@ pub struct Happening<'a> {
     /// Combinations that no precision excludes; absent if everything is decided.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub undecided: Option<&'a [Vec<Mode>]>,
-    /// Why the states in it are refused, as at its middle.
+    /// The reason why the states in it are refused, from its middle.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<ErrorObject>,
     /// Whether the error has a depth, which is that of one of its states.
