@@ -73,9 +73,9 @@ pub struct Args {
     output: Option<PathBuf>,
     /// Continue what an interrupted run has written to the output, which has the ending .part until it is whole
     ///
-    /// Robot, input and options must be those of that run, as it left them in a file that ends in .run. Without one, or
-    /// with --summary or --plot, all states are answered again, and what is there is only compared. If nothing is
-    /// there, this is an ordinary run.
+    /// Robot, input and options must be those of that run, as it left them in a file that ends in .run. Without such a
+    /// file, or with --summary or --plot, all states are answered again, and the existing answers are only compared.
+    /// Without an output to continue, this is an ordinary run.
     #[arg(long, requires = "output", help_heading = "Output")]
     resume: bool,
     /// The format of the results [default: by the output's ending, else ndjson]

@@ -18,7 +18,7 @@ pub(super) fn with_flags(text: &str) -> String {
     let pieces: Vec<&str> = text.split('`').collect();
     let mut out = String::new();
     for (at, piece) in pieces.iter().enumerate() {
-        // Every second piece is between two backticks, except a last one without a closing backtick.
+        // Every second piece is between two backticks, except a last one that lacks the closing backtick.
         let quoted = at % 2 == 1 && at + 1 < pieces.len();
         let parts = piece.split_once(':').filter(|(_, value)| value.starts_with(char::is_whitespace));
         let (name, value) = parts.unwrap_or((piece, ""));

@@ -100,10 +100,10 @@ impl ContactOptions {
 #[derive(Debug, Clone, Copy, clap::Args)]
 #[command(next_help_heading = "Output")]
 pub(super) struct CsvOptions {
-    /// Put an apostrophe before CSV cells of text that a spreadsheet would take as a formula
+    /// Put an apostrophe before CSV cells of text that a spreadsheet would read as a formula
     ///
-    /// These begin with =, +, -, @, a tab or a carriage return, as an id or a name of the input may. Numbers are
-    /// written as ever.
+    /// These begin with =, +, -, @, a tab or a carriage return, as an id or a name of the input may. Numbers stay
+    /// numbers.
     #[arg(long)]
     pub csv_safe: bool,
 }

@@ -1,4 +1,4 @@
-//! The record of what the answers in an unfinished output depend on. It is `FILE.run` until the output is whole.
+//! The record of what the answers in an unfinished output depend on: `FILE.run`, until the output is complete.
 //!
 //! ```text
 //!     version, robot, options     compared before a run is continued
@@ -8,7 +8,7 @@
 //! The record is rewritten whenever more of the input was read, before any of that is answered.
 
 use super::VERSION;
-use super::output::{RUN, beside, named};
+use super::output::{RUN, named, with_ending};
 use crc32fast::Hasher;
 use serde::{Deserialize, Serialize};
 use std::fmt::Debug;
@@ -126,7 +126,7 @@ pub(super) struct Origin {
 impl Origin {
     /// Creates the record for the output at `path`; with `resume`, reads the record that an earlier run left.
     pub fn of(path: Option<&Path>, resume: bool) -> Self {
-        let path = path.filter(|path| *path != Path::new("-")).map(|path| beside(path, RUN));
+        let path = path.filter(|path| *path != Path::new("-")).map(|path| with_ending(path, RUN));
         let bytes = path.as_ref().filter(|_| resume).and_then(|path| std::fs::read(path).ok()).unwrap_or_default();
         let earlier = serde_json::Deserializer::from_slice(&bytes).into_iter::<Record>().next().and_then(Result::ok);
         let known = earlier.as_ref().map(|record| record.input);

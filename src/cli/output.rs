@@ -95,7 +95,7 @@ pub(super) fn spare(output: Option<&Path>, inputs: &[Option<&PathBuf>]) -> crate
     let output = output.unwrap_or(Path::new("-"));
     let places = match output == Path::new("-") {
         true => vec![output.to_owned()],
-        false => ["", PART, RUN].map(|ending| beside(output, ending)).to_vec(),
+        false => ["", PART, RUN].map(|ending| with_ending(output, ending)).to_vec(),
     };
     let written: Vec<_> = places.iter().filter_map(|place| file_of(place, io::stdout())).collect();
     let is_written = |input: &&&PathBuf| file_of(input, io::stdin()).is_some_and(|file| written.contains(&file));
@@ -116,7 +116,7 @@ pub(super) fn apart(
 ) -> Result<(), Failure> {
     let (one, Some(other)) = (one.unwrap_or(Path::new("-")), other) else { return Ok(()) };
     let place = |path: &Path| {
-        let last = beside(path, "");
+        let last = with_ending(path, "");
         Some(last.parent()?.join(".").canonicalize().ok()?.join(last.file_name()?))
     };
     let same_name = one != Path::new("-") && place(one).is_some_and(|one| place(other) == Some(one));
@@ -132,12 +132,12 @@ pub(super) fn apart(
 pub(super) fn writable(path: Option<&Path>) -> io::Result<()> {
     let Some(path) = path.filter(|path| *path != Path::new("-")) else { return Ok(()) };
     let known = std::fs::metadata(path).ok();
-    // The reader of a pipe would take the end of the trial for the end of the output.
+    // Opening and closing a pipe would look like the end of the output to its reader.
     if known.as_ref().is_some_and(|known| !known.is_file() && !known.is_dir()) {
         return Ok(());
     }
     OpenOptions::new().append(true).create(true).open(path).map_err(|error| named(path, error))?;
-    known.map_or_else(|| std::fs::remove_file(beside(path, "")).map_err(|error| named(path, error)), |_| Ok(()))
+    known.map_or_else(|| std::fs::remove_file(with_ending(path, "")).map_err(|error| named(path, error)), |_| Ok(()))
 }
 
 /// The endings that are added to the name of an unfinished output, and to the name of its record ([`super::origin`]).
@@ -218,7 +218,7 @@ impl NewFile {
     }
 
     fn places(path: &Path) -> [PathBuf; 2] {
-        [beside(path, PART), beside(path, "")]
+        [with_ending(path, PART), with_ending(path, "")]
     }
 
     /// Returns the temporary path; `None` if the file is written in place or is finished.
@@ -260,7 +260,7 @@ impl Drop for NewFile {
 }
 
 /// Returns the path of the file at `path`, with links followed and `ending` added to its name.
-pub(super) fn beside(path: &Path, ending: &str) -> PathBuf {
+pub(super) fn with_ending(path: &Path, ending: &str) -> PathBuf {
     // The target of a link is replaced, not the link; this includes a target that does not exist yet.
     let linked = || Some(path.parent()?.join(path.read_link().ok()?));
     let mut name = path.canonicalize().ok().or_else(linked).unwrap_or_else(|| path.to_owned()).into_os_string();
