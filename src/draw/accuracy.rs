@@ -9,8 +9,8 @@ use crate::write::words::grouped;
 const MARKS: [Mark; 6] = [Mark::Circle, Mark::Square, Mark::Triangle, Mark::Diamond, Mark::Star, Mark::Cross];
 
 impl Accuracy {
-    /// Returns the picture of errors against run time. It omits the reference, whose hundred digits would squeeze all
-    /// others together.
+    /// Returns the picture of errors against run time. It omits the reference, whose hundred digits would compress the
+    /// scale of all others.
     pub fn picture(&self) -> Picture {
         let named = self.studies.len() <= MARKS.len();
         let title = match self.studies.as_slice() {

@@ -105,7 +105,7 @@ pub(super) struct PageScale {
 /// The view is fixed along an axis if all states lie within this multiple of the largest size of the robot.
 const FIXED: f64 = 1.5;
 
-/// The weights of values when the usual value is chosen: the `share` of all weights does not exceed it.
+/// How values are weighted in the choice of the usual value, below which the `share` of all weights lies.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Weight {
     share: f64,
@@ -269,7 +269,6 @@ fn to_unit(value: f64, unit: f64) -> f64 {
     if rounded.is_finite() { rounded + 0.0 } else { value }
 }
 
-/// Rounds the entries of a point to multiples of `unit`.
 fn place(point: Vector<f64>, unit: f64) -> Vector<f64> {
     point.map(|entry| to_unit(entry, unit))
 }

@@ -25,7 +25,7 @@ pub enum PlotShape {
     Arrow { from: PlotPoint, to: PlotPoint, stroke: Stroke },
     /// A line of text centered at a point, with a white rim that keeps it readable over lines.
     Text { at: PlotPoint, text: String, size: u32 },
-    /// Names of points, which do not overlap. They stand beside or above their points if possible, with `below` below.
+    /// Names of points, which do not overlap: next to or above their points if possible, with `below` below.
     Names { names: Vec<(PlotPoint, String)>, below: bool, color: Color },
 }
 
@@ -180,7 +180,7 @@ fn gathered(names: Vec<(Pixel, &str)>) -> Vec<(Pixel, String)> {
     gathered
 }
 
-/// Draws a name beside or above its point, with `below` below it, and if possible away from the places `taken`.
+/// Draws a name next to or above its point, with `below` below it, and if possible away from the places `taken`.
 fn draw_name(
     (at, name): (Pixel, &str),
     below: bool,

@@ -109,7 +109,7 @@ pub fn posed(robot: &Robot, feet: &[NamedContact], placement: &Placement, forwar
     let mut shapes = DrawnScene::new(&drawing).robot(JOINT);
     let axes = Vector::axes().map(tip);
     shapes.extend(axes.map(|tip| PlotShape::Arrow { from: point(root.origin), to: point(tip), stroke: ROOT }));
-    // The names of the axes stand before their tips, where there may be something else.
+    // The names of the axes are before their tips, because other shapes may be beyond.
     let beside = Vector::axes().map(|axis| point(tip(axis * 0.85)));
     let mut names: Vec<(PlotPoint, String)> = beside.into_iter().zip(["x", "z"].map(str::to_owned)).collect();
     if robot.bodies.len() <= NAMED {
