@@ -430,8 +430,11 @@ mod tests {
         fn no_pose_exceeds_the_greatest_ease(case in case(true), rotor in 0.0..0.1f64) {
             let plan = Plan::new(&case.robot, &[], &vec![rotor; case.robot.joints.len()]);
             let (workspace, bounds) = (case.computed(&plan, &[]), case.bounds(&plan, &[]));
+            let nv = plan.columns();
+            let left = |i: usize| workspace.factor.pivot(i) / workspace.mass_matrix[i * nv + i];
+            prop_assume!((0..nv).all(|i| left(i) > 1e-6));
             for (column, greatest) in bounds.greatest_ease.iter().enumerate() {
-                let mut inverse = vec![0.0; plan.columns()];
+                let mut inverse = vec![0.0; nv];
                 inverse[column] = 1.0;
                 workspace.factor.solve(&plan, &mut inverse);
                 prop_assert!(inverse[column] <= greatest * greatest * (1.0 + 1e-9), "{column}: {inverse:?} {greatest}");
