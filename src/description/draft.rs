@@ -1,6 +1,6 @@
 //! Converts XML elements to links and joints, checked and with their locations.
 
-use super::elements::{ByName, EXPAND, IgnoredCount, WORLD, limits, misspelt, rotors, undefined_world};
+use super::elements::{ByName, EXPAND, IgnoredCount, MOST_MISSPELT, WORLD, limits, misspelt, rotors, undefined_world};
 use super::repair::Repaired;
 use super::xml::{self, Cursor, MOST_LINKS};
 use super::{Description, JointKind, UrdfJoint, UrdfLink, joint_place, link_place, values};
@@ -87,7 +87,14 @@ fn read_document(document: &Document<'_>) -> Result<Description> {
         let joint = read_joint(name, element, location, &links, &joints, &mut ignored);
         let (joint, unread) = joint.map_err(|error| error.at(joint_place(name)))?;
         description.joints.push(joint);
-        description.misspelt.extend(unread);
+        // The search for a similar name takes time.
+        let unread = unread.filter(|_| description.misspelt.len() < MOST_MISSPELT);
+        description.misspelt.extend(unread.and_then(|mimic| {
+            let error = joints.find(mimic, "joint").err()?;
+            let remedy = error.remedy().map_or(String::new(), |remedy| format!("; {remedy}"));
+            let (line, reason) = (error.location()?.line, format!("{}{remedy}", error.reason()));
+            Some(format!("<mimic> of {name} on line {line} ({reason}), so that this joint moves by itself"))
+        }));
     }
     description.misspelt.extend(misspelt(robot));
     Ok(Description { ignored: ignored.kinds, ..description })
@@ -195,38 +202,27 @@ fn read_link<'input>(
     Ok(UrdfLink { name: name.into(), inertial, collisions, joint: None, location })
 }
 
-/// Reads a joint. A `<mimic>` of a joint that the file does not have is left out and described: most programs read such
-/// a file.
-fn read_joint<'input>(
+/// Reads a joint. A `<mimic>` of a joint that the file does not have is left out and returned: most programs read such a
+/// file.
+fn read_joint<'a, 'input>(
     name: &str,
-    element: Node<'_, 'input>,
+    element: Node<'a, 'input>,
     location: Location,
     links: &ByName,
     joints: &ByName,
     ignored: &mut IgnoredCount<'input>,
-) -> Result<(UrdfJoint, Option<String>)> {
+) -> Result<(UrdfJoint, xml::Child<'a, 'input>)> {
     let [parent, child, origin, axis, mimic] = xml::named(element, ["parent", "child", "origin", "axis", "mimic"]);
     let kind = joint_kind(element)?;
     let parent = links.find(xml::required_child(element, parent, "parent")?, "link")?;
     let child = links.find(xml::required_child(element, child, "child")?, "link")?;
     let origin = values::origin(origin?)?;
     let axis = values::axis(axis?, kind)?;
-    let mut unread = None;
-    let mimic = match mimic? {
-        Some(mimic) => match joints.find(mimic, "joint") {
-            Err(error) if matches!(error.reason(), Reason::UnknownName { .. }) => {
-                values::mimic(mimic, 0)?;
-                unread = error.location().map(|place| {
-                    let remedy = error.remedy().map_or(String::new(), |remedy| format!("; {remedy}"));
-                    let reason = format!("{}{remedy}", error.reason());
-                    format!("<mimic> of {name} on line {} ({reason}), so that this joint moves by itself", place.line)
-                });
-                None
-            }
-            joint => Some(values::mimic(mimic, joint?)?),
-        },
-        None => None,
-    };
+    let mimic = mimic?;
+    let is_unread = |mimic: &Node| mimic.attribute("joint").is_some_and(|name| !joints.by_name.contains_key(name));
+    let unread = mimic.filter(is_unread);
+    let of_joint = |mimic: Node| values::mimic(mimic, if is_unread(&mimic) { 0 } else { joints.find(mimic, "joint")? });
+    let mimic = mimic.map(of_joint).transpose()?.filter(|_| unread.is_none());
     let mut limit = None;
     for child in element.children().filter(Node::is_element) {
         match tag(element, child) {

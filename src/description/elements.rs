@@ -161,7 +161,7 @@ pub(super) fn rotors(robot: Node<'_, '_>) -> Vec<String> {
 }
 
 /// Largest number of misspelt names that are kept.
-const MOST_MISSPELT: usize = 100;
+pub(super) const MOST_MISSPELT: usize = 100;
 
 /// Returns attributes and elements of a robot that are not read and may be misspelt: they differ by one letter from a
 /// name that is read and missing, or stand in the wrong element. Impossible limits are included.

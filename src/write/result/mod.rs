@@ -30,8 +30,8 @@ use serde_json::value::RawValue;
 use std::borrow::Cow;
 
 /// The result of a state or of a contact problem. It is serialized whole; [`Report::append_json`] also writes it in
-/// brief. Forces are serialized as their [`ForcesRecord`](super::ForcesRecord), under their own names; only results of
-/// impacts are read back.
+/// brief. Forces are serialized as their [`ForcesRecord`](super::ForcesRecord), under their own names, except by the
+/// function `Report::serialize` that serde derives; only results of impacts are read back.
 ///
 /// ```
 /// # fn main() -> heelstrike::Result<()> {
