@@ -39,7 +39,9 @@ fn read_document(document: &Document<'_>) -> Result<Description> {
     refuse_xacro(robot)?;
 
     let mut cursor = Cursor::new(document.input_text());
-    let (mut links, mut joints) = (ByName::new("link"), ByName::new("joint"));
+    // Most children are links and joints, each with a text of white space.
+    let expected = robot.children().count() / 4;
+    let (mut links, mut joints) = (ByName::new("link", expected), ByName::new("joint", expected));
     let mut ignored = IgnoredCount::default();
     for element in robot.children().filter(Node::is_element) {
         let location = cursor.locate(element.range().start);

@@ -18,8 +18,8 @@ pub(super) struct ByName<'a, 'input> {
 }
 
 impl<'a, 'input> ByName<'a, 'input> {
-    pub(super) fn new(what: &'static str) -> Self {
-        Self { what, elements: Vec::new(), by_name: HashMap::new() }
+    pub(super) fn new(what: &'static str, expected: usize) -> Self {
+        Self { what, elements: Vec::with_capacity(expected), by_name: HashMap::with_capacity(expected) }
     }
 
     pub(super) fn push(&mut self, element: Node<'a, 'input>, location: Location) -> Result<()> {
@@ -107,6 +107,9 @@ const READ: [&str; 19] = [
     "mesh",
 ];
 
+/// Frequent names of URDF that are not read, and not like any name that is.
+const UNREAD: [&str; 3] = ["effort", "velocity", "dynamics"];
+
 /// Returns the attributes and the child elements that are read of elements with this tag; `None` if none are read.
 fn read(tag: &str) -> Option<(&'static [&'static str], &'static [&'static str])> {
     Some(match tag {
@@ -190,10 +193,15 @@ pub(super) fn misspelt(robot: Node<'_, '_>) -> Vec<String> {
         // The element has numbers between its tags, but they belong in an attribute.
         let text = element.text().filter(|text| children.is_empty() && !text.trim().is_empty());
         let text = text.map(|_| format!("text in <{tag}> on line {} ({}?)", line(element), attributes.join(" or ")));
-        // In most elements everything is read, and no names need to be compared.
-        let is_read = given().all(|name| attributes.contains(&name)) && tags().all(|tag| children.contains(&tag));
-        if is_read && tag != "limit" {
-            found.extend(text);
+        let is_no_limit = tag == "limit" && limits(element).is_none_or(|[lower, upper]| lower > upper);
+        let limit = is_no_limit.then(|| {
+            let [lower, upper] = ["lower", "upper"].map(|end| element.attribute(end).unwrap_or("0"));
+            format!("<limit> on line {} (no limit from {lower} to {upper})", line(element))
+        });
+        // In most elements nothing is misspelt, and no names need to be compared.
+        let is_known = |name: &str, read: &[&str]| read.contains(&name) || UNREAD.contains(&name);
+        if given().all(|name| is_known(name, attributes)) && tags().all(|tag| is_known(tag, children)) {
+            found.extend(text.into_iter().chain(limit).take(MOST_MISSPELT - found.len()));
             continue;
         }
         let meant = meant(given(), attributes);
@@ -214,15 +222,10 @@ pub(super) fn misspelt(robot: Node<'_, '_>) -> Vec<String> {
         let unread = elements().filter(|(_, name)| !children.contains(name) && meant(name).is_none());
         let of_others =
             unread.filter(|(_, name)| *name == "visual" || read(name).is_some()).filter_map(|(child, name)| {
-                let near = children.iter().copied().chain([around]).chain(READ).find(|other| takes(name, other));
-                let owner = near?;
+                let mut others = children.iter().copied().chain([around]).chain(READ);
+                let owner = others.find(|other| takes(name, other))?;
                 Some(format!("<{name}> in <{tag}> on line {} (in <{owner}>?)", line(child)))
             });
-        let is_no_limit = tag == "limit" && limits(element).is_none_or(|[lower, upper]| lower > upper);
-        let limit = is_no_limit.then(|| {
-            let [lower, upper] = ["lower", "upper"].map(|end| element.attribute(end).unwrap_or("0"));
-            format!("<limit> on line {} (no limit from {lower} to {upper})", line(element))
-        });
         let odd = text.into_iter().chain(misread).chain(misplaced).chain(misnamed).chain(of_others).chain(limit);
         found.extend(odd.take(MOST_MISSPELT - found.len()));
     }

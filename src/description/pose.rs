@@ -74,6 +74,9 @@ pub fn product(a: &Matrix, b: &Matrix) -> Matrix {
 
 /// Scales `vector` to length one. A vector of length one keeps its digits, and zero remains zero.
 pub fn unit(vector: [f64; 3]) -> [f64; 3] {
+    if vector.iter().map(|component| component * component).sum::<f64>() == 1.0 {
+        return vector;
+    }
     // Scaling by a power of two is exact, and prevents overflow and underflow of the squares.
     let largest = vector.into_iter().map(f64::abs).fold(0.0, f64::max);
     if largest == 0.0 {

@@ -146,7 +146,7 @@ fn parsed<'t, const N: usize>(mut words: impl Iterator<Item = &'t str>) -> Optio
             // Most numbers.
             "0" => 0.0,
             "1" => 1.0,
-            word => fast_float2::parse(word).ok()?,
+            word => word.parse().ok()?,
         };
     }
     words.next().is_none().then_some(numbers)
