@@ -86,7 +86,7 @@ fn faults(text: &str) -> Vec<std::ops::Range<usize>> {
         match open {
             // The hyphen before `-->` may not be another one.
             "<!--" if text[inside..=end].contains("--") => found.push(inside..end),
-            "<?" if !in_root && !(begin == 0 && is_declaration(&text[..at], &text[at..])) => found.push(begin..at),
+            "<?" if !(in_root || begin == 0 && is_declaration(&text[..at], &text[at..])) => found.push(begin..at),
             _ => {}
         }
     }
