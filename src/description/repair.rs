@@ -96,7 +96,8 @@ fn faults(text: &str) -> Vec<std::ops::Range<usize>> {
 /// Returns whether `mark`, at the beginning of a file, is a declaration that XML allows, and tags follow in the `rest`.
 fn is_declaration(mark: &str, rest: &str) -> bool {
     let is_allowed = || Document::parse(&format!("{mark}<robot/>")).is_ok();
-    mark.starts_with("<?xml ") && rest.trim_start().starts_with('<') && is_allowed()
+    let is_tag = |rest: &str| rest.starts_with('<') && !rest.starts_with("<?");
+    mark.starts_with("<?xml ") && is_tag(rest.trim_start()) && is_allowed()
 }
 
 /// Returns where the name and the attributes of the root's tag end.
