@@ -226,7 +226,6 @@ def test_touchdowns_are_those_of_the_command(ramone, tmp_path):
     assert len(ramone.touchdowns(tmp_path / "walk.ndjson", friction=0.8)) == len(found)
     # The format of a file follows from its name.
     for name, remedy in {"walk.tsv": "if these are commas, end the file's name in `.csv`$",
-                         "walk.ndjson": "then end the file's name in `.csv`$",
                          "walk.parquet": "or give the command `--input-format csv`$"}.items():
         (tmp_path / name).write_text((ROOT / "examples/gait/ramone_walk.csv").read_text())
         with pytest.raises(heelstrike.Refused, match=remedy):
