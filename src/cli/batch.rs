@@ -127,7 +127,8 @@ pub(super) fn run(args: &Args) -> Completion {
         return Err(in_input(Error::new(Reason::Missing("a state".into()))).hint(hint).into());
     }
     note_all(header.as_ref().and_then(notes::missing));
-    note_all(header.as_ref().and_then(|header| args.misfit(&robot, header, input_format)));
+    let misfit = header.as_ref().and_then(|header| args.misfit(&robot, header, input_format));
+    note_all(misfit.into_iter().flatten().flatten());
     // This refuses a robot without feet before any file is replaced.
     let thresholds = args.recording.thresholds(&robot, &feet);
     let thresholds = thresholds.map_err(|error| error.in_file(input::name(&args.robot.robot)))?;
@@ -223,8 +224,8 @@ impl Args {
         Ok([input, output])
     }
 
-    /// Returns a note if velocities in the first rows do not fit the positions; only a regular file can be read twice.
-    fn misfit(&self, robot: &Robot, header: &Header, format: Form) -> Option<String> {
+    /// Returns notes if velocities in the first rows do not fit the positions; only a regular file can be read twice.
+    fn misfit(&self, robot: &Robot, header: &Header, format: Form) -> Option<[Option<String>; 2]> {
         let has_all = header.missing().is_empty() && !header.is_spatial();
         let is_stream = self.states == Path::new("-") || self.states.starts_with("/dev") || !self.states.is_file();
         if self.recording.is_in_order() || !has_all || is_stream {
@@ -234,7 +235,7 @@ impl Args {
         let header = states.header(robot, Rates::Columns, &self.foreign, true).ok()??;
         let (defaults, pauses) = (Defaults::default(), AtomicBool::new(false));
         let samples = states.samples(&header, robot, &defaults, &pauses).take(FIRST_ROWS);
-        Seen::misfit(unwrapped(samples, robot), robot)
+        Some(Seen::misfit(unwrapped(samples, robot), robot))
     }
 
     fn open(&self, format: Form, origin: &Origin, progress: &ProgressBar) -> crate::Result<States> {
@@ -381,14 +382,13 @@ impl Args {
         // Only for JSON: an input in a table format without a header has no states at all.
         if header.is_none() && format == Form::Ndjson && (in_order || !self.foreign.is_empty()) {
             let what = if in_order { "touchdowns and velocities over time need" } else { "--foreign needs" };
-            let hint = "give CSV with a header (--input-format csv), or a flat object on each line: `jq -c '.[]'` takes a \
-                        list apart";
+            let hint = "nested states have no columns: give a flat object with keys q_..., v_... on each line (`jq -c '.[]'` \
+                        takes a list of these apart), or CSV with a header (--input-format csv)";
             return Err(Failure::usage("", format!("{what} a table"), hint));
         }
-        let checked = |header: Header| match self.forces {
-            _ if self.recording.touchdowns => header.with_base(),
-            true => header.without_torques(robot),
-            false => Ok(header),
+        let checked = |header: Header| {
+            let header = if self.recording.touchdowns { header.with_base()? } else { header };
+            if self.forces || self.next.next { header.without_torques(robot) } else { Ok(header) }
         };
         Ok(header.map(checked).transpose().map_err(in_input)?)
     }

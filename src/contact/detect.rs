@@ -74,10 +74,12 @@ impl Footing<'_> {
         let along = |point: Point| plane.along(plane.lowest(placement, point));
         let standing = candidates.into_iter().filter(|&point| height(point) <= least + flat);
         let standing = standing.min_by(|&a, &b| along(a).total_cmp(&along(b))).ok_or_else(|| {
-            let what = format!("a collision shape or named contact of link \"{}\"", self.name(link));
-            Error::new(Reason::Missing(what))
-                .at("stance")
-                .hint("name a link with a foot, or give its point in `contacts`")
+            let (what, hint) = match self.named() {
+                Some(_) => ("one of the named contacts, on", "they replace all feet: name one, or add this one"),
+                None => ("a collision shape of", "name a link with a foot, or give its point in `contacts`"),
+            };
+            let what = format!("{what} link \"{}\"", self.name(link));
+            Error::new(Reason::Missing(what)).at("stance").hint(hint)
         })?;
         let foot = self.contact(link, plane.touch(placement, standing));
         let above = height(standing) - lowest;

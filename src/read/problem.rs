@@ -84,7 +84,13 @@ impl Problem {
         };
         let (contact, names) = match (field("delassus"), field("mass_matrix")) {
             (Some(delassus), None) => {
-                let (delassus, velocity_before) = delassus_matrix(delassus, required("velocity_before")?)?;
+                let velocity = required("velocity_before").map_err(|error| match field("velocity") {
+                    Some(_) => error.hint(
+                        "did you mean velocity_before, not velocity? it has [tangential, normal] of each contact",
+                    ),
+                    None => error,
+                })?;
+                let (delassus, velocity_before) = delassus_matrix(delassus, velocity)?;
                 let (friction, restitution, names) = laws(velocity_before.len())?;
                 (ContactProblem::new(delassus, velocity_before, friction, restitution), names)
             }

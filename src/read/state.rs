@@ -329,9 +329,16 @@ fn axes(node: Node) -> Result<[f64; 2]> {
 
 /// Reads `{"link", "offset"}` or `{"world": [x, z]}`.
 fn spring_end(end: Node, robot: &Robot) -> Result<SpringEnd> {
+    const ENDS: &str = "name a link as {\"link\": NAME}, or give a place as {\"world\": [0, 0.5]}";
+    if end.as_text().is_some() {
+        return Err(end.expected("an object").hint(ENDS));
+    }
     match end.object("SpringEnd", ["link", "offset", "world"])? {
         [None, None, Some(world)] => axes(world).map(|place| SpringEnd::World(place.into())),
-        [None, _, None] => Err(end.missing("link").hint("name a link, or give a place as {\"world\": [0, 0.5]}")),
+        [None, _, None] => Err(end.missing("link").hint(ENDS)),
+        [Some(link), ..] if link.as_text() == Some("world") && robot.link("world").is_none() => {
+            Err(link.refuse(robot.no_link("world")).hint(ENDS))
+        }
         [link, offset, None] => link_point(end, link, offset, robot).map(SpringEnd::Link),
         [_, _, Some(world)] => {
             let reason = Reason::Inconsistent("the end of a spring is either on a link or in the world".into());
@@ -371,9 +378,8 @@ fn joint(node: Node, name: &str, robot: &Robot) -> Result<usize> {
         if let Some(frozen) = robot.frozen(name) {
             let refused = no_coordinate(frozen.why());
             return match frozen.reason {
-                FreezeReason::OffPlane { .. } | FreezeReason::Asked { .. } => {
-                    refused.hint(format!("pose it by `hold: {name}=VALUE`"))
-                }
+                FreezeReason::OffPlane { .. } => refused.hint(format!("pose it by `hold: {name}=VALUE`")),
+                FreezeReason::Asked { .. } => refused.hint("leave it out of the state: `hold` has posed it"),
                 _ => refused,
             };
         }

@@ -14,6 +14,7 @@ pub use ground::{Ground, Profile};
 pub(crate) use named::Entries;
 pub use named::Named;
 pub use oddities::OutsideLimits;
+pub(crate) use oddities::rough_friction;
 pub use scene::{
     AppliedImpulse, ByLink, LinkPoint, NamedContact, NamedLoop, Scene, SpringEnd, SpringLaw, VirtualSpring,
 };

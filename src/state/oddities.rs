@@ -56,9 +56,7 @@ impl State {
     pub fn oddities(&self, robot: &Robot) -> Vec<String> {
         let mut odd = self.oddities_of_motion(robot);
         let friction = &self.scene.friction;
-        let rough = |own: &&Friction| matches!(own, Friction::Finite(mu) if *mu > ROUGH[0] && *mu < ROUGH[1]);
-        let rough = friction.default.iter().chain(friction.links.values()).find(rough);
-        odd.extend(rough.map(|mu| format!("the coefficient of friction is {mu}: was it meant in percent or degrees?")));
+        odd.extend(rough_friction(friction.default.iter().chain(friction.links.values()).copied()));
         odd
     }
 
@@ -122,6 +120,12 @@ impl State {
         let angles = self.position.iter().copied().take(robot.dofs()).enumerate().filter(like);
         angles.filter_map(|(at, angle)| Some((robot.coordinates().nth(at)?, angle)))
     }
+}
+
+/// Notes the first coefficient of friction that is probably in percent or degrees.
+pub(crate) fn rough_friction(mut friction: impl Iterator<Item = Friction>) -> Option<String> {
+    let rough = friction.find(|own| matches!(own, Friction::Finite(mu) if *mu > ROUGH[0] && *mu < ROUGH[1]));
+    rough.map(|mu| format!("the coefficient of friction is {mu}: was it meant in percent or degrees?"))
 }
 
 /// Returns whether the body that a coordinate rotates carries no other joint.

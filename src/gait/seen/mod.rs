@@ -32,13 +32,14 @@ pub struct Seen {
 }
 
 impl Seen {
-    /// Returns a note if velocities are not the rates of positions, as with other units or another sign.
-    pub fn misfit<S>(samples: impl Iterator<Item = Sampled<S>>, robot: &Robot) -> Option<String> {
+    /// Returns notes if velocities are not the rates of positions: if the base's are in its own axes, and if others are
+    /// in other units or have another sign.
+    pub fn misfit<S>(samples: impl Iterator<Item = Sampled<S>>, robot: &Robot) -> [Option<String>; 2] {
         let (mut clock, mut motion) = (Clock::default(), Motion::default());
         for Sample { state, time, .. } in samples.flatten() {
             motion.add(&state, time, clock.step(time), true, robot);
         }
-        motion.misfit(robot)
+        [motion.turned(), motion.misfit(robot)]
     }
 
     /// Adds the next sample, with the height of its lowest foot \[m\].

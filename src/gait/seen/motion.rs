@@ -131,14 +131,18 @@ impl Motion {
                  go back where another trial begins"
             )
         });
+        [repeats, jumps, self.turned(), misfit].into_iter().flatten()
+    }
+
+    /// Notes that the base's velocity is in its own axes.
+    pub fn turned(&self) -> Option<String> {
         let [own, turned] = self.errors;
         let is_turned = self.steps >= ENOUGH && own > APART * APART * self.steps as f64 && turned < BETTER * own;
-        let turned = is_turned.then(|| {
+        is_turned.then(|| {
             "the base's velocity fits its positions over time if it is turned by the pitch: give it in the world's axes, \
              not the body's"
                 .to_owned()
-        });
-        [repeats, jumps, turned, misfit].into_iter().flatten()
+        })
     }
 
     /// Notes that velocities are not the rates of positions, as with other units or another sign.

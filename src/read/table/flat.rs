@@ -39,8 +39,14 @@ pub(super) fn read(line: &[u8], columns: &[String], cells: &mut ByteRecord) -> R
     for (key, value) in &fields {
         let is_next = columns.get(next).is_some_and(|column| column == key);
         let at = if is_next { Some(next) } else { columns.iter().position(|column| column == key) };
-        let unknown = || refuse(key, Reason::Inconsistent("the first line has no such key".into()));
-        let at = at.ok_or_else(|| unknown().hint("it names the columns: give the key there, too, with null"))?;
+        let at = at.ok_or_else(|| match fields.iter().find(|(key, _)| matches!(&**key, "position" | "velocity")) {
+            Some((nested, _)) if !columns.iter().any(|column| column == nested) => {
+                let reason = "this line is a nested state, and the first line is flat".to_owned();
+                refuse(nested, Reason::Inconsistent(reason)).hint("write all states in one form")
+            }
+            _ => refuse(key, Reason::Inconsistent("the first line has no such key".into()))
+                .hint("it names the columns: give the key there, too, with null"),
+        })?;
         if values[at].replace(value.get()).is_some() {
             return Err(refuse(key, Reason::Duplicate { what: "key", name: key.to_string() }));
         }

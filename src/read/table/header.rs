@@ -120,8 +120,10 @@ impl Header {
         }
         let mut columns = Vec::with_capacity(names.len());
         let mut seen = HashSet::new();
+        // Without a coordinate, the line may be a row, in which numbers may repeat; [`Self::check`] refuses it.
+        let is_row = !names.iter().any(|name| name.starts_with("q_") || name.starts_with("v_"));
         for (at, name) in names.iter().enumerate() {
-            let column = match seen.insert(name.as_str()) {
+            let column = match seen.insert(name.as_str()) || is_row && name.parse::<f64>().is_ok() {
                 true if foreign.contains(name) => Ok(TableColumn::Carried),
                 true => column(name, robot),
                 false => {
@@ -204,7 +206,8 @@ impl Header {
         let others = resembling[1..].iter().map(|(_, name, near)| format!("{} for {name}", near.join(" or ")));
         let others = few(others.collect());
         let also = if others.is_empty() { String::new() } else { format!(" also {others};") };
-        let hint = format!("did you mean {}?{also} if not, give `foreign: {}`", near.join("? or "), quoted(name));
+        let unit = if has_other_unit(&self.names[*at], &own) { format!(" {OTHER_UNIT};") } else { String::new() };
+        let hint = format!("did you mean {}?{also}{unit} if not, give `foreign: {}`", near.join("? or "), quoted(name));
         let error = Error::new(Reason::Inconsistent(reason)).hint(hint);
         Err(self.in_column(error, record, *at))
     }
@@ -443,6 +446,19 @@ fn is_of_coordinate(name: &str, words: &[&str], own: &HashSet<String>) -> bool {
     without_one_of(&plain(name), words).iter().any(|rest| own.contains(rest))
 }
 
+/// The remedy for a column in other units.
+const OTHER_UNIT: &str = "numbers are in m, radians and s: convert the column, and give it the name of its coordinate";
+
+/// Returns whether a name is that of one of the `own` coordinates, and of a unit of which it is not.
+fn has_other_unit(name: &str, own: &HashSet<String>) -> bool {
+    const UNITS: [&str; 10] = ["deg_s", "deg_per_s", "dps", "rpm", "mm", "mm_s", "mm_per_s", "cm", "cm_s", "cm_per_s"];
+    let flat = plain(&name.replace(['[', '('], "_"));
+    let coordinate = |unit: &&str| Some(flat.strip_suffix(unit)?.strip_suffix('_')?.trim_end_matches('_').to_owned());
+    is_of_coordinate(name, &["deg", "degree", "degrees"], own)
+        || ["[deg", "(deg"].iter().any(|unit| name.contains(unit))
+        || UNITS.iter().filter_map(coordinate).any(|coordinate| own.contains(&coordinate))
+}
+
 /// Returns the names of the coordinates in the form in which [`plain`] compares them.
 fn plain_coordinates(robot: &Robot) -> HashSet<String> {
     in_columns(robot).map(|own| plain(&own)).collect()
@@ -490,9 +506,8 @@ fn coordinate(prefix: &str, name: &str, robot: &Robot, moving: fn(usize) -> Tabl
     let frozen = robot.reading.frozen.iter().map(|frozen| frozen.name.clone());
     let known: Vec<String> = in_columns(robot).chain(frozen).map(|known| format!("{prefix}{known}")).collect();
     let unknown = Error::new(Reason::UnknownName { what: "coordinate", name: short(name) });
-    let in_degrees = is_of_coordinate(name, &["deg", "degree", "degrees"], &plain_coordinates(robot));
-    if in_degrees || name.contains("[deg") || name.contains("(deg") {
-        return Err(unknown.hint("angles are in radians: convert the column, and give it the name of its coordinate"));
+    if has_other_unit(name, &plain_coordinates(robot)) {
+        return Err(unknown.hint(OTHER_UNIT));
     }
     Err(unknown.did_you_mean(&format!("{prefix}{}", short(name)), known.iter().map(String::as_str)))
 }

@@ -22,7 +22,7 @@ use crate::pipeline::{Aspect, Impact, LeftOut, NearestFoot, Sustained};
 use crate::planar::{Pair, Vector};
 use crate::read::Problem;
 use crate::read::table::CarriedValue;
-use crate::state::{Named, State};
+use crate::state::{Named, State, rough_friction};
 use crate::{Mode, Robot};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::Value;
@@ -394,7 +394,7 @@ const ILL_CONDITIONED: f64 = 1e14;
 
 fn notes(problem: &Problem, analysis: &Analysis) -> Cow<'static, [String]> {
     let keep = "give mass_matrix, contact_jacobian and velocity to keep what rounding loses";
-    let mut notes = Vec::new();
+    let mut notes = Vec::from_iter(rough_friction(problem.contact.friction()));
     if problem.contact.is_repaired() {
         let rank = analysis.rank.map_or(String::new(), |rank| format!(", of rank {rank},"));
         notes.push(format!(

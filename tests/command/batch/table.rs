@@ -290,6 +290,13 @@ fn rows_that_no_robot_moves_through_are_noted() {
         let found = notes(change);
         assert!(found.contains(note), "{note}: {found}");
     }
+    // Without `--touchdowns`, too.
+    let (names, mut rows) = walk_cells();
+    turn(&mut rows);
+    let table: Vec<String> = [names].iter().chain(&rows).map(|row| row.join(",")).collect();
+    let states = file("turned.csv", table.join("\n"));
+    let run = heelstrike(&["batch", RAMONE, &states, "--friction", "0.6", "--brief"]);
+    assert!(run.stderr.contains(cases[4].0), "{}", run.stderr);
     let later = |row: &[String], passed: f64| {
         let mut row = row.to_vec();
         row[time] = (number(&row[time]) + passed).to_string();

@@ -11,6 +11,7 @@ use std::time::Duration;
 
 mod files;
 mod people;
+mod remedies;
 mod robots;
 mod states;
 mod studies;

@@ -173,7 +173,12 @@ fn springs_are_refused_with_place_and_remedy() {
         (json!({"b": origin}), "virtual[0]", "\"a\" is missing", "two ends"),
         (json!({"a": arm}), "virtual[0]", "\"b\" is missing", "two ends"),
         (json!({"a": {"link": "arn"}, "b": origin}), "virtual[0].a.link", "arn", "did you mean arm?"),
-        (json!({"a": arm, "b": {}}), "virtual[0].b", "\"link\" is missing", "name a link, or give a place"),
+        (
+            json!({"a": arm, "b": {}}),
+            "virtual[0].b",
+            "\"link\" is missing",
+            "name a link as {\"link\": NAME}, or give a place",
+        ),
         (two_ends, "virtual[0].b.world", "either on a link or in the world", "leave out either"),
         (json!({"a": arm, "b": {"world": [0, 0, 0]}}), "virtual[0].b.world", "found 3 entries", axes),
         (json!({"a": arm, "b": origin, "stiffness": 5}), "virtual[0].stiffness", "a list of 2 numbers", axes),
