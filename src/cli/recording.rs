@@ -102,7 +102,7 @@ impl RecordingOptions {
     }
 
     /// Returns the samples to be answered. The parts of motion that a projection of the base omits are added to
-    /// `dropped`, and observations from the search for touchdowns to `seen`.
+    /// `dropped`, and observations of the recording to `seen`.
     ///
     /// # Errors
     /// Returns an error if touchdowns are requested and the robot has no feet.
@@ -126,6 +126,8 @@ impl RecordingOptions {
         if self.touchdowns {
             let found = gait::find(samples, robot, feet, self.at, self.touching)?;
             samples = Box::new(found.with(thresholds).meaning(self.heights()).noting(seen));
+        } else if self.velocity.is_some() {
+            samples = Box::new(Seen::watching(samples, (robot, seen)));
         }
         Ok(samples)
     }

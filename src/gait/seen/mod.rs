@@ -9,6 +9,7 @@ use super::clip::{Clock, ClockStep};
 use super::{Heights, Sample, Sampled, Thresholds};
 use crate::Robot;
 use crate::error::rounded;
+use std::sync::Mutex;
 
 /// The fewest touchdowns or ends of descents from which a common level is computed.
 const ENOUGH: usize = 4;
@@ -42,16 +43,32 @@ impl Seen {
         [motion.turned(), motion.misfit(robot)]
     }
 
+    /// Passes `samples` on and adds their order and motion to `seen`.
+    pub fn watching<'r, S>(
+        samples: impl Iterator<Item = Sampled<S>> + 'r,
+        (robot, seen): (&'r Robot, &'r Mutex<Self>),
+    ) -> impl Iterator<Item = Sampled<S>> + 'r {
+        let mut clock = Clock::default();
+        samples.inspect(move |sampled| {
+            if let (Ok(sample), Ok(mut seen)) = (sampled, seen.lock()) {
+                seen.follow(sample, clock.step(sample.time), robot);
+            }
+        })
+    }
+
     /// Adds the next sample, with the height of its lowest foot \[m\].
     pub(super) fn add<S>(&mut self, sample: &Sample<S>, step: ClockStep, lowest: f64, robot: &Robot) {
         self.lowest = Some(self.lowest.map_or(lowest, |before| before.min(lowest)));
-        let Sample { state, time, .. } = sample;
         if self.oddity.is_none() {
-            self.oddity = state.oddities_of_motion(robot).into_iter().next();
+            self.oddity = sample.state.oddities_of_motion(robot).into_iter().next();
         }
+        self.follow(sample, step, robot);
+    }
+
+    fn follow<S>(&mut self, Sample { state, time, rate_over, .. }: &Sample<S>, step: ClockStep, robot: &Robot) {
         self.order.add(*time, step);
         // Velocities that were computed from positions are consistent with them.
-        let is_recorded = sample.rate_over == [*time; 2];
+        let is_recorded = *rate_over == [*time; 2];
         self.motion.add(state, *time, step, is_recorded, robot);
     }
 

@@ -120,15 +120,15 @@ impl Motion {
         let misfit = self.misfit(robot);
         let repeats = self.repeats.text().map(|when| {
             format!(
-                "rows repeat the positions of the row before, although the robot moves, {when}: touchdowns next to them \
-                 may be missed or false; leave such rows out"
+                "rows repeat the positions of the row before, although the robot moves, {when}: velocities and touchdowns \
+                 next to them may be false; leave such rows out"
             )
         });
         // Velocities in other units are no measure of jumps.
         let jumps = self.jumps.text().zip(self.jumped.as_ref()).filter(|_| misfit.is_none()).map(|(when, jumped)| {
             format!(
-                "positions jump {when} ({jumped}): touchdowns there may be false; leave outliers out, and let time \
-                 go back where another trial begins"
+                "positions jump {when} ({jumped}): velocities and touchdowns there may be false; leave outliers out, and \
+                 let time go back where another trial begins"
             )
         });
         [repeats, jumps, self.turned(), misfit].into_iter().flatten()

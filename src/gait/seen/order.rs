@@ -106,7 +106,7 @@ impl Order {
         let halts = self.halts.text().filter(|_| !self.stands_still());
         let odd = [
             (self.returns.text(), "rows are not in the order of time, which goes back", "a new clip begins there"),
-            (gaps, "rows seem to be missing", "a touchdown there may be missed or less accurate"),
+            (gaps, "rows seem to be missing", "what happens there is missed or less accurate"),
             (halts, "more than two rows have the same time", "is it rounded? each row needs its own"),
         ];
         let odd = odd.into_iter().filter_map(|(when, what, then)| Some(format!("{what} {}: {then}", when?)));

@@ -10,6 +10,7 @@ use std::process::{Child, ChildStdin, Command, Stdio};
 #[cfg(feature = "columnar")]
 mod columnar;
 mod memory;
+mod recording;
 mod refusals;
 mod resume;
 mod summary;
