@@ -83,15 +83,14 @@ impl<'t> Study<'t> {
         let question = question.map(|field| field.choice("\"impact\" or \"forces\"", aspects)).transpose()?;
         let constants = constants(&tree, text)?;
         let with_constants = Node::root(&tree, text, Some(&constants));
-        let field = with_constants.field("parameters")?.ok_or_else(|| {
-            let example = "as in \"parameters\": {\"alpha\": {\"from\": 0, \"to\": 1, \"steps\": 50}}";
-            root.missing("parameters").hint(example)
-        })?;
+        let example = "as in \"parameters\": {\"alpha\": {\"from\": 0, \"to\": 1, \"steps\": 50}}";
+        let field = with_constants.field("parameters")?.ok_or_else(|| root.missing("parameters").hint(example))?;
         let parameters: Vec<_> =
             field.fields("parameter")?.map(|entry| parameter(root, entry, &constants)).collect::<Result<_>>()?;
         if !(1..=2).contains(&parameters.len()) {
             let reason = format!("a study varies one or two parameters, not {}", parameters.len());
-            return Err(field.refuse(Reason::Inconsistent(reason)).hint("make the others constants"));
+            let hint = if parameters.is_empty() { example } else { "make the others constants" };
+            return Err(field.refuse(Reason::Inconsistent(reason)).hint(hint));
         }
         let samples = parameters.iter().try_fold(1_usize, |all, parameter| all.checked_mul(parameter.steps));
         if samples.is_none_or(|samples| samples > SAMPLE_LIMIT) {
