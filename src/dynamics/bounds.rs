@@ -47,6 +47,7 @@ use crate::scalar::{Magnitude, UNDERFLOW};
 const ENTRY: f64 = 96.0;
 /// The bound of G above which that of every pose gives way to that of the pose.
 const COARSE: f64 = 1e-8;
+
 /// Bounds on the motion of one end of a loop relative to the other, with every arm stretched.
 #[derive(Debug, Clone, Default)]
 pub struct Reach {
