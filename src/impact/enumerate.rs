@@ -55,7 +55,7 @@ pub trait Visitor<T> {
 
     /// Whether to skip a combination of which only the numbers of the last contact are known yet. A visitor that skips
     /// combinations counts them itself. [`Tableau::visit_one`] does not call this.
-    fn drops(&mut self, _modes: &[Mode], _last: Pair<T>) -> bool {
+    fn drops(&mut self, _modes: &[Mode], _last: &Pair<T>) -> bool {
         false
     }
 
@@ -169,7 +169,7 @@ impl<T: Real> Tableau<T> {
                 self.modes[contact] = mode;
                 let impulse = law.impulse(mode);
                 let depth = self.decide_own(contact, impulse, source);
-                if is_last && visitor.drops(&self.modes, self.constants(depth).as_chunks().0[contact]) {
+                if is_last && visitor.drops(&self.modes, &self.constants(depth).as_chunks().0[contact]) {
                     continue;
                 }
                 self.decide_others(contact, impulse, source);
@@ -275,13 +275,14 @@ impl<T: Real> Leaf<'_, T> {
     }
 
     /// The two numbers of a contact: `[c_t, xi_n]` if L = 0, `[c_t, lambda]` if it has a ray, `[L_t, L_n]` if free.
-    pub fn numbers(&self, contact: usize) -> Pair<T> {
-        self.constants[contact]
+    #[inline]
+    pub fn numbers(&self, contact: usize) -> &Pair<T> {
+        &self.constants[contact]
     }
 
     /// The impulse of a contact, [tangential, normal] \[N s\].
     pub fn impulse(&self, contact: usize) -> Pair<T> {
-        let [first, second] = self.numbers(contact);
+        let [first, second] = *self.numbers(contact);
         match self.impulses(contact) {
             Impulse::Zero => [T::zero(); 2],
             Impulse::Along(ray) => ray.map(|entry| T::from_f64(entry) * second),
@@ -291,7 +292,7 @@ impl<T: Real> Leaf<'_, T> {
 
     /// The velocity of a contact as `[c_t, xi_n]` \[m/s\]; c_n = xi_n - bounce.
     pub fn velocity(&self, contact: usize) -> Pair<T> {
-        let [first, second] = self.numbers(contact);
+        let [first, second] = *self.numbers(contact);
         match self.impulses(contact) {
             Impulse::Zero => [first, second],
             Impulse::Along(_) => [first, T::zero()],
@@ -396,7 +397,7 @@ mod tests {
                 tableau.load_entries(problem.laws(), |row, column| sum(true_entry(row, column)), true_free);
                 let exact = tableau.leaf(leaf.modes);
                 for contact in 0..3 {
-                    for (own, exact) in leaf.numbers(contact).into_iter().zip(exact.numbers(contact)) {
+                    for (own, exact) in leaf.numbers(contact).iter().zip(*exact.numbers(contact)) {
                         let error = (exact - Interval::from_f64(own.value)).to_f64().abs();
                         let is_beyond = error > own.error();
                         assert!(!is_beyond, "{:?}: {error:e} > {:e}", leaf.modes, own.error());

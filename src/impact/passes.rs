@@ -37,7 +37,7 @@ impl Visitor<Rounded> for F64Pass<'_, '_> {
         is_spent_after(ROUNDS)
     }
 
-    fn drops(&mut self, modes: &[Mode], last: Pair<Rounded>) -> bool {
+    fn drops(&mut self, modes: &[Mode], last: &Pair<Rounded>) -> bool {
         let Self { shares, regular, collected, .. } = self;
         let laws = collected.problem.laws();
         let (Some(&mode), Some(law)) = (modes.last(), laws.last()) else { return false };

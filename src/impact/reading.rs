@@ -48,7 +48,7 @@ impl Rejection {
 
 /// Whether the two numbers of a contact have a wrong sign for its mode. This quick test rejects most combinations.
 #[inline]
-pub fn rejects<T: Ordered>(numbers: Pair<T>, mode: Mode, law: &Law) -> bool {
+pub fn rejects<T: Ordered>(numbers: &Pair<T>, mode: Mode, law: &Law) -> bool {
     let mut wrong = law.is_unheld(mode) && matches!(numbers[0].sign(), Sign::Positive | Sign::Negative);
     law.conditions(mode, |inequality, function| {
         let sign = function.at(|which| numbers[which], |mu, own| own.scaled(mu)).sign();

@@ -67,7 +67,7 @@ impl Pipeline<'_> {
         resting.resize(contacts.len(), false);
         for (index, contact) in contacts.iter().enumerate() {
             let [own, bounds] = [self.assembly.workspace.contact_velocity[index], self.bounds.velocity[index]];
-            let [slow, bound] = [own, bounds].map(length);
+            let [slow, bound] = [length(own), length(bounds)];
             if place == Some(index) {
                 continue;
             }
@@ -173,7 +173,7 @@ impl Pipeline<'_> {
         // Only a braked joint with a rate can move a held contact. An infinite bound leaves open whether it does.
         let is_driven = self.braked.iter().any(|joint| velocity[self.robot.base_dofs() + joint] != 0.0);
         for &index in &still.held {
-            let [slow, bound] = [speeds[index], bounds[index]].map(length);
+            let [slow, bound] = [length(speeds[index]), length(bounds[index])];
             if slow > bound || is_driven && !bound.is_finite() {
                 continue;
             }
@@ -277,6 +277,7 @@ impl fmt::Display for RestReason {
     }
 }
 
+#[inline]
 fn length([t, n]: Pair<f64>) -> f64 {
     let squared = t * t + n * n;
     if squared.is_normal() { squared.sqrt() } else { libm::hypot(t, n) }
