@@ -229,7 +229,8 @@ const FEW_NAMES: usize = 12;
 /// Returns the known name that is most similar to `name`; `None` if none is similar.
 fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let comparable = |candidate: &&str| name.len().max(candidate.len()) <= LONGEST_NAME;
-    let likeness = |candidate: &'a str| (strsim::jaro_winkler(name, candidate), candidate);
+    let name = name.to_lowercase();
+    let likeness = |candidate: &'a str| (strsim::jaro_winkler(&name, &candidate.to_lowercase()), candidate);
     let near = known.into_iter().filter(comparable).map(likeness).filter(|(likeness, _)| *likeness > 0.8);
     near.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, candidate)| candidate)
 }

@@ -99,7 +99,7 @@ fn shown(error: &Error) -> String {
 #[test]
 fn headers_that_do_not_fit_are_refused() {
     let bolted = reduced(&leg_urdf(), &Reduction { base: Some(Base::Fixed), ..Reduction::default() });
-    let with_rates: [&[u8]; 29] = [
+    let with_rates: [&[u8]; 33] = [
         b"q_kne,v_knee",
         b"id,\"a,b\",v_base_y",
         b"q_base_qw,q_base_qy,q_base_qx,q_base_qz,v_knee,time",
@@ -129,6 +129,10 @@ fn headers_that_do_not_fit_are_refused() {
         b"v_knee,base_vel_z,qpos_base_x,base_pitch_dot",
         b"q_knee_deg,v_knee",
         b",v_knee,",
+        b"q_base_X,q_base_z,v_knee",
+        b"q_base_x,q_base_height,v_knee",
+        b"q_base_x,q_base_z,q_base_pitch,q_knee,q_base_roll,v_knee",
+        b"q_base_x,q_base_qx,q_base_qy,q_base_qz,q_base_w,v_knee",
     ];
     let with_time: [&[u8]; 5] = [
         b"q_base_qw,q_base_qy,q_base_qx,time",

@@ -125,7 +125,7 @@ impl Header {
         for (at, name) in names.iter().enumerate() {
             let column = match seen.insert(name.as_str()) || is_row && name.parse::<f64>().is_ok() {
                 true if foreign.contains(name) => Ok(TableColumn::Carried),
-                true => column(name, robot),
+                true => column(name, robot, &names),
                 false => {
                     let twice = Error::new(Reason::Duplicate { what: "column", name: short(name) });
                     Err(if name.is_empty() { twice.hint("name every column") } else { twice })
@@ -421,11 +421,11 @@ fn names(record: Record) -> Result<Vec<String>> {
     }
 }
 
-/// Returns the meaning of the column `name`.
-fn column(name: &str, robot: &Robot) -> Result<TableColumn> {
+/// Returns the meaning of the column `name`, one of `names`.
+fn column(name: &str, robot: &Robot, names: &[String]) -> Result<TableColumn> {
     match name.split_at_checked(2) {
-        Some(("q_", name)) => coordinate("q_", name, robot, TableColumn::Position),
-        Some(("v_", name)) => coordinate("v_", name, robot, TableColumn::Velocity),
+        Some(("q_", name)) => coordinate("q_", name, (robot, names), TableColumn::Position),
+        Some(("v_", name)) => coordinate("v_", name, (robot, names), TableColumn::Velocity),
         _ => Ok(OTHERS.iter().find(|(other, _)| *other == name).map_or(TableColumn::Carried, |&(_, column)| column)),
     }
 }
@@ -471,7 +471,12 @@ fn quoted(name: &str) -> String {
 }
 
 /// Returns the meaning of a coordinate's column: `moving` of the coordinate's index in q if the robot has it.
-fn coordinate(prefix: &str, name: &str, robot: &Robot, moving: fn(usize) -> TableColumn) -> Result<TableColumn> {
+fn coordinate(
+    prefix: &str,
+    name: &str,
+    (robot, names): (&Robot, &[String]),
+    moving: fn(usize) -> TableColumn,
+) -> Result<TableColumn> {
     if let Some(joint) = robot.joint(name).filter(|_| robot.base == Base::Fixed || !BASE.contains(&name)) {
         return Ok(moving(robot.base_dofs() + joint));
     }
@@ -504,12 +509,17 @@ fn coordinate(prefix: &str, name: &str, robot: &Robot, moving: fn(usize) -> Tabl
     }
     // Columns of frozen joints are accepted, too.
     let frozen = robot.reading.frozen.iter().map(|frozen| frozen.name.clone());
-    let known: Vec<String> = in_columns(robot).chain(frozen).map(|known| format!("{prefix}{known}")).collect();
+    let is_spatial = names.iter().any(|name| name.starts_with("q_base_q"));
+    let in_space = QUATERNION.iter().filter(|_| prefix == "q_" && is_spatial).map(|known| (*known).to_owned());
+    let mut known: Vec<String> =
+        in_columns(robot).chain(in_space).chain(frozen).map(|known| format!("{prefix}{known}")).collect();
+    known.retain(|known| !names.contains(known));
     let unknown = Error::new(Reason::UnknownName { what: "coordinate", name: short(name) });
     if has_other_unit(name, &plain_coordinates(robot)) {
         return Err(unknown.hint(OTHER_UNIT));
     }
-    Err(unknown.did_you_mean(&format!("{prefix}{}", short(name)), known.iter().map(String::as_str)))
+    let name = short(name).replace("height", "z");
+    Err(unknown.did_you_mean(&format!("{prefix}{name}"), known.iter().map(String::as_str)))
 }
 
 /// Returns the coordinates' names as they follow `q_` and `v_` in columns.
