@@ -11,6 +11,9 @@ use crate::state::State;
 const FIT: [f64; 2] = [0.55, 1.8];
 /// From this correlation on, they count as proportional to dq/dt; noise reaches up to 0.5.
 const CORRELATED: f64 = 0.8;
+/// From this correlation on, there is so little noise that they must be between these multiples.
+const CLEAN: f64 = 0.999;
+const FIT_IF_CLEAN: [f64; 2] = [0.95, 1.05];
 /// A coordinate whose mean speed is less may be noise about one that stands \[m/s, rad/s\].
 const MOVING: f64 = 0.1;
 /// The fewest steps that are compared.
@@ -37,6 +40,8 @@ pub(super) struct Motion {
     /// Rows at which positions stand still while the robot moves, and rows at which positions jump.
     repeats: Found,
     jumps: Found,
+    /// Rows of the same time with different positions.
+    pairs: Found,
     /// The first coordinate that jumps, and its speed.
     jumped: Option<String>,
     /// Whether the robot moved in the step before, and the time since which it has stood still after that \[s\].
@@ -60,6 +65,10 @@ impl Motion {
             if is_recorded {
                 self.compare(&rates, &velocities, 0.5 * passed, state, robot);
             }
+        }
+        let far = |(from, to): (&f64, &f64)| (to - from).abs() > NEAR;
+        if step == ClockStep::Impact && self.last[0].iter().zip(&state.position).any(far) {
+            self.pairs.add([time; 2]);
         }
         if step == ClockStep::NewClip {
             (self.moved, self.stands_since) = (false, None);
@@ -131,7 +140,13 @@ impl Motion {
                  let time go back where another trial begins"
             )
         });
-        [repeats, jumps, self.turned(), misfit].into_iter().flatten()
+        let pairs = self.pairs.text().map(|when| {
+            format!(
+                "two rows of the same time have different positions {when}: is the time rounded? such rows count as the \
+                 states before and after an impact"
+            )
+        });
+        [repeats, jumps, pairs, self.turned(), misfit].into_iter().flatten()
     }
 
     /// Notes that the base's velocity is in its own axes.
@@ -149,6 +164,7 @@ impl Motion {
     pub fn misfit(&self, robot: &Robot) -> Option<String> {
         let misfit = |(name, &[squared, rates, product, changes]): (&str, &[f64; 4])| {
             let (correlation, factor) = (product / (squared * rates).sqrt(), product / rates);
+            let [least, most] = if correlation > CLEAN { FIT_IF_CLEAN } else { FIT };
             if changes > rates {
                 // The poses have no order, or are too far apart for their difference to be a rate.
                 None
@@ -156,7 +172,7 @@ impl Motion {
                 Some(format!("{name} is 0 although it moves"))
             } else if correlation < -CORRELATED {
                 Some(format!("{name} has the opposite sign of dq/dt"))
-            } else if correlation > CORRELATED && !(FIT[0]..=FIT[1]).contains(&factor) {
+            } else if correlation > CORRELATED && !(least..=most).contains(&factor) {
                 Some(format!("{name} is {factor:.3} times dq/dt"))
             } else {
                 None
