@@ -81,9 +81,10 @@ pub(super) fn samples_of_parts<'h>(
 fn sample(row: Result<Row>, robot: &Robot, defaults: &Defaults) -> Sampled<RowOrigin> {
     let row = row.map_err(|error| (RowOrigin::default(), error))?;
     let source = RowOrigin { line: row.line(), id: row.id(), carried: row.carried(), excerpt: None };
-    let read = || Ok((row.time()?, row.state(robot, defaults)?, row.spatial()?));
+    // The state is read first, which refuses rows of too few fields.
+    let read = || Ok((row.state(robot, defaults)?, row.time()?, row.spatial()?));
     match read() {
-        Ok((time, state, spatial)) => Ok(Sample { time, state, rate_over: [time; 2], spatial, landing: None, source }),
+        Ok((state, time, spatial)) => Ok(Sample { time, state, rate_over: [time; 2], spatial, landing: None, source }),
         Err(error) => Err((source, error)),
     }
 }

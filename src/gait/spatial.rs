@@ -51,7 +51,8 @@ pub fn project(origin: [f64; 2], quaternion: [f64; 4], plane: Plane) -> Result<(
     let [forward, normal, up] = plane.axes().map(|axis| apply(&rotation, axis));
     if up[2] < 0.0 {
         let reason = "the robot is upside down, and its pitch in the plane is not known".to_owned();
-        return Err(Error::new(Reason::Inconsistent(reason)).hint("cut the recording there, or give q_base_pitch"));
+        let hint = "turn the recording so that z is up; where the robot rolls over, cut it, or give q_base_pitch";
+        return Err(Error::new(Reason::Inconsistent(reason)).hint(hint));
     }
     let roll = libm::atan2(normal[2], up[2]);
     let pitch = libm::asin((-forward[2]).clamp(-1.0, 1.0));
