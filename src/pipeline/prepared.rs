@@ -58,6 +58,9 @@ pub struct Prepared {
     pub impact: Box<Impact>,
 }
 
+/// An inertia that is less than this fraction of the whole may be rounding alone.
+const DOUBTFUL_INERTIA: f64 = 1e-10;
+
 impl Prepared {
     /// The contact problem's exact data, for numbers of any kind; the `state` was prepared in this `assembly`.
     pub fn exact<'a>(
@@ -98,7 +101,7 @@ impl Pipeline<'_> {
         self.assembly.configuration.set(&self.assembly.plan, &state.position);
         self.assembly.place();
         self.assembly.factorize();
-        self.check_inertia(&scene.loops)?;
+        self.check_inertia(&scene.loops, &state.position)?;
 
         self.check_limits(state)?;
         let surface = Surface::new(&scene.ground);
@@ -216,8 +219,8 @@ impl Pipeline<'_> {
         *elimination = if by_bodies { Elimination::ArticulatedBodies } else { Elimination::Ltl };
     }
 
-    /// Refuses a coordinate whose inertia is zero up to rounding when all joints beyond it may move.
-    pub(super) fn check_inertia(&mut self, loops: &[NamedLoop]) -> Result<()> {
+    /// Refuses a coordinate whose inertia is zero, exactly or up to rounding, when all joints beyond it may move.
+    pub(super) fn check_inertia(&mut self, loops: &[NamedLoop], position: &[f64]) -> Result<()> {
         let nv = self.assembly.plan.columns();
         let by_bodies = self.assembly.elimination == Elimination::ArticulatedBodies;
         if by_bodies {
@@ -231,7 +234,9 @@ impl Pipeline<'_> {
             };
             // Each of up to nv eliminations loses at most a few units in the last place of the whole.
             finite(whole, || "the mass matrix".into())?;
-            if rest.is_nan() || rest <= 4.0 * nv as f64 * f64::EPSILON * whole {
+            let is_exactly_zero =
+                || !by_bodies && rest < DOUBTFUL_INERTIA * whole && self.is_massless(column, position);
+            if rest.is_nan() || rest <= 4.0 * nv as f64 * f64::EPSILON * whole || is_exactly_zero() {
                 let coordinate = self.assembly.plan.coordinates[column];
                 let name = self.robot.coordinates().nth(coordinate).unwrap_or_default().to_owned();
                 let is_joint = coordinate >= self.robot.base_dofs();
@@ -255,6 +260,16 @@ impl Pipeline<'_> {
             }
         }
         Ok(())
+    }
+
+    /// Whether the inertia of a column is exactly zero when all joints beyond it may move.
+    fn is_massless(&self, column: usize, position: &[f64]) -> bool {
+        let without = if self.options.reductions.held { &self.braked[..] } else { &[] };
+        let mut exact = Assembly::<Residue>::new(Plan::new(self.robot, without, &self.rotor_inertia));
+        exact.configuration.set(&exact.plan, position);
+        exact.place();
+        exact.factorize();
+        exact.workspace.factor.pivot(column).is_zero() == Some(true)
     }
 
     /// Finds the first link that `joint` moves and to which the file gives no `<inertial>`.

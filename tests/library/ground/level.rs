@@ -1,8 +1,10 @@
 //! Which points touch level or sloped ground: shapes, tolerances, stance, named contacts, braked joints, impulses.
 
 use super::*;
-use crate::support::urdf::{HINGE, POINT, collision, joint, link};
+use crate::support::impact::reduced;
+use crate::support::urdf::{Axis, HINGE, POINT, collision, joint, link};
 use heelstrike::pipeline::Pipeline;
+use heelstrike::robot::{Base, Reduction};
 use heelstrike::state::{Defaults, State};
 
 fn names(impact: &Impact) -> Vec<&str> {
@@ -196,4 +198,25 @@ fn slow_contacts_rest_only_where_asked() {
     assert_eq!(resting.velocity_before, [[0.0; 2]; 2]);
     assert_eq!(resting.notes.len(), 2, "each contact has a note: {:?}", resting.notes);
     assert_eq!(resting.analysis.unwrap().verdict, Verdict::NoImpact);
+}
+
+/// In every pose the root follows the slide without moving any mass. In f64 that is zero only up to rounding.
+#[test]
+fn a_root_without_mass_on_a_slide_is_refused_in_every_pose() {
+    let text = urdf::robot(&[
+        "<link name=\"root\"/>".to_owned(),
+        link("body", 5.0, [0.0; 2], 0.05, ""),
+        link("leg", 1.0, [0.0, -0.25], 0.02, &collision([0.0, -0.5], POINT)),
+        joint("slide", Axis::Prismatic([0.0, 1.0]), ["root", "body"], [0.0; 2], ""),
+        joint("hip", HINGE, ["body", "leg"], [0.0; 2], ""),
+    ]);
+    let robot = reduced(&text, &Reduction { base: Some(Base::Floating), ..Reduction::default() });
+    for step in 0..60 {
+        let position = json!({"base": {"z": 1, "pitch": 0.0173 * f64::from(step)}, "joints": {"hip": 0.3}});
+        let contacts = json!([{"link": "leg", "offset": [0, 0, -0.5]}]);
+        let state =
+            json!({"position": position, "velocity": {"base": {"z": -1}}, "friction": 0.5, "contacts": contacts});
+        let error = try_impact(&robot, Options::default(), state).map(|_| ()).unwrap_err();
+        assert!(error.to_string().starts_with("the mass matrix is singular"), "{step}: {error}");
+    }
 }
