@@ -431,8 +431,8 @@ fn about_tilted(seen: &Seen, nearly: &[&(usize, FrozenJoint)], (all, stays): (us
         _ => None,
     });
     let degrees = |angle: f64| format!("{:.*}", if angle <= SLIGHTLY { 3 } else { 1 }, angle.to_degrees());
-    let (least, most) =
-        (degrees(angles.clone().fold(f64::INFINITY, f64::min)), degrees(angles.clone().fold(0.0, f64::max)));
+    let greatest = angles.clone().fold(0.0, f64::max);
+    let (least, most) = (degrees(angles.clone().fold(f64::INFINITY, f64::min)), degrees(greatest));
     let range = if least == most { most } else { format!("{least} to {most}") };
     let slightly = angles.filter(|&angle| angle <= SLIGHTLY).fold(0.0, f64::max);
     let mut remedies: Vec<Remedy> = Vec::new();
@@ -447,7 +447,7 @@ fn about_tilted(seen: &Seen, nearly: &[&(usize, FrozenJoint)], (all, stays): (us
             // That remedy serves this joint too.
             continue;
         } else {
-            remedy(seen, joint, stays)
+            remedy(seen, joint, (stays, greatest))
         };
         // One remedy per joint, because a hinge has one value.
         if !remedies.iter().any(|(kind, of, _)| (*kind, *of) == (remedy.0, remedy.1)) {
@@ -471,8 +471,9 @@ fn about_tilted(seen: &Seen, nearly: &[&(usize, FrozenJoint)], (all, stays): (us
 type Remedy = (&'static str, usize, String);
 
 /// Returns the remedy that aligns the axis of a joint: holding a frozen hinge before it, if this aligns all joints
-/// beyond that `stays` marks, or else correcting the joint whose origin tilts it.
-fn remedy(seen: &Seen, joint: usize, stays: &[bool]) -> Remedy {
+/// beyond that `stays` marks, or else correcting the joint whose origin or pose tilts it. `greatest` is the greatest
+/// angle off the plane \[rad\].
+fn remedy(seen: &Seen, joint: usize, (stays, greatest): (&[bool], f64)) -> Remedy {
     let Seen { description, pose, plane, .. } = seen;
     let axis = pose.axes[joint];
     let turned = seen.before(joint).filter(|&before| {
@@ -511,6 +512,15 @@ fn remedy(seen: &Seen, joint: usize, stays: &[bool]) -> Remedy {
     let tilted = std::iter::once(joint).chain(seen.before(joint)).find(tilts);
     let own = &description.joints[joint];
     match tilted {
+        Some(posed) if pose.frozen[posed].is_some_and(|value| value != 0.0) => {
+            let name = &description.joints[posed].name;
+            let tolerance = format!("`axis_tolerance: {:.1e}`", 1.1 * greatest);
+            (
+                "pose",
+                0,
+                format!("leave {name} and the like at zero, or take what they tilt as in the plane by {tolerance}"),
+            )
+        }
         Some(tilted) if is_undone(&tilted) && own.kind != JointKind::Prismatic => {
             let [_, normal, _] = plane.axes();
             let sign = f64::copysign(1.0, dot(axis, normal));

@@ -94,6 +94,21 @@ fn every_command_warns_of_a_robot_that_loses_joints() {
     assert_eq!((impact.status, impact.stderr), (0, format!("note: {word}\n")));
 }
 
+/// The hips of A1, posed as in a recording, tilt the legs beyond them.
+#[test]
+fn the_remedy_for_posed_hips_keeps_the_legs() {
+    let hips = ["FL_hip_joint=0.08", "FR_hip_joint=-0.08", "RL_hip_joint=0.05", "RR_hip_joint=-0.08"];
+    let posed: Vec<&str> =
+        ["inspect", A1].into_iter().chain(hips.into_iter().flat_map(|hip| ["--hold", hip])).collect();
+    let kept = |more: &[&str]| heelstrike(&[&posed[..], more].concat()).stdout.replace("\n               ", " ");
+    let frozen = kept(&[]);
+    let remedy =
+        "leave FR_hip_joint and the like at zero, or take what they tilt as in the plane by --axis-tolerance 8.8e-2\n";
+    assert!(frozen.contains("0 kept") && frozen.contains(remedy), "{frozen}");
+    let kept = kept(&["--axis-tolerance", "8.8e-2"]);
+    assert!(kept.contains("8 kept"), "{kept}");
+}
+
 #[test]
 fn the_reduced_robot_is_written_with_every_digit() {
     let robot = result(&["inspect", "urdf/ramone_paper.urdf"], "");
