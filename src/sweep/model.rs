@@ -112,22 +112,23 @@ impl RobotStudy<'_> {
         found
     }
 
-    /// Notes that the parameter of a study without borders affects neither the state nor its contact problem at some
-    /// places, so that the impact seems not to depend on it.
+    /// Notes that the parameter of a study without borders affects neither the reduced robot nor the state nor its
+    /// contact problem at some places, so that the impact seems not to depend on it.
     pub(super) fn idle_parameter(&self) -> Option<String> {
         let [parameter] = self.study.parameters() else { return None };
-        let varies_more = self.study.question() == Aspect::Forces || self.study.varies_the_robot();
-        if varies_more || !self.study.unused().is_empty() {
+        if self.study.question() == Aspect::Forces || !self.study.unused().is_empty() {
             return None;
         }
         let mut solver = Solver::new(self);
         // The spacing is uneven, so that no long period fits it.
         let mut seen = [0.0, 0.271, 0.618, 1.0].map(|part| {
-            let seen = solver.at(&self.point(|_| part), |_, state, pipeline| {
+            let seen = solver.at(&self.point(|_| part), |robot, state, pipeline| {
                 let Unsolved { contacts, problem, .. } = pipeline.unsolved(&state)?;
                 let names: Vec<_> = contacts.into_iter().map(|contact| contact.name).collect();
                 let Scene { rotor_inertia, impulses, .. } = state.scene;
-                Ok((state.position, state.velocity, state.uncertainty, (rotor_inertia, impulses), names, problem))
+                let reduced = (robot.bodies.clone(), robot.joints.clone());
+                let scene = (state.uncertainty, rotor_inertia, impulses);
+                Ok((reduced, state.position, state.velocity, scene, names, problem))
             });
             seen.ok().filter(|(.., names, _)| !names.is_empty())
         });

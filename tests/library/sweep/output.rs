@@ -97,18 +97,24 @@ fn cautions_about_a_varied_robot_are_noted() {
 /// No impact depends on gravity, which is noted. A periodic dependence may be equal at both ends and in the middle.
 #[test]
 fn a_parameter_without_effect_and_a_box_are_noted() {
-    let notes = |more: Value| {
+    let notes_of = |robot: Value, more: Value| {
         let mut state = json!({"velocity": {"base": {"z": -1}}, "place": "lowest", "friction": 1});
         state.as_object_mut().expect("an object").extend(more.as_object().cloned().expect("an object"));
-        let study = json!({"parameters": {"a": {"from": 1, "to": 3, "steps": 3}}, "state": state});
+        let parameters = json!({"a": {"from": 1, "to": 3, "steps": 3}});
+        let study = json!({"parameters": parameters, "state": state, "robot": robot});
         let found: Value = written("urdf/ramone.urdf", &study, &[]);
         let all = found["notes"].as_array().expect("a list").iter().filter_map(Value::as_str);
         all.filter(|note| note.contains("uncertainty") || note.contains("depends on a"))
             .map(str::to_owned)
             .collect::<Vec<_>>()
     };
+    let notes = |more: Value| notes_of(json!({}), more);
     let idle = "nothing was found that depends on a: has it an effect on an impact?";
     assert_eq!(notes(json!({"gravity": "a"})), [idle]);
+    // The plane is x-z.
+    let shank = |com: Value| json!({"links": {"left_shank": {"com": com}}});
+    assert_eq!(notes_of(shank(json!([0, "-0.01*a", -0.165])), json!({})), [idle]);
+    assert!(notes_of(shank(json!(["-0.01*a", 0, -0.165])), json!({})).is_empty());
     let changing = [
         json!({"friction": "3 + cos(2*pi*a)"}),
         json!({"velocity": {"base": {"z": -1}, "joints": {"right_knee": "a"}}}),
