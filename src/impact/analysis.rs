@@ -59,7 +59,7 @@ impl Analysis {
             let excess = |outcome: &Outcome| {
                 let rows = outcome.impulse.as_flattened().iter().enumerate();
                 let push =
-                    rows.map(|(row, own)| own.abs() * problem.delassus(row, row).min(lightest)).fold(0.0, f64::max);
+                    rows.map(|(row, entry)| entry.abs() * problem.delassus(row, row).min(lightest)).fold(0.0, f64::max);
                 let fastest = fastest.max(most(&outcome.velocity_after));
                 if fastest > 0.0 { push / fastest } else { 0.0 }
             };
@@ -236,7 +236,7 @@ impl Scratch {
             let again = std::mem::take(&mut undecided);
             let (labels, collected) = (&mut self.labels, &mut collected);
             let mut pass = F64Pass { labels, shares: false, regular, undecided, collected };
-            again.iter().for_each(|own| self.tableau.visit_one(&own.pending.modes, &mut pass));
+            again.iter().for_each(|entry| self.tableau.visit_one(&entry.pending.modes, &mut pass));
             F64Pass { regular, undecided, .. } = pass;
         }
         let is_asked = !(options.brief || self.tableau.without_slip);
@@ -254,7 +254,7 @@ impl Scratch {
             let is_enclosed = !shared.is_empty() && errors.delassus.is_finite() && scale.is_far_from_underflow();
             let enclosed = is_enclosed.then(|| scale.enclosed(problem, errors, shared));
             let climb = |pass: &mut UndecidedPass| {
-                if !enclosed.as_ref().is_some_and(|own| pass.attempt(own, Precision::Enclosed)) {
+                if !enclosed.as_ref().is_some_and(|problem| pass.attempt(problem, Precision::Enclosed)) {
                     escalate(remembered, first, pass);
                 }
                 pass.finish();
@@ -363,18 +363,18 @@ mod tests {
             prop_assert_eq!((known.verdict, known.proven), (unknown.verdict, unknown.proven));
             prop_assert_eq!((known.rank, known.index_sum), (unknown.rank, unknown.index_sum));
             let because = |analysis: &Analysis| -> Vec<_> {
-                analysis.rejected.iter().map(|own| (own.modes.clone(), own.because)).collect()
+                analysis.rejected.iter().map(|rejection| (rejection.modes.clone(), rejection.because)).collect()
             };
             prop_assert_eq!(because(&known), because(&unknown));
             prop_assert_eq!(known.outcomes.len(), unknown.outcomes.len());
             for (one, other) in known.outcomes.iter().zip(&unknown.outcomes) {
                 prop_assert_eq!((&one.modes, one.index, one.impulse_unique), (&other.modes, other.index, other.impulse_unique));
-                let numbers = |own: &Outcome| -> Vec<f64> {
-                    let pairs = own.impulse.iter().chain(&own.velocity_after).flatten().copied();
-                    pairs.chain([own.energy_loss, own.margin.unwrap_or(0.0)]).collect()
+                let numbers = |outcome: &Outcome| -> Vec<f64> {
+                    let pairs = outcome.impulse.iter().chain(&outcome.velocity_after).flatten().copied();
+                    pairs.chain([outcome.energy_loss, outcome.margin.unwrap_or(0.0)]).collect()
                 };
                 let (one, other) = (numbers(one), numbers(other));
-                let size = other.iter().fold(1.0, |most: f64, own| most.max(own.abs()));
+                let size = other.iter().fold(1.0, |most: f64, number| most.max(number.abs()));
                 for (a, b) in one.iter().zip(&other) {
                     prop_assert!((a - b).abs() <= 1e-9 * size, "{one:?} is not {other:?}");
                 }

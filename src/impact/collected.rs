@@ -99,9 +99,9 @@ impl OutcomeMemory {
     pub fn recycle(&mut self, mut outcomes: Vec<Outcome>) {
         let room = (4 * RECYCLED).saturating_sub(self.lists.len());
         // Few states have more than four. Only the lists are moved, because an outcome is large.
-        self.lists.extend(outcomes.iter_mut().take(room).map(|own| {
-            let motion = Motion { impulse: take(&mut own.impulse), velocity_after: take(&mut own.velocity_after) };
-            OutcomeLists { modes: take(&mut own.modes), motion, friction_needed: take(&mut own.friction_needed) }
+        self.lists.extend(outcomes.iter_mut().take(room).map(|old| {
+            let motion = Motion { impulse: take(&mut old.impulse), velocity_after: take(&mut old.velocity_after) };
+            OutcomeLists { modes: take(&mut old.modes), motion, friction_needed: take(&mut old.friction_needed) }
         }));
         outcomes.clear();
         if self.spare.len() < RECYCLED {
@@ -184,7 +184,7 @@ impl<'a> Collected<'a> {
     pub fn add(&mut self, pending: &Pending, solved: Solved) {
         let &Pending { number, ref modes } = pending;
         match solved {
-            Solved::Outcome(own) => self.push(number, own),
+            Solved::Outcome(outcome) => self.push(number, outcome),
             Solved::Rejected(rejection) => self.reject(number, modes, || rejection),
             Solved::Family(()) => self.pending_families.push(pending.clone()),
         }
@@ -227,7 +227,7 @@ impl<'a> Collected<'a> {
 
     /// The place of the decided outcome with these modes.
     pub fn place_of(&self, modes: &[Mode]) -> Option<usize> {
-        self.memory.outcomes.iter().position(|own| own.decided && own.modes == modes)
+        self.memory.outcomes.iter().position(|outcome| outcome.decided && outcome.modes == modes)
     }
 
     /// Adds families and their corners, once all other outcomes are known.
@@ -236,8 +236,8 @@ impl<'a> Collected<'a> {
         for corner in found.corners {
             let place = match corner {
                 Corner::Isolated(place) => place,
-                Corner::OfFamily(number, own) => {
-                    self.push(number, own);
+                Corner::OfFamily(number, outcome) => {
+                    self.push(number, outcome);
                     self.memory.outcomes.len() - 1
                 }
             };
@@ -317,7 +317,7 @@ impl<'a> Collected<'a> {
 
 /// Removes the numbers of a list. The list is nearly always empty, and collecting in place is slow to begin.
 fn unnumbered<T>(listed: Vec<(u64, T)>) -> Vec<T> {
-    if listed.is_empty() { Vec::new() } else { listed.into_iter().map(|(_, own)| own).collect() }
+    if listed.is_empty() { Vec::new() } else { listed.into_iter().map(|(_, entry)| entry).collect() }
 }
 
 /// The border of an outcome, where the impulse inequalities `at_zero` are zero; `None` if there are none.
@@ -333,10 +333,10 @@ fn border(
     }
     let mut border = Border { at_zero: Vec::new(), neighbours: Vec::new() };
     for (contact, (&mode, law)) in modes.iter().zip(laws).enumerate() {
-        let own = || at_zero.iter().filter(|(place, _)| *place == contact).map(|&(_, inequality)| inequality);
+        let of_contact = || at_zero.iter().filter(|(place, _)| *place == contact).map(|&(_, inequality)| inequality);
         // Without normal impulse, the slack of the friction cone is zero as well.
-        let unpressed = own().find(|&inequality| inequality == Inequality::NormalImpulse);
-        let Some(inequality) = unpressed.or_else(|| own().next()) else { continue };
+        let unpressed = of_contact().find(|&inequality| inequality == Inequality::NormalImpulse);
+        let Some(inequality) = unpressed.or_else(|| of_contact().next()) else { continue };
         border.at_zero.push(AtZero { contact: name(contact), inequality });
         let tangential = motion.impulse[contact][0].partial_cmp(&0.0).unwrap_or(Ordering::Equal);
         for beyond in law.beyond(mode, inequality, tangential).into_iter().filter(|&beyond| beyond != mode) {

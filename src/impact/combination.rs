@@ -16,7 +16,7 @@ impl Solved {
     /// Whether the numbers of the outcome have the promised digits; true if there is no outcome yet.
     pub fn is_precise(&self) -> bool {
         match self {
-            Self::Outcome(own) => own.numbers.are_precise,
+            Self::Outcome(outcome) => outcome.numbers.are_precise,
             Self::Rejected(_) | Self::Family(()) => true,
         }
     }

@@ -61,7 +61,7 @@ impl<T: Ordered> Hull<'_, T> {
     fn farthest(&self, direction: &[T]) -> Result<Vec<T>, Unsettled> {
         T::keeping(|| {
             let rank = 0..self.image.len();
-            let axis = |own| rank.clone().map(|at| if at == own { T::one() } else { T::zero() }).collect();
+            let axis = |index| rank.clone().map(|at| if at == index { T::one() } else { T::zero() }).collect();
             let axes = rank.clone().map(axis);
             let mut functions = self.functions.to_vec();
             let mut y = vec![T::zero(); self.image.first().map_or(0, |z| z.coefficients.len())];
@@ -141,7 +141,7 @@ impl<T: Ordered> Hull<'_, T> {
         for (number, corner) in self.corners.iter().enumerate() {
             match settled(dot(normal, &difference(corner, &self.corners[through[0]])))? {
                 Ordering::Equal => facet.corners.push(number),
-                own if side.is_eq() || own == side => side = own,
+                sign if side.is_eq() || sign == side => side = sign,
                 _ => return Ok(None),
             }
         }
@@ -191,18 +191,18 @@ mod tests {
 
     /// The cube 0 <= y_i <= 1, with its center as the origin.
     fn cube(dimension: usize) -> Vec<LinearFunction<Number>> {
-        let face = |own: usize, slope: f64| {
-            let coefficients: Vec<f64> = (0..dimension).map(|at| if at == own { slope } else { 0.0 }).collect();
+        let face = |axis: usize, slope: f64| {
+            let coefficients: Vec<f64> = (0..dimension).map(|at| if at == axis { slope } else { 0.0 }).collect();
             affine(0.5, &coefficients)
         };
-        (0..dimension).flat_map(|own| [face(own, 1.0), face(own, -1.0)]).collect()
+        (0..dimension).flat_map(|axis| [face(axis, 1.0), face(axis, -1.0)]).collect()
     }
 
     #[test]
     fn a_cube_has_all_its_corners() {
         for dimension in 1..=5 {
-            let unit = |own: usize| -> Vec<f64> { (0..dimension).map(|at| f64::from(u8::from(at == own))).collect() };
-            let image: Vec<_> = (0..dimension).map(|own| affine(0.5, &unit(own))).collect();
+            let unit = |axis: usize| -> Vec<f64> { (0..dimension).map(|at| f64::from(u8::from(at == axis))).collect() };
+            let image: Vec<_> = (0..dimension).map(|axis| affine(0.5, &unit(axis))).collect();
             let corner = |bits: usize| -> Vec<f64> {
                 (0..dimension).map(|at| f64::from(u8::from(bits >> (dimension - 1 - at) & 1 == 1))).collect()
             };

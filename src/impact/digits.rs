@@ -56,15 +56,15 @@ impl<'a> Scales<'a> {
     /// The speed scale V of a contact \[m/s\].
     fn speed(&self, contact: usize) -> f64 {
         let mobility = self.scale.mobility[2 * contact].max(self.scale.mobility[2 * contact + 1]);
-        let own = largest(&[self.before[contact], self.motion.velocity_after[contact]]);
-        own.max(self.greatest[0].min(self.scale.speed * mobility))
+        let speed = largest(&[self.before[contact], self.motion.velocity_after[contact]]);
+        speed.max(self.greatest[0].min(self.scale.speed * mobility))
     }
 
     /// The scales of the tangential and the normal impulse of a contact \[N s\].
     fn impulse(&self, contact: usize, law: &Law) -> Pair<f64> {
         let [t, n] = self.motion.impulse[contact].map(f64::abs);
-        let own = n.max(self.greatest[1].min(self.scale.speed / self.scale.mobility[2 * contact + 1]));
-        [t.max(least_friction(law) * own), own]
+        let normal = n.max(self.greatest[1].min(self.scale.speed / self.scale.mobility[2 * contact + 1]));
+        [t.max(least_friction(law) * normal), normal]
     }
 }
 
@@ -172,9 +172,9 @@ pub fn is_known<T: Ordered>(number: T, scale: f64, digits: f64) -> bool {
     magnitude.is_finite() && number.error() <= digits * scale.max(magnitude)
 }
 
-/// Whether the errors of both ends of a range are at most `digits` times the largest magnitude of the ends and `own`.
-pub fn is_known_range<T: Ordered>(ends: [Option<T>; 2], own: T, digits: f64) -> bool {
-    let scale = ends.into_iter().flatten().fold(own.to_f64().abs(), |most, end| most.max(end.to_f64().abs()));
+/// Whether the errors of both ends of a range are at most `digits` times the largest magnitude of the ends and `value`.
+pub fn is_known_range<T: Ordered>(ends: [Option<T>; 2], value: T, digits: f64) -> bool {
+    let scale = ends.into_iter().flatten().fold(value.to_f64().abs(), |most, end| most.max(end.to_f64().abs()));
     ends.into_iter().flatten().all(|end| is_known(end, scale, digits))
 }
 
@@ -213,7 +213,7 @@ pub fn f64_has_digits(
     (motion, margin): (&Motion, Option<f64>),
 ) -> bool {
     let candidate = Candidate { leaf, modes, problem, scale, motion, margin: margin.unwrap_or(0.0).max(1.0) };
-    candidate.has_digits(|contact| leaf.numbers(contact).map(|own| scale.likely_part * own.error))
+    candidate.has_digits(|contact| leaf.numbers(contact).map(|number| scale.likely_part * number.error))
         || candidate.has_digits_by_sensitivity()
 }
 
@@ -280,7 +280,7 @@ impl Candidate<'_> {
     fn has_digits_by_sensitivity(&self) -> bool {
         let Self { leaf, modes, problem, scale, .. } = self;
         let impulse: Vec<f64> =
-            (0..modes.len()).flat_map(|contact| leaf.impulse(contact)).map(|own| own.value).collect();
+            (0..modes.len()).flat_map(|contact| leaf.impulse(contact)).map(|entry| entry.value).collect();
         let pressed: f64 = impulse.iter().zip(&scale.mobility).map(|(l, mobility)| l.abs() * mobility).sum();
         let rounding = scale.likely_rounding + impulse.len() as f64 * f64::EPSILON;
         let given = |row: usize| {
@@ -317,7 +317,7 @@ impl Candidate<'_> {
         };
         let lambda: Vec<f64> = (0..count).map(change).collect();
         let velocity = |row: usize| given(row) + rows[row].iter().zip(&lambda).map(|(a, b)| a.abs() * b).sum::<f64>();
-        let number = |row: usize| match held.iter().position(|&own| own == row) {
+        let number = |row: usize| match held.iter().position(|&other| other == row) {
             Some(place) => lambda[place],
             None => velocity(row),
         };

@@ -304,7 +304,7 @@ impl<T: Real> Leaf<'_, T> {
 impl Leaf<'_, Rounded> {
     /// Whether the errors of all numbers are finite, which shows that no pivot is zero.
     pub fn is_known(&self) -> bool {
-        self.constants.as_flattened().iter().all(|own| own.error.is_finite())
+        self.constants.as_flattened().iter().all(|number| number.error.is_finite())
     }
 }
 
@@ -387,22 +387,22 @@ mod tests {
             };
             let sum = |(value, off): (f64, f64)| Interval::from_f64(value) + Interval::from_f64(off);
             let true_free = |row: usize| {
-                let own = sum((problem.velocity_free()[row / 2][row % 2], off[36 + row] * noise(row / 2, row % 2)));
-                let approaches = row % 2 == 1 && own.sign() == Sign::Negative;
+                let free = sum((problem.velocity_free()[row / 2][row % 2], off[36 + row] * noise(row / 2, row % 2)));
+                let approaches = row % 2 == 1 && free.sign() == Sign::Negative;
                 let bounce = if approaches { problem.restitution()[row / 2] } else { 0.0 };
-                own + Interval::from_f64(bounce) * own
+                free + Interval::from_f64(bounce) * free
             };
             tableau.visit(&mut |leaf: &Leaf<'_, Rounded>| Interval::scope(512, || {
                 let mut tableau = Tableau::<Interval>::default();
                 tableau.load_entries(problem.laws(), |row, column| sum(true_entry(row, column)), true_free);
                 let exact = tableau.leaf(leaf.modes);
                 for contact in 0..3 {
-                    for (own, exact) in leaf.numbers(contact).iter().zip(*exact.numbers(contact)) {
-                        let error = (exact - Interval::from_f64(own.value)).to_f64().abs();
-                        let is_beyond = error > own.error();
-                        assert!(!is_beyond, "{:?}: {error:e} > {:e}", leaf.modes, own.error());
+                    for (number, exact) in leaf.numbers(contact).iter().zip(*exact.numbers(contact)) {
+                        let error = (exact - Interval::from_f64(number.value)).to_f64().abs();
+                        let is_beyond = error > number.error();
+                        assert!(!is_beyond, "{:?}: {error:e} > {:e}", leaf.modes, number.error());
                         // After an elimination, a number without an error is exactly zero.
-                        assert!(own.error != 0.0 || own.value == 0.0 || leaf.modes == [Mode::Separate; 3]);
+                        assert!(number.error != 0.0 || number.value == 0.0 || leaf.modes == [Mode::Separate; 3]);
                     }
                 }
             }));

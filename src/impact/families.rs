@@ -59,7 +59,7 @@ impl FamiliesPass<'_, '_> {
             let modes = modes_of(&velocity, exact.laws())?;
             let mut place = None;
             for (at, (other, same)) in known.iter().enumerate() {
-                if *other == modes && are_zero(velocity.iter().zip(same).map(|(&own, &same)| own - same))? {
+                if *other == modes && are_zero(velocity.iter().zip(same).map(|(&entry, &same)| entry - same))? {
                     place = Some(at);
                 }
             }
@@ -72,8 +72,8 @@ impl FamiliesPass<'_, '_> {
             } else {
                 let outcome = T::freeing(|| Equations::of(exact, scale, &modes).outcome_at(&velocity))?;
                 is_precise &= outcome.numbers.are_precise;
-                let own = self.pending.iter().find(|other| other.modes == modes).unwrap_or(pending);
-                Corner::OfFamily(own.number, outcome)
+                let combination = self.pending.iter().find(|other| other.modes == modes).unwrap_or(pending);
+                Corner::OfFamily(combination.number, outcome)
             };
             new.push(((modes, velocity), corner));
         }

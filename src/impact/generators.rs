@@ -35,13 +35,13 @@ impl Generators {
 
     /// A row of G B: the coefficients of lambda in the velocity of `row`.
     pub fn velocity_row<T: Real>(&self, problem: &ContactProblem<T>, row: usize) -> Vec<T> {
-        let part = |column: usize, factor: f64| match factor {
+        let term = |column: usize, factor: f64| match factor {
             0.0 => None,
             1.0 => Some(problem.delassus(row, column)),
             factor => Some(T::from_f64(factor) * problem.delassus(row, column)),
         };
         let entry =
-            |&(contact, ray): &(usize, Pair<f64>)| match (part(2 * contact, ray[0]), part(2 * contact + 1, ray[1])) {
+            |&(contact, ray): &(usize, Pair<f64>)| match (term(2 * contact, ray[0]), term(2 * contact + 1, ray[1])) {
                 (Some(t), Some(n)) => t + n,
                 (one, other) => one.or(other).unwrap_or(T::zero()),
             };
@@ -51,9 +51,9 @@ impl Generators {
     /// The index in lambda of a contact's number `which` (0 or 1). The inequalities of impulses are functions of these
     /// two numbers; for a contact with a ray both are its lambda.
     pub fn place(&self, contact: usize, which: usize) -> usize {
-        let own = self.rays.iter().take_while(|(other, _)| *other < contact).count();
-        let free = self.rays.get(own + 1).is_some_and(|(other, _)| *other == contact);
-        own + usize::from(free && which == 1)
+        let first = self.rays.iter().take_while(|(other, _)| *other < contact).count();
+        let free = self.rays.get(first + 1).is_some_and(|(other, _)| *other == contact);
+        first + usize::from(free && which == 1)
     }
 
     /// The impulse of every row \[N s\], from lambda.

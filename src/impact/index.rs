@@ -32,7 +32,7 @@ pub fn index<T: Ordered>(problem: &ContactProblem<T>, modes: &[Mode]) -> Result<
     }
     // Rows: S, then N. Columns: S, then R.
     let rows = stuck.iter().copied().chain(sliding.iter().map(|(contact, _)| 2 * contact + 1));
-    let mut whole: Vec<Vec<T>> = rows
+    let mut matrix: Vec<Vec<T>> = rows
         .map(|row| {
             let held = stuck.iter().map(|&column| problem.delassus(row, column));
             let slid = sliding.iter().map(|&(contact, [t, n])| {
@@ -42,17 +42,17 @@ pub fn index<T: Ordered>(problem: &ContactProblem<T>, modes: &[Mode]) -> Result<
         })
         .collect();
     let mut open: Vec<usize> = (0..stuck.len()).collect();
-    // Once all remaining diagonal entries are zero, the whole rest of G_SS is zero, since it is positive semidefinite.
-    while let Some(pivot) = pivot(&open, &whole)? {
+    // Once all remaining diagonal entries are zero, the matrix rest of G_SS is zero, since it is positive semidefinite.
+    while let Some(pivot) = pivot(&open, &matrix)? {
         let place = open.swap_remove(pivot);
-        let inverse = T::one() / whole[place][place];
-        let pivot_row = whole[place].clone();
-        for row in (0..whole.len()).filter(|row| open.contains(row) || *row >= stuck.len()) {
-            let factor = whole[row][place] * inverse;
-            subtract(&mut whole[row], &pivot_row, factor);
+        let inverse = T::one() / matrix[place][place];
+        let pivot_row = matrix[place].clone();
+        for row in (0..matrix.len()).filter(|row| open.contains(row) || *row >= stuck.len()) {
+            let factor = matrix[row][place] * inverse;
+            subtract(&mut matrix[row], &pivot_row, factor);
         }
     }
-    let schur: Vec<Vec<T>> = whole[stuck.len()..].iter().map(|row| row[stuck.len()..].to_vec()).collect();
+    let schur: Vec<Vec<T>> = matrix[stuck.len()..].iter().map(|row| row[stuck.len()..].to_vec()).collect();
     lowest_coefficient(&schur)
 }
 

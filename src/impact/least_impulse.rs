@@ -22,9 +22,9 @@ pub fn least_impulse<T: Ordered>(
     for _ in 0..ROUNDS * (functions.len() + 1) {
         let (target, multipliers) = least_on_face(origin, directions, functions, &binding)?;
         let step: Vec<T> = target.iter().zip(&y).map(|(&to, &from)| to - from).collect();
-        if let Some((blocking, part)) = first_reached(functions, &binding, &y, &step)? {
+        if let Some((blocking, share)) = first_reached(functions, &binding, &y, &step)? {
             for (entry, &change) in y.iter_mut().zip(&step) {
-                *entry = *entry + part * change;
+                *entry = *entry + share * change;
             }
             binding.push(blocking);
             continue;
@@ -86,10 +86,10 @@ fn first_reached<T: Ordered>(
         if settled(slope)?.is_ge() {
             continue;
         }
-        let part = function.at(y) / -slope;
-        let limit = first.map_or(T::one(), |(_, part)| part);
-        if settled(part - limit)? == Ordering::Less {
-            first = Some((index, part));
+        let share = function.at(y) / -slope;
+        let limit = first.map_or(T::one(), |(_, share)| share);
+        if settled(share - limit)? == Ordering::Less {
+            first = Some((index, share));
         }
     }
     Ok(first)

@@ -99,8 +99,8 @@ impl<T: Real> Solutions<T> {
     /// `x` moved along the directions by y.
     pub fn moved(&self, mut x: Vec<T>, y: &[T]) -> Vec<T> {
         for (direction, &factor) in self.directions.iter().zip(y) {
-            for (entry, &part) in x.iter_mut().zip(direction) {
-                *entry = *entry + factor * part;
+            for (entry, &change) in x.iter_mut().zip(direction) {
+                *entry = *entry + factor * change;
             }
         }
         x
@@ -112,8 +112,8 @@ impl<T: Ordered> Solutions<T> {
     pub fn affine(&self, constant: T, coefficients: &[T]) -> LinearFunction<T> {
         // Zeros are skipped, because most entries of a direction are zero.
         let along = |x: &Vec<T>| {
-            let terms = coefficients.iter().zip(x).filter(|(_, own)| own.sign() != Sign::Zero);
-            terms.fold(T::zero(), |sum, (&coefficient, &own)| sum + coefficient * own)
+            let terms = coefficients.iter().zip(x).filter(|(_, entry)| entry.sign() != Sign::Zero);
+            terms.fold(T::zero(), |sum, (&coefficient, &entry)| sum + coefficient * entry)
         };
         LinearFunction {
             constant: constant + along(&self.origin),
@@ -166,11 +166,11 @@ pub fn solve<T: Ordered>(unknowns: usize, mut equations: Vec<Vec<T>>) -> Result<
         origin[column] = equation[unknowns];
     }
     let free = (0..unknowns).filter(|column| !pivots.contains(column));
-    let direction = |own: usize| {
+    let direction = |unknown: usize| {
         let mut direction = vec![T::zero(); unknowns];
-        direction[own] = T::one();
+        direction[unknown] = T::one();
         for (equation, &column) in equations.iter().zip(&pivots) {
-            direction[column] = -equation[own];
+            direction[column] = -equation[unknown];
         }
         direction
     };

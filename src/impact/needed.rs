@@ -37,12 +37,12 @@ pub fn friction_needed<T: Ordered>(
     let groups = groups(impulses)?;
     let (mut needed, mut common) = (vec![None; modes.len()], vec![None; modes.len()]);
     for contact in (0..modes.len()).filter(|&contact| modes[contact] == Mode::Stick) {
-        let members = || (0..modes.len()).filter(|&own| groups[own] == groups[contact] && modes[own] == Mode::Stick);
-        if members().all(|own| shortest[own].iter().all(|entry| entry.sign() == Sign::Zero)) {
+        let members = || (0..modes.len()).filter(|&i| groups[i] == groups[contact] && modes[i] == Mode::Stick);
+        if members().all(|i| shortest[i].iter().all(|entry| entry.sign() == Sign::Zero)) {
             continue;
         }
-        let [t, n] = [0, 1].map(|entry| sum(members().map(|own| &impulses[own][entry])));
-        let are_alike = members().all(|own| laws[own] == laws[contact]);
+        let [t, n] = [0, 1].map(|entry| sum(members().map(|i| &impulses[i][entry])));
+        let are_alike = members().all(|i| laws[i] == laws[contact]);
         if are_alike && t.is_constant()? && n.is_constant()? && exchange(members(), impulses)? {
             if settled(n.constant)?.is_gt() {
                 let size = if settled(t.constant)?.is_lt() { -t.constant } else { t.constant };
@@ -53,7 +53,7 @@ pub fn friction_needed<T: Ordered>(
         needed[contact] = least_ratio(&impulses[contact], functions)?;
         if are_alike && members().count() > 1 {
             if members().next() == Some(contact) {
-                common[groups[contact]] = least_common(members().map(|own| &impulses[own]), &laws[contact], functions)?;
+                common[groups[contact]] = least_common(members().map(|i| &impulses[i]), &laws[contact], functions)?;
             }
             needed[contact] = needed[contact].map(|alone| common[groups[contact]].unwrap_or(alone));
         }
@@ -143,8 +143,8 @@ fn least_common<'a, T: Ordered + 'a>(
         let aside = if zero - low < high - zero { 0.4 * known } else { -0.4 * known };
         let friction = (zero + aside).clamp(low + 0.4 * known, high - 0.4 * known);
         match room(friction)? {
-            own if own < 0.0 => (low, at_low) = (friction, own),
-            own => (high, at_high) = (friction, own),
+            value if value < 0.0 => (low, at_low) = (friction, value),
+            value => (high, at_high) = (friction, value),
         }
     }
     // A friction that falls toward zero as impulses grow without bound counts as zero.
@@ -188,7 +188,7 @@ fn least_ratio<T: Ordered>(
     let in_ratios = |function: &LinearFunction<T>| {
         let share = function.at(&start) / pressed;
         let slopes = function.coefficients.iter().zip(&n.coefficients);
-        LinearFunction { constant: share, coefficients: slopes.map(|(&own, &slope)| own - share * slope).collect() }
+        LinearFunction { constant: share, coefficients: slopes.map(|(&slope, &of_n)| slope - share * of_n).collect() }
     };
     let mut bounds: Vec<LinearFunction<T>> = functions.iter().map(in_ratios).collect();
     bounds.push(LinearFunction {

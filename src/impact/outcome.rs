@@ -380,7 +380,7 @@ impl Analysis {
     /// The combinations of all decided outcomes and all families, sorted and without duplicates.
     pub fn modes(&self) -> Vec<Vec<Mode>> {
         let decided = self.outcomes.iter().filter(|outcome| outcome.decided).map(|outcome| &outcome.modes);
-        let mut modes: Vec<Vec<Mode>> = decided.chain(self.families.iter().map(|own| &own.modes)).cloned().collect();
+        let mut modes: Vec<_> = decided.chain(self.families.iter().map(|family| &family.modes)).cloned().collect();
         modes.sort();
         modes.dedup();
         modes
@@ -388,7 +388,8 @@ impl Analysis {
 
     /// Renames the inequalities to those of forces and accelerations, for sustained contact.
     pub(crate) fn of_forces(mut self) -> Self {
-        for zero in self.outcomes.iter_mut().flat_map(|own| &mut own.border).flat_map(|border| &mut border.at_zero) {
+        let borders = self.outcomes.iter_mut().flat_map(|outcome| &mut outcome.border);
+        for zero in borders.flat_map(|border| &mut border.at_zero) {
             zero.inequality = zero.inequality.of_forces();
         }
         for rejection in &mut self.rejected {

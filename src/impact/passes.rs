@@ -63,7 +63,7 @@ impl Visitor<Rounded> for F64Pass<'_, '_> {
             }
             let number = modes.iter().fold(0, |number, &mode| 4 * number + mode as u64);
             let reading = read(leaf, modes, laws, scale, collected.at_zero());
-            let after = |contact: usize, xi: Pair<Rounded>| after(xi.map(|own| own.value), contact, modes, problem);
+            let after = |contact: usize, xi: Pair<Rounded>| after(xi.map(|entry| entry.value), contact, modes, problem);
             let motion = |memory| motion(leaf, after, memory);
             let pending = || Pending { number, modes: modes.to_vec() };
             if reading.sign == Sign::Negative {
@@ -158,11 +158,11 @@ impl PrecisionTask for UndecidedPass<'_, '_> {
         let rejections = self.collected.options.rejections;
         if !self.is_decided {
             // Combinations that are rejected, or excluded by the kernel, are solved later, only to find the reason.
-            let is_no = |own: &Undecided| {
-                matches!(own.imprecise, Some(Solved::Rejected(_))) || self.excludes(&own.pending).is_some()
+            let is_no = |entry: &Undecided| {
+                matches!(entry.imprecise, Some(Solved::Rejected(_))) || self.excludes(&entry.pending).is_some()
             };
             let (no, perhaps): (Vec<_>, _) = open.into_iter().partition(is_no);
-            self.rejected.extend(no.into_iter().filter(|own| rejections.contain(&own.pending.modes)));
+            self.rejected.extend(no.into_iter().filter(|entry| rejections.contain(&entry.pending.modes)));
             open = perhaps;
         }
         let is_last = precision == Precision::Interval;
@@ -192,7 +192,7 @@ impl PrecisionTask for UndecidedPass<'_, '_> {
             *precision.share(&mut self.collected.found.effort) += (before - self.undecided.len()) as u64;
         }
         // For the reasons of combinations that the kernel excludes, the first intervals are precise enough.
-        let is_enough = |own: &Undecided| self.is_decided && is_last && self.excludes(&own.pending).is_some();
+        let is_enough = |entry: &Undecided| self.is_decided && is_last && self.excludes(&entry.pending).is_some();
         self.undecided.iter().all(is_enough)
     }
 }

@@ -22,11 +22,11 @@ pub fn rank_and_condition(
     }
     let (mobility, source) = (&scale.mobility, remembered.source);
     let scaled = |i: usize, j: usize| problem.delassus(i, j) / (mobility[i] * mobility[j]);
-    let is_own = |row: &usize| row % 2 == 1 || source.shared_tangent(row / 2).is_none();
-    let own: Vec<usize> = (0..rows).filter(is_own).collect();
-    let without_shared = || DMatrix::from_fn(own.len(), own.len(), |i, j| scaled(own[i], own[j]));
-    if own.len() < rows && scale.is_far_from_underflow() && is_definite(without_shared(), source.errors().delassus) {
-        return Some((own.len(), None));
+    let is_kept = |row: &usize| row % 2 == 1 || source.shared_tangent(row / 2).is_none();
+    let kept: Vec<usize> = (0..rows).filter(is_kept).collect();
+    let without_shared = || DMatrix::from_fn(kept.len(), kept.len(), |i, j| scaled(kept[i], kept[j]));
+    if kept.len() < rows && scale.is_far_from_underflow() && is_definite(without_shared(), source.errors().delassus) {
+        return Some((kept.len(), None));
     }
     let [least, greatest] = if problem.contacts() == 1 && reductions.lone {
         // G of a single contact scaled to a unit diagonal: [[1, r], [r, 1]].

@@ -51,7 +51,7 @@ impl Rejection {
 pub fn rejects<T: Ordered>(numbers: &Pair<T>, mode: Mode, law: &Law) -> bool {
     let mut wrong = law.is_unheld(mode) && matches!(numbers[0].sign(), Sign::Positive | Sign::Negative);
     law.conditions(mode, |inequality, function| {
-        let sign = function.at(|which| numbers[which], |mu, own| own.scaled(mu)).sign();
+        let sign = function.at(|which| numbers[which], |mu, impulse| impulse.scaled(mu)).sign();
         wrong |= sign == Sign::Negative || sign == Sign::Zero && inequality.is_strict();
     });
     wrong

@@ -40,12 +40,12 @@ impl<T: Ordered> Program<T> {
         }
         let block = |group: usize| {
             let entries: Vec<usize> = (0..dimension).filter(|&entry| groups[entry] == group).collect();
-            let own = functions.iter().filter(|function| entries.iter().any(|entry| tied(function, entry)));
+            let of_group = functions.iter().filter(|function| entries.iter().any(|entry| tied(function, entry)));
             let kept = |function: &LinearFunction<T>| LinearFunction {
                 constant: function.constant,
                 coefficients: entries.iter().map(|&entry| function.coefficients[entry]).collect(),
             };
-            Block { functions: own.map(kept).collect(), entries }
+            Block { functions: of_group.map(kept).collect(), entries }
         };
         Self { blocks: (0..dimension).filter(|group| groups.contains(group)).map(block).collect(), dimension }
     }
@@ -56,7 +56,7 @@ impl<T: Ordered> Program<T> {
         let mut y = vec![T::zero(); self.dimension];
         for block in &self.blocks {
             let gain: Vec<T> = block.entries.iter().map(|&entry| objective[entry]).collect();
-            if gain.iter().any(|own| own.sign() != Sign::Zero) {
+            if gain.iter().any(|coefficient| coefficient.sign() != Sign::Zero) {
                 let Some(best) = maximize_block(&block.functions, &gain)? else { return Ok(None) };
                 block.put(&best, &mut y);
             }
@@ -72,8 +72,8 @@ pub fn maximize<T: Ordered>(functions: &[LinearFunction<T>], objective: &[T]) ->
 
 impl<T: Ordered> Block<T> {
     /// Writes the block's own entries into `y`.
-    fn put(&self, own: &[T], y: &mut [T]) {
-        self.entries.iter().zip(own).for_each(|(&entry, &value)| y[entry] = value);
+    fn put(&self, values: &[T], y: &mut [T]) {
+        self.entries.iter().zip(values).for_each(|(&entry, &value)| y[entry] = value);
     }
 
     /// Does the same as [`widest`] for this block alone.
@@ -85,9 +85,9 @@ impl<T: Ordered> Block<T> {
         }
         // The unknowns are y and s, the rise above `least`. At y = 0, s = 0 no function is negative.
         let top = LinearFunction { constant: cap, coefficients: still.clone() };
-        let shifted = |own: &LinearFunction<T>| LinearFunction {
-            constant: own.constant - least,
-            coefficients: extended(&own.coefficients, -one),
+        let shifted = |function: &LinearFunction<T>| LinearFunction {
+            constant: function.constant - least,
+            coefficients: extended(&function.coefficients, -one),
         };
         let program: Vec<LinearFunction<T>> = self.functions.iter().chain([&top]).map(shifted).collect();
         // The cap bounds the program.
@@ -106,7 +106,7 @@ fn maximize_block<T: Ordered>(functions: &[LinearFunction<T>], objective: &[T]) 
             Ordering::Equal => return Ok(Some(vec![T::zero()])),
             sign => sign.is_gt(),
         };
-        let rows = functions.iter().enumerate().map(|(label, own)| (label, own.coefficients[0], own.constant));
+        let rows = functions.iter().enumerate().map(|(label, row)| (label, row.coefficients[0], row.constant));
         let stop = first_at_zero(rows, rising)?;
         let way = |(_, [value, speed]): (usize, Pair<T>)| if rising { value / speed } else { -(value / speed) };
         return Ok(stop.map(|stop| vec![way(stop)]));
@@ -252,12 +252,12 @@ pub fn vanishing<T: Ordered>(functions: &[LinearFunction<T>]) -> Result<(Vec<usi
 /// Returns the y that maximizes the smallest function, and that smallest value, which is at most `cap`. Without the cap
 /// the value could be unbounded.
 pub fn widest<T: Ordered>(functions: &[LinearFunction<T>], dimension: usize, cap: T) -> Result<(Vec<T>, T), Unsettled> {
-    let is_constant = |function: &&LinearFunction<T>| function.coefficients.iter().all(|own| own.sign() == Sign::Zero);
+    let is_constant = |row: &&LinearFunction<T>| row.coefficients.iter().all(|entry| entry.sign() == Sign::Zero);
     let mut smallest = least(functions.iter().filter(is_constant), cap)?;
     let mut y = vec![T::zero(); dimension];
     for block in Program::of(functions, dimension).blocks {
-        let (own, value) = block.widest(cap)?;
-        block.put(&own, &mut y);
+        let (best, value) = block.widest(cap)?;
+        block.put(&best, &mut y);
         if settled(value - smallest)?.is_lt() {
             smallest = value;
         }
@@ -275,8 +275,8 @@ mod tests {
     fn a_degenerate_program_does_not_cycle() {
         // Beale's example, which cycles under the largest-coefficient rule; the rows x >= 0 are functions. The maximum
         // is 1/20.
-        let unit = |own: usize| std::array::from_fn(|entry| f64::from(u8::from(entry == own)));
-        let mut rows: Vec<LinearFunction<Number>> = (0..4).map(|own| affine(0.0, &unit(own) as &[f64; 4])).collect();
+        let unit = |axis: usize| std::array::from_fn(|entry| f64::from(u8::from(entry == axis)));
+        let mut rows: Vec<LinearFunction<Number>> = (0..4).map(|axis| affine(0.0, &unit(axis) as &[f64; 4])).collect();
         rows.push(affine(0.0, &[-0.25, 60.0, 0.04, -9.0]));
         rows.push(affine(0.0, &[-0.5, 90.0, 0.02, -3.0]));
         rows.push(affine(1.0, &[0.0, 0.0, -1.0, 0.0]));
@@ -305,8 +305,7 @@ mod tests {
         let numbers = |y: Vec<Ball>| y.into_iter().map(Ordered::to_f64).collect::<Vec<_>>();
         let cap = Ball::from_f64(1e3);
         let (y, least) = widest(&functions, 3, cap).unwrap();
-        let off =
-            numbers(y).iter().zip([0.0, 1.25 / 3.0, 0.0]).map(|(own, expected)| (own - expected).abs()).sum::<f64>();
+        let off = numbers(y).iter().zip([0.0, 1.25 / 3.0, 0.0]).map(|(y, expected)| (y - expected).abs()).sum::<f64>();
         assert!(off < 1e-15 && least.to_f64() == 0.3, "{off} {least:?}");
         let negative = [&functions[..], &[affine(-0.5, [0.0; 3])]].concat();
         assert_eq!(widest(&negative, 3, cap).unwrap().1.to_f64(), -0.5);

@@ -77,7 +77,7 @@ impl<T: Ordered> Space<T> {
     }
 
     fn functions(&self) -> Vec<LinearFunction<T>> {
-        self.inequalities.iter().map(|own| own.function.clone()).collect()
+        self.inequalities.iter().map(|constraint| constraint.function.clone()).collect()
     }
 }
 
@@ -133,8 +133,8 @@ impl<'a, T: Ordered> Equations<'a, T> {
         let space = self.space(solutions, self.shared.len());
         // A velocity that is zero for all solutions belongs to other modes.
         let mut is_of_others = false;
-        for Constraint { function, .. } in space.inequalities.iter().filter(|own| own.inequality.is_strict()) {
-            is_of_others |= function.is_constant()? && settled(function.constant)?.is_eq();
+        for constraint in space.inequalities.iter().filter(|constraint| constraint.inequality.is_strict()) {
+            is_of_others |= constraint.function.is_constant()? && settled(constraint.function.constant)?.is_eq();
         }
         let functions = space.functions();
         // A velocity that is always zero keeps the least slack from exceeding zero.
@@ -179,24 +179,24 @@ impl<'a, T: Ordered> Equations<'a, T> {
     /// Solves the equations of the rows that the modes hold at zero; the directions of shared impulses come first.
     fn solutions(&self) -> Result<Option<Solutions<T>>, Unsettled> {
         let Self { problem, modes, generators, shared, .. } = self;
-        let is_left_out = |place: usize| shared.iter().any(|own| own.other == place);
+        let is_left_out = |place: usize| shared.iter().any(|impulse| impulse.other == place);
         let equation = |row: usize| {
             let entries = generators.velocity_row(problem, row).into_iter().enumerate();
             let kept = entries.filter(|&(place, _)| !is_left_out(place)).map(|(_, entry)| entry);
             kept.chain([-problem.free_row(row)]).collect()
         };
-        let rows = zero_rows(modes, problem.laws()).filter(|row| shared.iter().all(|own| own.row != *row));
+        let rows = zero_rows(modes, problem.laws()).filter(|row| shared.iter().all(|impulse| impulse.row != *row));
         let Some(Solutions { origin, directions }) =
             solve(generators.count() - shared.len(), rows.map(equation).collect())?
         else {
             return Ok(None);
         };
-        let whole = |kept: Vec<T>| -> Vec<T> {
+        let padded = |kept: Vec<T>| -> Vec<T> {
             let mut kept = kept.into_iter();
             let entry = |place| if is_left_out(place) { None } else { kept.next() };
             (0..generators.count()).map(entry).map(|entry| entry.unwrap_or(T::zero())).collect()
         };
-        let mut origin = whole(origin);
+        let mut origin = padded(origin);
         let mut all = Vec::new();
         for &SharedImpulse { first, other, .. } in shared {
             // Each contact takes half: a tangential impulse of zero would make its two cone slacks equal, and plain
@@ -207,7 +207,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
             (direction[first], direction[other]) = (T::one(), -T::one());
             all.push(direction);
         }
-        all.extend(directions.into_iter().map(whole));
+        all.extend(directions.into_iter().map(padded));
         Ok(Some(Solutions { origin, directions: all }))
     }
 
@@ -221,9 +221,8 @@ impl<'a, T: Ordered> Equations<'a, T> {
         let mut coordinates: Vec<LinearFunction<T>> = Vec::new();
         let mut factors: Vec<Vec<T>> = Vec::new();
         for row in &rows {
-            let equation = |at: usize| {
-                coordinates.iter().map(|own| own.coefficients[at]).chain([row.coefficients[at]]).collect::<Vec<T>>()
-            };
+            let equation =
+                |at: usize| coordinates.iter().chain([row]).map(|row| row.coefficients[at]).collect::<Vec<T>>();
             let equations = (0..solutions.directions.len()).map(equation).collect();
             if let Some(dependent) = solve(coordinates.len(), equations)? {
                 factors.push(dependent.origin);
@@ -235,7 +234,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
         let functions: Vec<LinearFunction<T>> = inequalities.into_iter().map(|each| each.function).collect();
         let Some(corners) = corners(&functions, &coordinates)? else { return Ok(None) };
         let velocity = |corner: Vec<T>| -> Result<Vec<T>, Unsettled> {
-            let from: Vec<T> = corner.iter().zip(&coordinates).map(|(&at, own)| at - own.constant).collect();
+            let from: Vec<T> = corner.iter().zip(&coordinates).map(|(&at, row)| at - row.constant).collect();
             let entry = |(row, factors): (&LinearFunction<T>, &Vec<T>)| {
                 let entry = row.constant + dot(factors, &from);
                 Ok(if settled(entry)?.is_eq() { T::zero() } else { entry })
@@ -255,8 +254,8 @@ impl<'a, T: Ordered> Equations<'a, T> {
         let still = vec![T::zero(); solutions.directions.len()];
         let fixed = |&constant: &T| LinearFunction { constant, coefficients: still.clone() };
         let space = self.space_of(solutions, velocity.iter().map(fixed).collect());
-        let pressing = space.inequalities.iter().filter(|own| !own.inequality.is_strict());
-        let functions: Vec<LinearFunction<T>> = pressing.map(|own| own.function.clone()).collect();
+        let pressing = space.inequalities.iter().filter(|constraint| !constraint.inequality.is_strict());
+        let functions: Vec<LinearFunction<T>> = pressing.map(|constraint| constraint.function.clone()).collect();
         let (inside, least) = widest(&functions, still.len(), T::from_f64(CAP))?;
         let outcome = self.outcome(&space, &inside, least)?;
         Ok(Solution { index: None, margin: None, ..outcome })
@@ -266,11 +265,11 @@ impl<'a, T: Ordered> Equations<'a, T> {
     fn space(&self, solutions: Solutions<T>, still: usize) -> Space<T> {
         let Self { problem, modes, generators, .. } = self;
         // If a contact shares its tangential row with a row that is held at zero, its row is zero as well.
-        let own =
+        let original =
             |row: usize| problem.shared_tangent(row / 2).filter(|_| row.is_multiple_of(2)).map_or(row, |with| 2 * with);
-        let zero: Vec<usize> = zero_rows(modes, problem.laws()).map(own).collect();
+        let zero: Vec<usize> = zero_rows(modes, problem.laws()).map(original).collect();
         let velocity = |row: usize| {
-            if zero.contains(&own(row)) {
+            if zero.contains(&original(row)) {
                 let coefficients = vec![T::zero(); solutions.directions.len()];
                 return LinearFunction { constant: T::zero(), coefficients };
             }
@@ -290,14 +289,14 @@ impl<'a, T: Ordered> Equations<'a, T> {
             law.conditions(mode, |inequality, function| {
                 // The contact's two numbers: their constants, or their coefficients of a direction.
                 let place = |which: usize| generators.place(contact, which);
-                let number = |which: usize, part: Option<usize>| match (inequality.is_strict(), part) {
+                let number = |which: usize, at: Option<usize>| match (inequality.is_strict(), at) {
                     (true, None) => velocity[2 * contact + which].constant,
                     (true, Some(at)) => velocity[2 * contact + which].coefficients[at],
                     (false, None) => solutions.origin[place(which)],
                     (false, Some(at)) => solutions.directions[at][place(which)],
                 };
                 let factor = T::from_f64(scale.factor(contact, inequality, function)) * by_speed;
-                let scaled = |part| factor * function.at(|which| number(which, part), |mu, own: T| own.scaled(mu));
+                let scaled = |at| factor * function.at(|which| number(which, at), |mu, impulse: T| impulse.scaled(mu));
                 let coefficients = (0..solutions.directions.len()).map(|at| scaled(Some(at))).collect();
                 let function = LinearFunction { constant: scaled(None), coefficients };
                 inequalities.push(Constraint { contact, inequality, function });
@@ -310,9 +309,9 @@ impl<'a, T: Ordered> Equations<'a, T> {
         let values = space.inequalities.iter().map(|inequality| (inequality, inequality.function.at(y).to_f64()));
         let least = values.clone().map(|(_, value)| value).fold(f64::INFINITY, f64::min);
         // At the optimum several are equally violated up to rounding; the first contact's is named, first its cone.
-        let order = |own: &Constraint<T>| (own.contact, own.inequality != Inequality::FrictionCone);
+        let order = |violated: &Constraint<T>| (violated.contact, violated.inequality != Inequality::FrictionCone);
         let equals = values.filter(|(_, value)| *value <= least + EQUALLY_BAD * least.abs());
-        let worst = equals.min_by_key(|(own, _)| order(own));
+        let worst = equals.min_by_key(|(violated, _)| order(violated));
         let because = worst.map_or(RejectionReason::NoSolution, |(worst, _)| RejectionReason::Violated {
             contact: worst.contact,
             inequality: worst.inequality,
@@ -326,7 +325,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
 
     /// Whether the only velocity of `space` is the one without impulses.
     fn is_free(&self, space: &Space<T>) -> Result<bool, Unsettled> {
-        are_zero(space.velocity.iter().enumerate().map(|(row, own)| own.constant - self.problem.free_row(row)))
+        are_zero(space.velocity.iter().enumerate().map(|(row, entry)| entry.constant - self.problem.free_row(row)))
     }
 
     /// The outcome with the only velocity of `space` and its impulses. At `inside` the smallest inequality is positive,
@@ -335,8 +334,8 @@ impl<'a, T: Ordered> Equations<'a, T> {
         let Self { problem, scale, modes, generators, .. } = self;
         let Space { solutions, velocity, inequalities } = space;
         // The velocities are determined; only impulses still depend on y.
-        let pressing: Vec<&Constraint<T>> = inequalities.iter().filter(|own| !own.inequality.is_strict()).collect();
-        let shifted: Vec<LinearFunction<T>> = pressing.iter().map(|own| own.function.seen_from(inside)).collect();
+        let pressing: Vec<_> = inequalities.iter().filter(|constraint| !constraint.inequality.is_strict()).collect();
+        let shifted: Vec<_> = pressing.iter().map(|constraint| constraint.function.seen_from(inside)).collect();
         let mut at_zero: Vec<(usize, Inequality)> = Vec::new();
         if settled(least)?.is_eq() {
             for place in vanishing(&shifted)?.0 {
@@ -393,8 +392,8 @@ impl<'a, T: Ordered> Equations<'a, T> {
             let needed = friction_needed(modes, problem.laws(), shortest, entries.as_chunks().0, &shifted)?;
             numbers.take_friction(&needed, problem.laws(), scale.digits());
         }
-        let range = |(&ends, &own): (&[Option<T>; 2], &T)| {
-            numbers.are_precise &= is_known_range(ends, own, scale.digits());
+        let range = |(&ends, &value): (&[Option<T>; 2], &T)| {
+            numbers.are_precise &= is_known_range(ends, value, scale.digits());
             ends.map(|end| end.map(T::to_f64))
         };
         let ranges: Option<Vec<Range>> = (!unique).then(|| ranges.iter().zip(&impulse).map(range).collect());

@@ -21,7 +21,7 @@ pub fn slacks<T: Real>(leaf: &Leaf<'_, T>, modes: &[Mode], laws: &[Law], mut vis
     for (contact, (&mode, law)) in modes.iter().zip(laws).enumerate() {
         let numbers = leaf.numbers(contact);
         law.conditions(mode, |inequality, function| {
-            let number = function.at(|which| numbers[which], |mu, own| own.scaled(mu));
+            let number = function.at(|which| numbers[which], |mu, impulse| impulse.scaled(mu));
             visitor(Slack { contact, inequality, function, number });
         });
     }
@@ -119,14 +119,14 @@ impl Scale {
     pub fn free(&self, problem: &ContactProblem, errors: Errors<'_>) -> impl Fn(usize) -> Rounded {
         move |row| {
             let (contact, value) = (row / 2, problem.free_row(row));
-            let own = errors.velocity.map_or(0.0, |errors| errors[contact][row % 2]);
+            let bound = errors.velocity.map_or(0.0, |errors| errors[contact][row % 2]);
             let error = match problem.restitution()[contact] {
                 bouncing if row % 2 == 1 && bouncing != 0.0 => {
                     // The bounce and the sum are rounded, and the bounce may underflow.
                     let rounding = f64::EPSILON * (problem.bounce(contact).abs() + value.abs()) + f64::MIN_POSITIVE;
-                    own * (1.0 + bouncing) + if problem.velocity_before()[contact][1] < 0.0 { rounding } else { 0.0 }
+                    bound * (1.0 + bouncing) + if problem.velocity_before()[contact][1] < 0.0 { rounding } else { 0.0 }
                 }
-                _ => own,
+                _ => bound,
             };
             Rounded { value, error: if errors.delassus.is_finite() { error } else { f64::INFINITY } }
         }
@@ -141,11 +141,11 @@ impl Scale {
     ) -> ContactProblem<Ball> {
         let contacts = problem.contacts();
         let entry = self.delassus(problem, errors);
-        let own = |row: usize| shared[row / 2].filter(|_| row.is_multiple_of(2)).map_or(row, |with| 2 * with);
+        let original = |row: usize| shared[row / 2].filter(|_| row.is_multiple_of(2)).map_or(row, |with| 2 * with);
         let ball = |mid: f64, radius: f64| Ball { mid, radius };
         let columns = |row: usize| (0..2 * contacts).map(move |column| [row, column]);
         let delassus = (0..2 * contacts).flat_map(columns).map(|at| {
-            let Rounded { value, error } = entry(own(at[0]), own(at[1]));
+            let Rounded { value, error } = entry(original(at[0]), original(at[1]));
             ball(value, error)
         });
         let velocity = |list: &[Pair<f64>]| -> Vec<Pair<Ball>> {
@@ -153,7 +153,7 @@ impl Scale {
                 let (contact, axis) = (row / 2, row % 2);
                 ball(list[contact][axis], errors.velocity.map_or(0.0, |errors| errors[contact][axis]))
             };
-            (0..contacts).map(|contact| [2 * contact, 2 * contact + 1].map(|row| entry(own(row)))).collect()
+            (0..contacts).map(|contact| [2 * contact, 2 * contact + 1].map(|row| entry(original(row)))).collect()
         };
         let (before, free) = (velocity(problem.velocity_before()), velocity(problem.velocity_free()));
         let (laws, restitution) = (problem.laws().to_vec(), problem.restitution().to_vec());

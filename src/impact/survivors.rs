@@ -80,7 +80,7 @@ impl<'a> Search<'a> {
                 continue;
             }
             self.modes.push(mode);
-            let begins = |own: &Vec<Mode>| own.len() == self.laws.len() && own.starts_with(&self.modes);
+            let begins = |modes: &Vec<Mode>| modes.len() == self.laws.len() && modes.starts_with(&self.modes);
             let is_listed = self.listed.iter().any(begins);
             if !is_listed && self.relaxation.excludes(contact, mode) {
                 self.modes.pop();

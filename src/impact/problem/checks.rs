@@ -81,10 +81,10 @@ impl ContactProblem {
         let mut symmetric = true;
         for i in 0..rows {
             for j in 0..i {
-                let (own, other) = (self.delassus(i, j), self.delassus(j, i));
-                symmetric &= own == other;
-                if (own - other).abs() > rounding * sizes[i] * sizes[j] {
-                    let reason = format!("the Delassus matrix is not symmetric: {own} against {other}");
+                let (lower, upper) = (self.delassus(i, j), self.delassus(j, i));
+                symmetric &= lower == upper;
+                if (lower - upper).abs() > rounding * sizes[i] * sizes[j] {
+                    let reason = format!("the Delassus matrix is not symmetric: {lower} against {upper}");
                     return Err(Error::new(Reason::Inconsistent(reason))
                         .at(format!("delassus[{i}][{j}]"))
                         .hint("G = J M^-1 J^T is symmetric; check the order of rows and columns"));

@@ -212,10 +212,10 @@ impl ContactProblem {
         let rows = 2 * self.contacts();
         let mut found = false;
         for (i, j) in (0..rows).flat_map(|i| (0..i).map(move |j| (i, j))) {
-            let (own, other) = (self.delassus(i, j), self.delassus(j, i));
-            if own != other {
+            let (lower, upper) = (self.delassus(i, j), self.delassus(j, i));
+            if lower != upper {
                 // Each is halved first, because their sum may overflow.
-                let mean = 0.5 * own + 0.5 * other;
+                let mean = 0.5 * lower + 0.5 * upper;
                 (self.delassus[i * rows + j], self.delassus[j * rows + i]) = (mean, mean);
                 found = true;
             }
@@ -230,7 +230,7 @@ impl ContactProblem {
 
     /// Whether the given M was asymmetric, by rounding alone, and was replaced by a symmetric matrix.
     pub fn is_mass_symmetrized(&self) -> bool {
-        matches!(&self.origin, Origin::Dynamics(own) if own.is_symmetrized)
+        matches!(&self.origin, Origin::Dynamics(dynamics) if dynamics.is_symmetrized)
     }
 
     /// Whether the given G was indefinite, by rounding alone, and was replaced by a semidefinite matrix.
@@ -353,7 +353,7 @@ mod tests {
         let [exact, rounded] = [1.0, 1.0 + f64::EPSILON].map(solve);
         assert_eq!([exact.is_symmetrized(), rounded.is_symmetrized()], [false, true]);
         assert!(!rounded.is_repaired() && rounded.delassus(0, 1) == rounded.delassus(1, 0));
-        let [exact, rounded] = [exact, rounded].map(|own| crate::impact::analyze(&own, false.into()).unwrap());
+        let [exact, rounded] = [exact, rounded].map(|problem| crate::impact::analyze(&problem, false.into()).unwrap());
         assert!(exact.proven && rounded.proven);
         assert_eq!(exact.outcomes[0].modes, rounded.outcomes[0].modes);
         // Rows that are equal except for the digit that makes the matrix asymmetric, which alone makes the mean

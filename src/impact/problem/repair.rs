@@ -16,13 +16,13 @@ impl FactorRows {
         let mut rest: Vec<Vec<f64>> = (0..count)
             .map(|i| (0..count).map(|j| 0.5 * (problem.delassus(i, j) + problem.delassus(j, i))).collect())
             .collect();
-        let whole: Vec<f64> = (0..count).map(|i| rest[i][i]).collect();
+        let original: Vec<f64> = (0..count).map(|i| rest[i][i]).collect();
         let mut rows = vec![Vec::new(); count];
         // A remaining diagonal entry is compared with its original value, so that units do not matter.
-        let part = |rest: &[Vec<f64>], i: usize| if whole[i] > 0.0 { rest[i][i] / whole[i] } else { 0.0 };
+        let share = |rest: &[Vec<f64>], i: usize| if original[i] > 0.0 { rest[i][i] / original[i] } else { 0.0 };
         for _ in 0..count {
-            let Some(pivot) = (0..count).max_by(|&i, &j| part(&rest, i).total_cmp(&part(&rest, j))) else { break };
-            if part(&rest, pivot) <= 8.0 * count as f64 * f64::EPSILON {
+            let Some(pivot) = (0..count).max_by(|&i, &j| share(&rest, i).total_cmp(&share(&rest, j))) else { break };
+            if share(&rest, pivot) <= 8.0 * count as f64 * f64::EPSILON {
                 break;
             }
             let diagonal = rest[pivot][pivot];

@@ -26,22 +26,22 @@ impl Claim {
             let [t, n] = ray.entries.map(T::from_f64);
             t * problem.delassus(row, 2 * ray.contact) + n * problem.delassus(row, 2 * ray.contact + 1)
         };
-        let (own, sign) = (self.lack.variable, T::from_f64(self.lack.sign));
+        let (lacking, sign) = (self.lack.variable, T::from_f64(self.lack.sign));
         // The multipliers y of nonbasic velocities are chosen so that the multipliers of basic rays are zero.
         let unknown: Vec<usize> = (0..rows).filter(|row| !self.basic.contains(row)).collect();
         let equations = self.basic.iter().filter(|&&variable| variable >= rows).map(|&variable| {
             let ray = &rays[variable - rows];
             let coefficients: Vec<T> = unknown.iter().map(|&row| response(row, ray)).collect();
-            let right = match own {
+            let right = match lacking {
                 row if row < rows => sign * response(row, ray),
-                _ if own == variable => sign,
+                _ if lacking == variable => sign,
                 _ => T::zero(),
             };
             extended(&coefficients, -right)
         });
         let Some(found) = solve(unknown.len(), equations.collect())? else { return Ok(None) };
         let mut factors: Vec<(usize, T)> = unknown.into_iter().zip(found.origin).collect();
-        factors.extend((own < rows).then_some((own, sign)));
+        factors.extend((lacking < rows).then_some((lacking, sign)));
         let mut nogood = Ranges::default();
         for &(row, factor) in &factors {
             let factor = settled(factor)?;
@@ -52,7 +52,7 @@ impl Claim {
             nogood.moves |= u64::from(factor.is_ne()) << row;
         }
         for (index, ray) in rays.iter().enumerate() {
-            if rows + index != own && self.basic.contains(&(rows + index)) {
+            if rows + index != lacking && self.basic.contains(&(rows + index)) {
                 continue;
             }
             let range = self.ranges.get(rows + index);

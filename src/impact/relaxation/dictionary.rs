@@ -90,14 +90,14 @@ impl Dictionary {
     fn pivot(&mut self, row: usize, column: usize) {
         let width = self.width;
         let (before, rest) = self.entries.split_at_mut(row * width);
-        let (own, after) = rest.split_at_mut(width);
-        let inverse = 1.0 / own[column];
-        own.iter_mut().for_each(|entry| *entry *= -inverse);
-        own[column] = inverse;
+        let (pivot_row, after) = rest.split_at_mut(width);
+        let inverse = 1.0 / pivot_row[column];
+        pivot_row.iter_mut().for_each(|entry| *entry *= -inverse);
+        pivot_row[column] = inverse;
         for other in before.chunks_exact_mut(width).chain(after.chunks_exact_mut(width)) {
             let factor = std::mem::take(&mut other[column]);
-            for (entries, own) in other.as_chunks_mut::<LANES>().0.iter_mut().zip(own.as_chunks::<LANES>().0) {
-                entries.iter_mut().zip(own).for_each(|(entry, own)| *entry += factor * own);
+            for (entries, pivots) in other.as_chunks_mut::<LANES>().0.iter_mut().zip(pivot_row.as_chunks::<LANES>().0) {
+                entries.iter_mut().zip(pivots).for_each(|(entry, pivot)| *entry += factor * pivot);
             }
         }
         std::mem::swap(&mut self.basic[row], &mut self.nonbasic[column]);

@@ -59,7 +59,7 @@ pub struct Relaxation {
     /// An upper bound of the sum of all multipliers; infinite if none is known.
     reach: f64,
     /// For each contact, its variables as bits, and their ranges in each of its modes.
-    own: Vec<(u64, Vec<(Mode, Ranges)>)>,
+    by_contact: Vec<(u64, Vec<(Mode, Ranges)>)>,
     /// The dictionary after the decisions on the first contacts, by their number.
     depths: Vec<Dictionary>,
     multipliers: [Vec<f64>; 2],
@@ -88,13 +88,13 @@ impl Relaxation {
         let along: Vec<Pair<f64>> = self.rays.iter().map(along).collect();
         self.response.clear();
         let width = (self.rays.len() + 1).next_multiple_of(LANES);
-        for (row, own) in mobility.iter().enumerate() {
+        for (row, size) in mobility.iter().enumerate() {
             let by_ray = |(ray, [t, n]): (&Ray, &Pair<f64>)| {
                 t * scaled(row, 2 * ray.contact) + n * scaled(row, 2 * ray.contact + 1)
             };
             self.response.extend(self.rays.iter().zip(&along).map(by_ray));
             self.response.resize((row + 1) * width - 1, 0.0);
-            self.response.push(problem.free_row(row) / (own * scale.speed));
+            self.response.push(problem.free_row(row) / (size * scale.speed));
         }
         let largest = self.response.chunks_exact(width).map(|row| row[width - 1].abs()).fold(1.0, f64::max);
         let rounding = (rows + 24) as f64 * f64::EPSILON;
@@ -110,10 +110,10 @@ impl Relaxation {
         self.depths.resize_with(problem.contacts() + 1, Dictionary::default);
         self.shown = 0;
         self.nogoods.clear();
-        self.own.clear();
+        self.by_contact.clear();
         let mut ranges = Ranges::default();
         for (contact, law) in self.laws.iter().enumerate() {
-            let own = |mode: Option<Mode>| {
+            let in_mode = |mode: Option<Mode>| {
                 let mut ranges = Ranges::default();
                 let signs = mode.map_or([None; 2], |mode| law.velocity(mode));
                 for (side, undecided) in [Range::FREE, Range::ABOVE].into_iter().enumerate() {
@@ -126,10 +126,10 @@ impl Relaxation {
                 }
                 ranges
             };
-            let undecided = own(None);
+            let undecided = in_mode(None);
             ranges = ranges.replaced(0, undecided);
-            let modes = law.modes().iter().copied().flatten().map(|&mode| (mode, own(Some(mode))));
-            self.own.push((undecided.above_zero | undecided.below_zero, modes.collect()));
+            let modes = law.modes().iter().copied().flatten().map(|&mode| (mode, in_mode(Some(mode))));
+            self.by_contact.push((undecided.above_zero | undecided.below_zero, modes.collect()));
         }
         let root = &mut self.depths[0];
         self.response.clone_into(&mut root.entries);
@@ -193,9 +193,9 @@ impl Relaxation {
 
     /// The ranges of all variables if the contact has this mode, after the decisions on all contacts before it.
     fn ranges(&self, contact: usize, mode: Mode) -> Ranges {
-        let (variables, modes) = &self.own[contact];
-        let own = modes.iter().find(|(other, _)| *other == mode).map_or_else(Ranges::default, |(_, own)| *own);
-        self.depths[contact].ranges.replaced(*variables, own)
+        let (variables, modes) = &self.by_contact[contact];
+        let ranges = modes.iter().find(|(other, _)| *other == mode).map_or_else(Ranges::default, |(_, ranges)| *ranges);
+        self.depths[contact].ranges.replaced(*variables, ranges)
     }
 
     /// Whether a nogood excludes this mode of the contact after the decisions on all contacts before it.
@@ -236,8 +236,8 @@ impl Relaxation {
 
     /// Whether a claim holds in exact numbers, including the strictness of inequalities.
     pub fn confirms<T: Ordered>(&mut self, claim: &Claim, problem: &ContactProblem<T>) -> Result<bool, Unsettled> {
-        let holds =
-            self.has_shown(claim.ranges) || T::freeing(|| claim.shown(problem))?.map(|own| self.learn(own)).is_some();
+        let holds = self.has_shown(claim.ranges)
+            || T::freeing(|| claim.shown(problem))?.map(|nogood| self.learn(nogood)).is_some();
         Ok(holds)
     }
 

@@ -92,9 +92,9 @@ impl Ray {
 
     /// The range of the ray's multiplier in a mode of its contact, or in any mode.
     pub fn range(&self, law: &Law, mode: Option<Mode>) -> Range {
-        let own = if self.both { Range::FREE } else { Range::ABOVE };
+        let full = if self.both { Range::FREE } else { Range::ABOVE };
         match mode.map(|mode| law.impulse(mode)) {
-            None | Some(Impulse::Free) => own,
+            None | Some(Impulse::Free) => full,
             Some(Impulse::Along([t, n])) if t * self.entries[1] == n * self.entries[0] => {
                 let is_forward = t * self.entries[0] + n * self.entries[1] > 0.0;
                 Range { above_zero: is_forward, below_zero: !is_forward && self.both }
