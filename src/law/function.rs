@@ -43,14 +43,14 @@ impl Function {
     /// sqrt(G_ii), a cone as (mu L_n - |L_t|) / sqrt(mu^2 / G_nn + 1 / G_tt).
     #[inline]
     pub fn scale(self, inequality: Inequality, mobility: [f64; 2]) -> f64 {
-        let own = mobility[inequality.row()];
+        let row_mobility = mobility[inequality.row()];
         match self {
             Self::ConeMinus(mu) | Self::ConePlus(mu) => {
                 let size = libm::hypot(mu / mobility[1], 1.0 / mobility[0]);
                 if size.is_finite() { 1.0 / size } else { mobility[1] / mu }
             }
-            _ if inequality.is_strict() => 1.0 / own,
-            _ => own,
+            _ if inequality.is_strict() => 1.0 / row_mobility,
+            _ => row_mobility,
         }
     }
 }
