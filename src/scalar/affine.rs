@@ -38,7 +38,7 @@ impl<const N: usize> Affine<N> {
     /// A number at most `radius` from `center`, whose offset is the cause number `symbol`. Causes from number N on are
     /// not tracked: their effects go into the error and do not cancel.
     pub fn varying(center: f64, radius: f64, symbol: usize) -> Self {
-        let slopes = std::array::from_fn(|own| if own == symbol { radius } else { 0.0 });
+        let slopes = std::array::from_fn(|i| if i == symbol { radius } else { 0.0 });
         let error = if symbol < N { 0.0 } else { radius };
         if center.is_finite() && radius.is_finite() { Self { center, slopes, error } } else { Self::unknown() }
     }
@@ -183,10 +183,10 @@ impl<const N: usize> Affine<N> {
         let of_center = ROUNDING * (quotient * divisor).abs() + Self::TINY * (1.0 + divisor.abs());
         let of_rest = ROUNDING * (quotient.abs() * other.reach() + reach) + Self::TINY;
         let error = (self.error + quotient.abs() * other.error + of_rest + of_center) / divisor.abs();
-        let whole = reach / divisor.abs() + error;
+        let bound = reach / divisor.abs() + error;
         let slopes = rest.map(|slope| slope / divisor);
         let rounding = ROUNDING * (reach / divisor.abs()) + Self::TINY;
-        Self::around(quotient, slopes, error + whole * (spread / least) + rounding)
+        Self::around(quotient, slopes, error + bound * (spread / least) + rounding)
     }
 
     fn negated(self) -> Self {
