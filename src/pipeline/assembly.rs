@@ -181,7 +181,7 @@ impl<T: Real> Assembly<T> {
         self.column.extend(self.plan.coordinates.iter().map(|&coordinate| {
             let Some(joint) = coordinate.checked_sub(loads.robot.base_dofs()) else { return T::zero() };
             let given = loads.scene.torque.get(joint).map_or(T::zero(), |&torque| T::from_f64(torque));
-            springs.iter().fold(given, |sum, own| sum + own.generalized[coordinate])
+            springs.iter().fold(given, |sum, spring| sum + spring.generalized[coordinate])
         }));
     }
 
@@ -202,10 +202,10 @@ impl<T: Real> Assembly<T> {
         }
         let Self { plan, workspace, column, loops, .. } = self;
         let mut acceleration = vec![T::zero(); velocity.len()];
-        for (&coordinate, &own) in plan.coordinates.iter().zip(column.iter()) {
-            acceleration[coordinate] = own;
+        for (&coordinate, &entry) in plan.coordinates.iter().zip(column.iter()) {
+            acceleration[coordinate] = entry;
         }
-        (acceleration, loops.iter().map(|own| own.drift(workspace)).collect())
+        (acceleration, loops.iter().map(|pair| pair.drift(workspace)).collect())
     }
 
     /// Returns the force of each virtual spring. Requires the kinematics.
@@ -214,12 +214,12 @@ impl<T: Real> Assembly<T> {
             let link = &loads.robot.links[link];
             SpringPoint::Body(link.body, link.point(offset))
         };
-        let load = |own: &VirtualSpring| {
-            let b = match own.b {
+        let load = |spring: &VirtualSpring| {
+            let b = match spring.b {
                 SpringEnd::Link(end) => point(end),
                 SpringEnd::World(place) => SpringPoint::World(place.map(T::from_f64)),
             };
-            let spring = ([point(own.a), b], own.laws);
+            let spring = ([point(spring.a), b], spring.laws);
             SpringLoad::of(spring, &self.plan, loads.position, velocity, &self.workspace)
         };
         loads.scene.springs.iter().map(load).collect()
@@ -227,11 +227,11 @@ impl<T: Real> Assembly<T> {
 
     /// Returns the contacts' accelerations J a + sigma for an acceleration a by coordinate.
     pub fn contact_accelerations(&self, acceleration: &[T]) -> Vec<Pair<T>> {
-        let own = self.points.iter().map(|point| {
+        let accelerations = self.points.iter().map(|point| {
             let total = self.velocity_of(point, acceleration) + point.drift(&self.workspace);
             point.axes().map(|axis| axis.dot(total))
         });
-        own.collect()
+        accelerations.collect()
     }
 
     /// Computes J and c. The contact `stance` is exactly at rest.
@@ -256,7 +256,7 @@ impl<T: Real> Assembly<T> {
                 }
             }
         }
-        speeds.iter_mut().zip(contacts).filter(|(_, still)| **still).for_each(|(own, _)| *own = [T::zero(); 2]);
+        speeds.iter_mut().zip(contacts).filter(|(_, still)| **still).for_each(|(speed, _)| *speed = [T::zero(); 2]);
     }
 
     /// Computes G, without the directions that the constraints block.

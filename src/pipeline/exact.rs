@@ -97,7 +97,7 @@ impl<'a> ExactState<'a> {
     pub fn assembly<T: Real>(&self, plan: Plan<T>) -> Assembly<T> {
         let mut assembly = Assembly::new(plan);
         assembly.kept.extend(self.constraints.kept);
-        assembly.loops.extend(self.scene.loops.iter().map(|own| own.points(self.robot)));
+        assembly.loops.extend(self.scene.loops.iter().map(|named| named.points(self.robot)));
         assembly.rows.extend(self.constraints.rows);
         assembly
     }
@@ -114,17 +114,17 @@ impl<'a> ExactState<'a> {
         for (index, level) in self.levels.iter().enumerate() {
             let &Some(Level { with, along: Some(along), .. }) = level else { continue };
             let Assembly { plan, workspace, points, .. } = &mut *assembly;
-            let (other, own) = (points[with], &mut points[index]);
-            let [tangent, normal] = own.axes();
-            let arm = tangent * T::from_f64(along) + normal * (own.radius - other.radius);
-            let back = workspace.rotation[own.body].back();
-            own.center = if own.body == other.body {
+            let (other, point) = (points[with], &mut points[index]);
+            let [tangent, normal] = point.axes();
+            let arm = tangent * T::from_f64(along) + normal * (point.radius - other.radius);
+            let back = workspace.rotation[point.body].back();
+            point.center = if point.body == other.body {
                 other.center + back.apply(arm)
             } else {
                 let arms = |body: usize, other: usize| plan.way_beyond(body, other).map(|(at, _)| workspace.arm[at]);
-                let [to_other, to_own] = [(other.body, own.body), (own.body, other.body)]
+                let [to_other, to_point] = [(other.body, point.body), (point.body, other.body)]
                     .map(|(body, other)| arms(body, other).fold(Vector::zero(), Vector::add));
-                let between = to_other - to_own;
+                let between = to_other - to_point;
                 let center = workspace.rotation[other.body].apply(other.center);
                 back.apply(between + center + arm)
             };
@@ -207,9 +207,9 @@ impl<'a> ExactState<'a> {
                 vec![with(velocity, still), with(change, loops)]
             }
         };
-        for (contact, own) in impulse.iter().enumerate() {
+        for (contact, pair) in impulse.iter().enumerate() {
             let mut change = rest.clone();
-            assembly.add_contact_impulse(assembly.elimination, contact, own.map(T::from_f64), &mut change);
+            assembly.add_contact_impulse(assembly.elimination, contact, pair.map(T::from_f64), &mut change);
             let loops = assembly.add_constraint_response(Closed::Change, &mut change);
             parts.push(with(change, loops));
         }
@@ -331,18 +331,18 @@ mod tests {
             let [sharp, blurred] = [false, true].map(analyze);
             assert_eq!((sharp.verdict, sharp.proven), (blurred.verdict, blurred.proven), "{line}");
             assert_eq!(sharp.outcomes.len(), blurred.outcomes.len(), "{line}");
-            for (own, other) in sharp.outcomes.iter().zip(&blurred.outcomes) {
-                assert_eq!((&own.modes, own.index), (&other.modes, other.index), "{line}");
-                let losses = [own, other].map(|own| own.energy_loss);
+            for (one, other) in sharp.outcomes.iter().zip(&blurred.outcomes) {
+                assert_eq!((&one.modes, one.index), (&other.modes, other.index), "{line}");
+                let losses = [one, other].map(|outcome| outcome.energy_loss);
                 assert!((losses[0] - losses[1]).abs() <= 1e-10 * losses[1].abs(), "{losses:?} of {line}");
-                let margins = [own, other].map(|own| own.margin.unwrap_or_default());
+                let margins = [one, other].map(|outcome| outcome.margin.unwrap_or_default());
                 assert!((margins[0] - margins[1]).abs() <= 1e-10 * margins[1].abs().max(1.0), "{margins:?} of {line}");
-                let [own, other] =
-                    [own, other].map(|own| [&own.impulse, &own.velocity_after].map(|list| list.as_flattened()));
-                for (own, other) in own.into_iter().zip(other) {
+                let [one, other] = [one, other]
+                    .map(|outcome| [&outcome.impulse, &outcome.velocity_after].map(|list| list.as_flattened()));
+                for (one, other) in one.into_iter().zip(other) {
                     let scale = other.iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
-                    let near = own.iter().zip(other).all(|(own, other)| (own - other).abs() <= 1e-10 * scale);
-                    assert!(near, "{own:?} is not {other:?} of {line}");
+                    let near = one.iter().zip(other).all(|(one, other)| (one - other).abs() <= 1e-10 * scale);
+                    assert!(near, "{one:?} is not {other:?} of {line}");
                 }
             }
             if beyond_f64(&blurred) > 0 {

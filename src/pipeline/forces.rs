@@ -107,17 +107,17 @@ impl Pipeline<'_> {
             let name = &self.robot.joints[joint].name;
             notes.push(format!("{name} is held: its torque is carried by what holds it, and has no effect"));
         }
-        let asked = self.asked(prepared.impact.contacts.len(), chosen);
-        let mut analysis = self.analyze_forces(state, &prepared, &unforced, asked);
+        let options = self.analysis_options(prepared.impact.contacts.len(), chosen);
+        let mut analysis = self.analyze_forces(state, &prepared, &unforced, options);
         let Impact { notes, problem, .. } = &mut *prepared.impact;
-        notes.extend(analysis.as_ref().and_then(|own| own.balance_note(problem, || self.robot.mass())));
+        notes.extend(analysis.as_ref().and_then(|analysis| analysis.balance_note(problem, || self.robot.mass())));
         notes.extend(analysis.as_ref().and_then(Analysis::unlisted_note));
-        let is_none = analysis.as_ref().is_some_and(|own| own.verdict == Verdict::None);
-        let mut shock = if is_none { self.shock(state, &prepared, &slips, asked) } else { None };
+        let is_none = analysis.as_ref().is_some_and(|analysis| analysis.verdict == Verdict::None);
+        let mut shock = if is_none { self.shock(state, &prepared, &slips, options) } else { None };
 
         let rest = vec![0.0; unforced.free.len()];
         let velocity = self.assembly.workspace.contact_velocity.as_flattened();
-        for outcome in analysis.iter_mut().flat_map(|own| &mut own.outcomes) {
+        for outcome in analysis.iter_mut().flat_map(|analysis| &mut analysis.outcomes) {
             outcome.energy_loss = 0.0 - dot(outcome.impulse.as_flattened(), velocity);
         }
         if let Some(analysis) = analysis.as_mut().filter(|_| !self.options.brief) {
@@ -186,8 +186,8 @@ impl Pipeline<'_> {
             self.bound_velocities(contacts, levels, velocity, Standing { foot: foot.as_ref(), place: *stance });
         }
         match state.scene.gravity() {
-            own if own < 0.0 => notes.push("gravity is negative, so it acts upward: 9.81 is that of the earth".into()),
-            own if own > STRONGEST => notes.push(format!("gravity is {own} m/s^2: 9.81 is that of the earth")),
+            g if g < 0.0 => notes.push("gravity is negative, so it acts upward: 9.81 is that of the earth".into()),
+            g if g > STRONGEST => notes.push(format!("gravity is {g} m/s^2: 9.81 is that of the earth")),
             _ => {}
         }
         let slips = self.slips(state, velocity, contacts, foot.as_ref(), notes)?;
@@ -249,12 +249,12 @@ impl Pipeline<'_> {
         self.take_part(after, &mut prepared, &slips)?;
         let taking: Vec<Ordering> = slips.iter().copied().flatten().collect();
         let unforced = self.pose(after, &mut prepared, &taking, STOPPED)?;
-        let asked = self.asked(taking.len(), Some(&[]));
+        let options = self.analysis_options(taking.len(), Some(&[]));
         let of_impact = |modes: &Vec<Mode>| {
             let mut taking = modes.iter().copied();
             slips.iter().map(|slip| slip.and_then(|_| taking.next())).collect()
         };
-        Ok(self.analyze_forces(after, &prepared, &unforced, asked).map(|analysis| Next {
+        Ok(self.analyze_forces(after, &prepared, &unforced, options).map(|analysis| Next {
             verdict: analysis.verdict,
             proven: analysis.proven && outcome.proven,
             modes: analysis.modes().iter().map(of_impact).collect(),
@@ -273,7 +273,7 @@ impl Pipeline<'_> {
 
     /// Sets rates to zero that are no faster than `speed` \[m/s\].
     fn stop(&self, velocity: &mut [f64], speed: f64) {
-        let stops: Vec<bool> = self.speeds(velocity).map(|own| own <= speed).collect();
+        let stops: Vec<bool> = self.speeds(velocity).map(|entry| entry <= speed).collect();
         velocity.iter_mut().zip(stops).filter(|(_, stops)| *stops).for_each(|(rate, _)| *rate = 0.0);
     }
 
@@ -296,7 +296,7 @@ impl Pipeline<'_> {
                 error.hint("gravity, torques or velocities are too large for the masses: are they in SI units?")
             })?;
         }
-        let own = self.assembly.contact_accelerations(&free);
+        let accelerations = self.assembly.contact_accelerations(&free);
         let (mut likely, rounding) = self.bound_accelerations(prepared, &free, loads);
         likely.iter_mut().for_each(|error| *error *= LIKELY * self.bounds.likely[0]);
         let laws = prepared.impact.problem.laws().iter().zip(slips).map(|(law, slip)| match slip {
@@ -304,7 +304,8 @@ impl Pipeline<'_> {
             slip => Law::Sliding(law.friction(), Mode::closed(*slip)),
         });
         let (laws, delassus) = (laws.collect(), self.assembly.workspace.delassus.clone());
-        prepared.impact.problem = ContactProblem::checked(delassus, own.clone(), own, laws, vec![0.0; slips.len()])?;
+        prepared.impact.problem =
+            ContactProblem::checked(delassus, accelerations.clone(), accelerations, laws, vec![0.0; slips.len()])?;
         Ok(Unforced { steady, position, driven, unclosed, free, drifts, likely, rounding })
     }
 
@@ -331,9 +332,9 @@ impl Pipeline<'_> {
             velocity[..2].iter_mut().for_each(|entry| *entry = *entry + rests);
         }
         let terms = stretched.load(&velocity, loads).to_vec();
-        let whole = stretched.contact_accelerations(&magnitudes(acceleration));
+        let of_contacts = stretched.contact_accelerations(&magnitudes(acceleration));
         let Assembly { plan, workspace, .. } = assembly;
-        bounds.accelerations(plan, acceleration, workspace, (&terms, loads.scene.springs.len()), &whole)
+        bounds.accelerations(plan, acceleration, workspace, (&terms, loads.scene.springs.len()), &of_contacts)
     }
 
     /// Finds every set of forces of the posed problem; `None` if there are more contacts than are enumerated.
@@ -342,14 +343,14 @@ impl Pipeline<'_> {
         state: &State,
         prepared: &Prepared,
         unforced: &Unforced,
-        asked: AnalysisOptions<'_>,
+        options: AnalysisOptions<'_>,
     ) -> Option<Analysis> {
         let [likely, _] = self.bounds.likely;
         let (delassus, velocity) = (self.bounds.delassus, Some(&*unforced.rounding));
         let errors = Errors { delassus, velocity, likely: [likely, LIKELY * likely] };
         let exact = prepared.exact(self.robot, state, &self.assembly, errors);
         let source = ExactState { asked: Asked::Forces(unforced.loads(self.robot, &state.scene)), ..exact };
-        self.scratch.analyze(&prepared.impact.problem, &source, asked).ok().map(Analysis::of_forces)
+        self.scratch.analyze(&prepared.impact.problem, &source, options).ok().map(Analysis::of_forces)
     }
 
     /// Keeps only the contacts that take part (they have a slip), with their data, and poses their impact problem.
@@ -358,7 +359,7 @@ impl Pipeline<'_> {
         let Impact { contacts, stance, resting, problem, .. } = &mut **impact;
         let stays: Vec<usize> = (0..slips.len()).filter(|&at| slips[at].is_some()).collect();
         if stays.len() < slips.len() {
-            let place = |at: usize| stays.iter().position(|&own| own == at);
+            let place = |at: usize| stays.iter().position(|&stay| stay == at);
             let known = stays.iter().map(|&at| self.assembly.workspace.contact_velocity[at]).collect();
             *contacts = stays.iter().map(|&at| contacts[at].clone()).collect();
             *stance = stance.and_then(place);
@@ -383,7 +384,7 @@ impl Pipeline<'_> {
     fn refuse_uneven(&self, prepared: &Prepared) -> Result<()> {
         let uneven = prepared.merged.iter().filter(|merged| merged.is_uneven).flat_map(|merged| &merged.outer);
         let mut uneven = uneven.map(|&at| &prepared.impact.contacts[at]);
-        let turning = uneven.find(|own| self.turns(own.body, &prepared.velocity, self.rounding_of_rates()));
+        let turning = uneven.find(|contact| self.turns(contact.body, &prepared.velocity, self.rounding_of_rates()));
         let Some(Contact { name, .. }) = turning else { return Ok(()) };
         let reason = format!("circles of different radii touch the ground at one place, {name}, and roll differently");
         let hint = "name the one that bears the load in `contacts`, or switch off the reduction merge";
@@ -412,17 +413,17 @@ impl Pipeline<'_> {
     fn steady(&self, prepared: &Prepared, slips: &[Ordering], rounding: f64) -> Vec<bool> {
         let (contacts, velocity) = (&prepared.impact.contacts, &prepared.velocity);
         let parts = self.rigid_parts(velocity);
-        let holds = |&(at, own): &(usize, &Contact)| {
-            let stops = |(other, contact): (usize, &Contact)| {
-                let apart = contact.point - own.point;
+        let holds = |&(at, a): &(usize, &Contact)| {
+            let stops = |(other, b): (usize, &Contact)| {
+                let apart = b.point - a.point;
                 // Contacts at one place, up to rounding, do not keep a body from turning.
-                let least = CONTACT_TOLERANCE * (own.arm(self.robot).length + contact.arm(self.robot).length);
+                let least = CONTACT_TOLERANCE * (a.arm(self.robot).length + b.arm(self.robot).length);
                 let is_apart = |distance: f64| {
-                    distance > least || (distance > 0.0 && !self.turns(own.body, velocity, self.rounding_of_rates()))
+                    distance > least || (distance > 0.0 && !self.turns(a.body, velocity, self.rounding_of_rates()))
                 };
-                let on_line = contact.ground == own.ground && is_apart(own.tangent().dot(apart).abs());
+                let on_line = b.ground == a.ground && is_apart(a.tangent().dot(apart).abs());
                 let stand = slips[at].is_eq() && slips[other].is_eq() && is_apart(apart.length());
-                parts.are_one(own.body, contact.body) && (on_line || stand)
+                parts.are_one(a.body, b.body) && (on_line || stand)
             };
             contacts.iter().enumerate().any(stops)
         };
@@ -432,7 +433,7 @@ impl Pipeline<'_> {
             let turns = matches!(body.motion, JointMotion::Revolute { .. }) && velocity[body.coordinate] != 0.0;
             first.push(body.parent.filter(|_| !turns).map_or(index, |parent| first[parent]));
         }
-        let held: Vec<usize> = contacts.iter().enumerate().filter(holds).map(|(_, own)| first[own.body]).collect();
+        let held: Vec<_> = contacts.iter().enumerate().filter(holds).map(|(_, contact)| first[contact.body]).collect();
         let is_steady = |&first: &usize| held.contains(&first) || !self.turns(first, velocity, rounding);
         first.iter().map(is_steady).collect()
     }
@@ -467,10 +468,10 @@ impl Pipeline<'_> {
 
     /// Returns whether a detected contact is on a side of a foot, between its corners.
     fn is_on_side(&self, contact: &Contact) -> bool {
-        let mut own = self.feet.iter().filter(|foot| foot.link == contact.link).map(|foot| &foot.outline);
+        let mut shapes = self.feet.iter().filter(|foot| foot.link == contact.link).map(|foot| &foot.outline);
         let is_elsewhere =
-            |own: &FootShape| matches!(own.rim, Rim::Circle { .. }) && !own.corners().contains(&contact.center);
-        contact.offset.is_none() && own.all(is_elsewhere)
+            |shape: &FootShape| matches!(shape.rim, Rim::Circle { .. }) && !shape.corners().contains(&contact.center);
+        contact.offset.is_none() && shapes.all(is_elsewhere)
     }
 
     /// Finds every outcome with an impulse at contacts that neither approach nor leave; `None` if it is undecided.
@@ -479,15 +480,15 @@ impl Pipeline<'_> {
         state: &State,
         prepared: &Prepared,
         slips: &[Ordering],
-        asked: AnalysisOptions<'_>,
+        options: AnalysisOptions<'_>,
     ) -> Option<Vec<Outcome>> {
         let mut struck = ContactProblem::default();
         self.problem(&state.scene, &prepared.impact.contacts, &prepared.change, &mut struck).ok()?;
         let exact = prepared.exact(self.robot, state, &self.assembly, Errors::UNKNOWN);
         let (laws, restitution) = (struck.laws(), struck.restitution());
         let source = ExactState { asked: Asked::Shock(slips), laws, restitution, ..exact };
-        let asked = AnalysisOptions { rejections: ListedRejections::Nothing, ..asked };
-        let analysis = self.scratch.analyze(&struck, &source, asked).ok().filter(|own| own.open.is_none())?;
+        let options = AnalysisOptions { rejections: ListedRejections::Nothing, ..options };
+        let analysis = self.scratch.analyze(&struck, &source, options).ok().filter(|found| found.open.is_none())?;
         let pushes = |outcome: &Outcome| outcome.impulse.as_flattened().iter().any(|&entry| entry != 0.0);
         Some(analysis.outcomes.into_iter().filter(pushes).collect())
     }

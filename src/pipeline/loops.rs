@@ -77,10 +77,10 @@ impl Pipeline<'_> {
             return Ok(true);
         }
         let robot = self.robot;
-        self.assembly.loops.extend(named.iter().map(|own| own.points(robot)));
+        self.assembly.loops.extend(named.iter().map(|named| named.points(robot)));
         let gap = self.refuse_gaps(named)?;
         self.bounds.stretch(&self.assembly.plan, &self.assembly.configuration, std::iter::empty());
-        let reaches: Vec<[Reach; 2]> = named.iter().map(|own| self.reaches(own.arms(robot))).collect();
+        let reaches: Vec<[Reach; 2]> = named.iter().map(|named| self.reaches(named.arms(robot))).collect();
         let known = PER_GAP * gap / self.feet.size();
         let tolerance = if gap > 0.0 { DEPENDENT.max(known * known) } else { DEPENDENT };
         let Assembly { plan, loops, kept, workspace, .. } = &self.assembly;
@@ -104,13 +104,13 @@ impl Pipeline<'_> {
             ));
         }
         // Rows that follow from others are left out.
-        for (index, own) in named.iter().enumerate().filter(|(index, _)| !self.is_whole(*index)) {
+        for (index, named) in named.iter().enumerate().filter(|(index, _)| !self.is_whole(*index)) {
             let left = [(2 * index, "x"), (2 * index + 1, "z")];
             let left = left.into_iter().filter(|(row, _)| !self.assembly.rows.contains(row));
             let left: Vec<&str> = left.map(|(_, axis)| axis).collect();
             notes.push(format!(
                 "{} is already closed along {} by what else holds its points: that is left out, its impulse is 0",
-                own.name(index, robot),
+                named.name(index, robot),
                 left.join(" and ")
             ));
         }
@@ -131,7 +131,7 @@ impl Pipeline<'_> {
         let mut exact: Assembly<Certified<Ball>> = Assembly::new(Plan::new(self.robot, braked, &self.rotor_inertia));
         exact.configuration.set(&exact.plan, position);
         exact.place();
-        let loops: Vec<_> = named.iter().map(|own| own.points(self.robot)).collect();
+        let loops: Vec<_> = named.iter().map(|named| named.points(self.robot)).collect();
         follow_exactly(&exact.plan, &loops, Constraints { kept, rows }, &exact.workspace)
     }
 
@@ -150,31 +150,31 @@ impl Pipeline<'_> {
         let robot = self.robot;
         let Assembly { plan, workspace, loops, .. } = &self.assembly;
         let energy = kinetic_energy(plan, velocity, workspace, &mut Vec::new());
-        let openings = loops.iter().map(|own| own.opening(plan, velocity, workspace).length());
+        let openings = loops.iter().map(|pair| pair.opening(plan, velocity, workspace).length());
         let widest = openings.zip(named).enumerate().reduce(|most, next| if next.1.0 > most.1.0 { next } else { most });
-        let Some((worst, (opening, own))) = widest else { return Ok(None) };
+        let Some((worst, (opening, opened))) = widest else { return Ok(None) };
         self.assembly.constrain(foot);
         let given = velocity.to_vec();
         let amplitudes = self.assembly.close(velocity);
         let Assembly { plan, workspace, loops, .. } = &self.assembly;
         if let Some(foot) = foot {
             let moving = point_velocity(plan, foot.body, foot.arm(workspace), velocity, workspace);
-            for (own, moving) in velocity.iter_mut().zip(moving.components()) {
-                *own -= moving;
+            for (rate, moving) in velocity.iter_mut().zip(moving.components()) {
+                *rate -= moving;
             }
         }
         let spent = spent_energy(&amplitudes, workspace);
         let resting = self.options.resting_speed.unwrap_or(0.0);
         if spent > OPENING * energy && opening > resting {
-            return Err(moves_apart(own, worst, opening, robot));
+            return Err(moves_apart(opened, worst, opening, robot));
         }
         // The rows left out must hold, too, up to a fraction of the given speeds of their points, which may be at rest
         // now. Points that were at rest before may move by the rounding of other loops' closing.
         let speeds = |named: &NamedLoop| named.arms(robot).map(|end| self.bounds.speed(plan, end, &given));
         let squared = |named: &NamedLoop| speeds(named).iter().map(|speed| speed * speed).sum::<f64>();
         let fastest = named.iter().map(squared).fold(0.0, f64::max);
-        for (index, own) in loops.iter().enumerate().filter(|(index, _)| !self.is_whole(*index)) {
-            let left = own.opening(plan, velocity, workspace).length();
+        for (index, pair) in loops.iter().enumerate().filter(|(index, _)| !self.is_whole(*index)) {
+            let left = pair.opening(plan, velocity, workspace).length();
             if left * left > OPENING * squared(&named[index]) + ROUNDING * fastest && left > resting {
                 return Err(moves_apart(&named[index], index, left, robot));
             }
@@ -183,7 +183,7 @@ impl Pipeline<'_> {
             format!(
                 "{} opens at {opening:.1e} m/s before the impact: the velocities are taken as the nearest ones, by kinetic \
                  energy, that keep every loop closed",
-                own.name(worst, robot)
+                opened.name(worst, robot)
             )
         }))
     }
@@ -201,20 +201,20 @@ impl Pipeline<'_> {
         if (0..named.len()).all(|index| self.is_whole(index)) {
             return Ok(());
         }
-        let reaches = named.iter().flat_map(|own| self.reaches(own.arms(self.robot)));
+        let reaches = named.iter().flat_map(|named| self.reaches(named.arms(self.robot)));
         let shortest = reaches.map(|reach| reach.shortest).fold(f64::INFINITY, f64::min);
         let Self { robot, assembly: Assembly { plan, loops, workspace, rows, .. }, stretched, bounds, .. } = self;
-        let gap = loops.iter().fold(0.0, |most: f64, own| most.max(own.gap(plan, workspace).length()));
+        let gap = loops.iter().fold(0.0, |most: f64, pair| most.max(pair.gap(plan, workspace).length()));
         // Magnitudes of the terms of the accelerations.
         bounds.stretched_poses(&stretched.plan, &mut stretched.workspace);
         let magnitudes = |list: &[f64]| list.iter().map(|&entry| Magnitude::from_f64(entry)).collect::<Vec<_>>();
         stretched.load(&magnitudes(velocity), loads);
         let most = PARTING.max(PER_GAP * gap / shortest);
-        for (index, (own, &drift)) in loops.iter().zip(drifts).enumerate() {
-            let opening = (own.opening(plan, free, workspace) + drift).components();
+        for (index, (pair, &drift)) in loops.iter().zip(drifts).enumerate() {
+            let opening = (pair.opening(plan, free, workspace) + drift).components();
             let pushed = [unclosed, free].map(|list| named[index].arms(robot).map(|end| bounds.speed(plan, end, list)));
             let turning = named[index].points::<Magnitude>(robot).drift(&stretched.workspace).components();
-            let size = pushed.as_flattened().iter().chain(turning.iter().map(|Magnitude(own)| own)).sum::<f64>()
+            let size = pushed.as_flattened().iter().chain(turning.iter().map(|Magnitude(number)| number)).sum::<f64>()
                 + loads.scene.gravity().abs();
             let left = [0, 1].map(|axis| if rows.contains(&(2 * index + axis)) { 0.0 } else { opening[axis].abs() });
             if left[0].max(left[1]) > most * size {
@@ -233,8 +233,8 @@ impl Pipeline<'_> {
     fn refuse_gaps(&self, named: &[NamedLoop]) -> Result<f64> {
         let size = self.feet.size();
         let mut widest = 0.0_f64;
-        for (index, (own, named)) in self.assembly.loops.iter().zip(named).enumerate() {
-            let gap = own.gap(&self.assembly.plan, &self.assembly.workspace).length();
+        for (index, (pair, named)) in self.assembly.loops.iter().zip(named).enumerate() {
+            let gap = pair.gap(&self.assembly.plan, &self.assembly.workspace).length();
             if gap.is_nan() || gap > OPEN * size {
                 let name = named.name(index, self.robot);
                 let reason = format!("the pose leaves {name} open: its points are {} m apart", rounded(gap));
@@ -248,8 +248,8 @@ impl Pipeline<'_> {
     }
 }
 
-fn moves_apart(own: &NamedLoop, index: usize, opening: f64, robot: &Robot) -> Error {
-    let reason = format!("the velocities open {} at {} m/s", own.name(index, robot), rounded(opening));
+fn moves_apart(named: &NamedLoop, index: usize, opening: f64, robot: &Robot) -> Error {
+    let reason = format!("the velocities open {} at {} m/s", named.name(index, robot), rounded(opening));
     Error::new(Reason::Inconsistent(reason)).at(format!("loops[{index}]")).hint(
         "give rates of all joints of the loop, such that both points move alike; what is noise, `resting_speed` covers",
     )

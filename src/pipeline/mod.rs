@@ -375,9 +375,9 @@ impl<'r> Pipeline<'r> {
         let source = prepared.exact(self.robot, state, &self.assembly, errors);
         let Options { brief, next, .. } = self.options;
         let next = next && chosen.is_none();
-        let asked = self.asked(contacts.len(), chosen);
+        let options = self.analysis_options(contacts.len(), chosen);
         // The only error of `analyze` is that there are too many contacts.
-        let mut analysis = self.scratch.analyze(problem, &source, asked).ok();
+        let mut analysis = self.scratch.analyze(problem, &source, options).ok();
         let slides = |analysis: &Analysis| {
             let is_decided = matches!(analysis.verdict, Verdict::Unique | Verdict::Ambiguous);
             is_decided && analysis.no_slip_consistent == Some(false)
@@ -386,8 +386,8 @@ impl<'r> Pipeline<'r> {
         if self.options.friction_needed && chosen.is_none() && analysis.as_ref().is_some_and(slides) {
             let rough = problem.under(Law::Unbounded);
             let source = ExactState { laws: rough.laws(), ..source };
-            let asked = AnalysisOptions { rejections: ListedRejections::Nothing, ..asked };
-            let found = self.scratch.friction_without_slip(&rough, &source, asked);
+            let options = AnalysisOptions { rejections: ListedRejections::Nothing, ..options };
+            let found = self.scratch.friction_without_slip(&rough, &source, options);
             (friction_needed, slides_regardless) = (found.flatten(), found == Some(None));
         }
         if let Some(analysis) = analysis.as_mut().filter(|_| !brief || next) {
@@ -413,7 +413,7 @@ impl<'r> Pipeline<'r> {
 
     /// The options for an analysis with this number of contacts. If modes are `chosen`, only the rejected combinations
     /// with these modes are listed.
-    fn asked<'a>(&self, contacts: usize, chosen: Option<&'a [Vec<Mode>]>) -> AnalysisOptions<'a> {
+    fn analysis_options<'a>(&self, contacts: usize, chosen: Option<&'a [Vec<Mode>]>) -> AnalysisOptions<'a> {
         let Options { explain_up_to, no_proof, brief, reductions, .. } = self.options;
         let explain = contacts > 0 && contacts <= explain_up_to;
         let rejections = chosen.map_or(explain.into(), ListedRejections::Only);

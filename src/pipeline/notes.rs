@@ -67,7 +67,7 @@ impl Pipeline<'_> {
 
     /// Notes an outcome that depends on the distance of two contacts that are nearly at the same place.
     pub(super) fn nearly_one(&self, contacts: &[Contact], outcomes: &[Outcome]) -> Option<String> {
-        let is_thin = |own: &Outcome| own.margin.is_some_and(|margin| margin > 0.0 && margin < THIN);
+        let is_thin = |outcome: &Outcome| outcome.margin.is_some_and(|margin| margin > 0.0 && margin < THIN);
         if !outcomes.iter().any(is_thin) {
             return None;
         }
@@ -88,8 +88,8 @@ impl Pipeline<'_> {
         let bodies = self.assembly.plan.bodies.iter().enumerate();
         let start = (0.0, Vector::zero());
         let (mass, moment) = bodies.fold(start, |(mass, moment), (body, PlanBody { inertia, .. })| {
-            let own = placement.world(body, Vector::zero()) * inertia.mass + placement.turned(body, inertia.first);
-            (mass + inertia.mass, moment + own)
+            let first = placement.world(body, Vector::zero()) * inertia.mass + placement.turned(body, inertia.first);
+            (mass + inertia.mass, moment + first)
         });
         let center = moment * (1.0 / mass);
         let above = |contact: &Contact| contact.normal().dot(contact.point - center);
@@ -162,7 +162,7 @@ impl Pipeline<'_> {
         let bumps = self.feet.iter().map(|foot| foot.bumps).fold(0.0, f64::max);
         let enough = |height: f64| 1.1 * height + bumps;
         if !contacts.is_empty() {
-            let another = nearest.filter(|own| near.iter().all(|other| other.link != own.link));
+            let another = nearest.filter(|foot| near.iter().all(|other| other.link != foot.link));
             for &NearestFoot { link, height, .. } in another.iter().chain(near).filter(|foot| is_near(foot)) {
                 let touches = contacts.iter().any(|contact| contact.link == link);
                 let which = if touches { "another point of " } else { "" };

@@ -413,9 +413,9 @@ impl Pipeline<'_> {
         let is_named = state.scene.contacts.is_some();
         let mut levels = level(contacts, self.rigid_parts(velocity), stance, is_named);
         if is_named {
-            for (index, own) in levels.iter_mut().enumerate() {
-                let is_level = |own: &Level| self.is_exactly_level(state, &contacts[index], &contacts[own.with]);
-                *own = own.filter(is_level).map(|own| Level { along: None, ..own });
+            for (index, level) in levels.iter_mut().enumerate() {
+                let is_level = |level: &Level| self.is_exactly_level(state, &contacts[index], &contacts[level.with]);
+                *level = level.filter(is_level).map(|level| Level { along: None, ..level });
             }
         }
         levels
@@ -429,12 +429,12 @@ impl Pipeline<'_> {
 
     /// Returns whether two points of one body have exactly the same height above the ground for the pose as given.
     fn is_exactly_level(&self, state: &State, a: &Contact, b: &Contact) -> bool {
-        let ground = |own: &Contact| state.scene.ground.axes(own.ground);
-        let [a, b] = [a, b].map(|own| own.exact_point::<Residue>(self.robot, ground(own)));
+        let ground = |contact: &Contact| state.scene.ground.axes(contact.ground);
+        let [a, b] = [a, b].map(|contact| contact.exact_point::<Residue>(self.robot, ground(contact)));
         let turn = self.assembly.plan.rotation::<Residue>(a.body, &state.position);
         let [_, normal] = a.axes();
         // The normal of a profile is a unit vector only up to rounding.
-        let [a, b] = [a, b].map(|own| turn.apply(own.center) - normal * own.radius);
+        let [a, b] = [a, b].map(|point| turn.apply(point.center) - normal * point.radius);
         normal.dot(a - b).is_zero() == Some(true)
     }
 
@@ -451,8 +451,8 @@ impl Pipeline<'_> {
             // The position of a level contact is computed from that of the other one.
             let other = levels.get(index).copied().flatten().filter(|level| level.along.is_some());
             let other = other.map(|level| contacts[level.with].arm(robot).length + level.way);
-            let own = contact.arm(robot);
-            Arm { length: own.length + other.unwrap_or(0.0), ..own }
+            let arm = contact.arm(robot);
+            Arm { length: arm.length + other.unwrap_or(0.0), ..arm }
         });
         bounds.stretch(plan, configuration, arms);
         let foot = standing.foot.map(|foot| foot.arm(robot));

@@ -58,7 +58,7 @@ impl Pipeline<'_> {
             match sought.found {
                 Some(mut rates) => {
                     let loops = rates.split_off(state.position.len());
-                    let loops = loops.chunks_exact(2).map(|own| Vector::new(own[0], own[1]));
+                    let loops = loops.chunks_exact(2).map(|pair| Vector::new(pair[0], pair[1]));
                     self.name(outcome, rates, loops.collect());
                 }
                 None => outcome.proven = false,
@@ -87,8 +87,8 @@ impl Pipeline<'_> {
         // Articulated bodies keep thirteen digits and more in chains where M = L^T D L leaves eight.
         let by = if self.assembly.plan.has_mimics { Elimination::Ltl } else { Elimination::ArticulatedBodies };
         let mut after = if constrained { applied } else { free }.to_vec();
-        for (contact, &own) in outcome.impulse.iter().enumerate() {
-            self.assembly.add_contact_impulse(by, contact, own, &mut after);
+        for (contact, &impulse) in outcome.impulse.iter().enumerate() {
+            self.assembly.add_contact_impulse(by, contact, impulse, &mut after);
         }
         let mut loops = Vec::new();
         if constrained {

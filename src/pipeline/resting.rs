@@ -66,8 +66,8 @@ impl Pipeline<'_> {
         resting.clear();
         resting.resize(contacts.len(), false);
         for (index, contact) in contacts.iter().enumerate() {
-            let [own, bounds] = [self.assembly.workspace.contact_velocity[index], self.bounds.velocity[index]];
-            let [slow, bound] = [length(own), length(bounds)];
+            let [speeds, bounds] = [self.assembly.workspace.contact_velocity[index], self.bounds.velocity[index]];
+            let [slow, bound] = [length(speeds), length(bounds)];
             if place == Some(index) {
                 continue;
             }
@@ -96,13 +96,13 @@ impl Pipeline<'_> {
                     "{name} {moves} within the rounding of its velocity: if it is at rest, say so by `stance` or the \
                      option `resting_speed`"
                 ));
-            } else if own[1].abs() <= bounds[1]
-                && (own[1] != 0.0 || bounds[1] > 0.0 && self.is_rounded_to_zero(state, contact, foot))
+            } else if speeds[1].abs() <= bounds[1]
+                && (speeds[1] != 0.0 || bounds[1] > 0.0 && self.is_rounded_to_zero(state, contact, foot))
             {
                 notes.push(format!(
                     "{name} slides, and moves at {} m/s along the normal, which is within the rounding of its velocity, so \
                      rounding decides whether it strikes",
-                    rounded(own[1] + 0.0)
+                    rounded(speeds[1] + 0.0)
                 ));
             } else if self.options.resting_speed.is_none()
                 && slow > 0.0
@@ -139,8 +139,8 @@ impl Pipeline<'_> {
         still: &mut Still,
         (resting, notes): (&mut [bool], &mut Vec<String>),
     ) {
-        let Still { contacts: own, rows, held } = &mut *still;
-        own.clear();
+        let Still { contacts: at_rest, rows, held } = &mut *still;
+        at_rest.clear();
         rows.clear();
         held.clear();
         if !resting.contains(&true) {
@@ -149,8 +149,8 @@ impl Pipeline<'_> {
         let Assembly { workspace: Workspace { delassus, contact_velocity, .. }, left, .. } = &mut self.assembly;
         let RoundingBounds { velocity: bounds, delassus: error, .. } = &mut self.bounds;
         let stands = |index: usize| stance == Some(index) || contact_velocity[index] == [0.0; 2];
-        own.extend(resting.iter().enumerate().map(|(index, rests)| *rests || stands(index)));
-        if !own.contains(&false) {
+        at_rest.extend(resting.iter().enumerate().map(|(index, rests)| *rests || stands(index)));
+        if !at_rest.contains(&false) {
             contact_velocity.fill([0.0; 2]);
             bounds.fill([0.0; 2]);
             return;
@@ -219,9 +219,9 @@ impl Pipeline<'_> {
     ) -> Result<Vec<Option<Ordering>>> {
         let mut slips = Vec::with_capacity(contacts.len());
         for (index, contact) in contacts.iter().enumerate() {
-            let (own, bounds) = (self.assembly.workspace.contact_velocity[index], self.bounds.velocity[index]);
+            let (speeds, bounds) = (self.assembly.workspace.contact_velocity[index], self.bounds.velocity[index]);
             for (row, along) in [(1, "along the normal"), (0, "along the ground")] {
-                let slow = own[row].abs();
+                let slow = speeds[row].abs();
                 if slow != 0.0
                     && let Some(because) = self.rests(state, velocity, [slow, bounds[row]], (index, contact), foot)
                 {
@@ -328,9 +328,9 @@ fn last_place(number: f64) -> (usize, i32) {
     let exponent = exponent.parse().unwrap_or(0);
     let decimal = decimal.trim_end_matches('0');
     let (digits, place) = match decimal.strip_suffix('.') {
-        Some(whole) => {
-            let digits = whole.trim_end_matches('0');
-            (digits, exponent + (whole.len() - digits.len()) as i32)
+        Some(integer) => {
+            let digits = integer.trim_end_matches('0');
+            (digits, exponent + (integer.len() - digits.len()) as i32)
         }
         None => (decimal, exponent - decimal.find('.').map_or(0, |point| decimal.len() - point - 1) as i32),
     };
@@ -367,8 +367,8 @@ mod tests {
         let half = f64::exp2(-24.0);
         assert_eq!(half_units(&widened), [widened[0] * half, 5e-7, 0.5 * half]);
         // The format of NumPy, and a number that has four digits in f32.
-        let printed = [0.123_456_79_f32, -1.234_567_8].map(|own| own.to_string().parse().unwrap());
-        assert_eq!(half_units(&printed), printed.map(|own: f64| own.abs() * half));
+        let printed = [0.123_456_79_f32, -1.234_567_8].map(|number| number.to_string().parse().unwrap());
+        assert_eq!(half_units(&printed), printed.map(|number: f64| number.abs() * half));
         assert_eq!(half_units(&[f64::from(0.7275_f32), 0.123456])[0], f64::from(0.7275_f32) * half);
     }
 

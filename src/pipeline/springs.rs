@@ -49,20 +49,20 @@ impl Pipeline<'_> {
         let mut torque = loads.scene.torque.clone();
         torque.resize(joints.len(), 0.0);
         let (mut springs, mut unrealized) = (Vec::new(), None);
-        for own in self.assembly.springs(velocity, loads) {
-            for &entry in own.force.iter().chain(&own.generalized) {
+        for spring in self.assembly.springs(velocity, loads) {
+            for &entry in spring.force.iter().chain(&spring.generalized) {
                 finite(entry, || "the force of a virtual spring".into()).map_err(|error| {
                     error.at("virtual").hint("its numbers are too large for f64: are they in SI units?")
                 })?;
             }
-            let [x, z, moment] = own.force;
-            let (base, asked) = own.generalized.split_at(self.robot.base_dofs());
-            torque.iter_mut().zip(asked).for_each(|(sum, asked)| *sum += asked);
+            let [x, z, moment] = spring.force;
+            let (base, torques) = spring.generalized.split_at(self.robot.base_dofs());
+            torque.iter_mut().zip(torques).for_each(|(sum, entry)| *sum += entry);
             if let &[x, z, about] = base {
                 let Unrealized { fx, fz, moment } = unrealized.unwrap_or_default();
                 unrealized = Some(Unrealized { fx: fx + x, fz: fz + z, moment: moment + about });
             }
-            springs.push(SpringForce { force: [x, z], moment, torque: Named::new(joints.clone(), asked.to_vec()) });
+            springs.push(SpringForce { force: [x, z], moment, torque: Named::new(joints.clone(), torques.to_vec()) });
         }
         Ok(Driven { torque: Named::new(joints.clone(), torque), springs, unrealized })
     }

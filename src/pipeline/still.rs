@@ -33,7 +33,7 @@ impl Still {
         let mut at = 0..;
         self.contacts.retain(|_| at.next().and_then(&place).is_some());
         self.rows.iter_mut().for_each(|row| *row = place(*row / 2).map_or(*row, |at| 2 * at + *row % 2));
-        self.held = self.held.iter().filter_map(|&own| place(own)).collect();
+        self.held = self.held.iter().copied().filter_map(place).collect();
     }
 
     /// Finds the rows and the held contacts from G, whose entries have the relative `error`; `scratch` is memory.
@@ -91,10 +91,10 @@ impl Pivoting<'_> {
             }
             // Only the part below the diagonal is updated: nothing else is read here.
             let (above, below) = self.left.split_at_mut((row + 1) * size);
-            let own = &above[row * size + row..];
+            let pivot_row = &above[row * size + row..];
             for other in below.chunks_exact_mut(size) {
-                let (share, others) = (other[row] / own[0], &mut other[row + 1..]);
-                others.iter_mut().zip(&own[1..]).for_each(|(entry, own)| *entry -= share * own);
+                let (share, others) = (other[row] / pivot_row[0], &mut other[row + 1..]);
+                others.iter_mut().zip(&pivot_row[1..]).for_each(|(entry, pivot)| *entry -= share * pivot);
             }
         }
         true
@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     fn rows_count_where_another_contact_depends_on_them() {
-        let [x, y, z, w] = [0, 1, 2, 3].map(|at| std::array::from_fn(|own| f64::from(u8::from(own == at))));
+        let [x, y, z, w] = [0, 1, 2, 3].map(|at| std::array::from_fn(|i| f64::from(u8::from(i == at))));
         let zero = [0.0; 4];
         // The third contact is independent of the two at rest, one of whose rows depends on another.
         let free = found([x, y, y, zero, z, w]);

@@ -58,8 +58,8 @@ impl Pipeline<'_> {
         let is_named = state.scene.contacts.is_some();
         let feet = || self.feet.iter().filter(|_| !is_named);
         let corner = |contact: &Contact| {
-            let own = feet().filter(|foot| foot.link == contact.link);
-            own.flat_map(|foot| foot.outline.corners()).position(|corner| *corner == contact.center)
+            let on_link = feet().filter(|foot| foot.link == contact.link);
+            on_link.flat_map(|foot| foot.outline.corners()).position(|corner| *corner == contact.center)
         };
         let touching = |contact| Touching { corner: corner(contact), ground: surface.part(contact) };
         // The known bounds are those of contact velocities, not of accelerations.

@@ -95,10 +95,10 @@ impl<T: Ordered> UncertainProblem<T> {
             let minor = minors[all & !(1 << column)];
             if (column + unknowns).is_multiple_of(2) { minor } else { -minor }
         };
-        let whole = numerator(unknowns);
+        let det = numerator(unknowns);
         // The velocity of a row times det A.
         let velocity = |row: usize| {
-            let start = self.free[row] * whole;
+            let start = self.free[row] * det;
             columns.iter().enumerate().fold(start, |sum, (j, &column)| sum + self.entry(row, column) * numerator(j))
         };
         numerators.clear();
@@ -113,14 +113,14 @@ impl<T: Ordered> UncertainProblem<T> {
                 (Impulse::Free, which) => numerator(column + which),
             };
             law.conditions(mode, |inequality, function| {
-                numerators.push((Some(inequality), function.at(number, |mu, own| mu * own)));
+                numerators.push((Some(inequality), function.at(number, |mu, impulse| mu * impulse)));
             });
             if law.is_unheld(mode) {
                 numerators.push((None, velocity(tangential)));
             }
             column += impulse.unknowns();
         }
-        *determinant = whole;
+        *determinant = det;
     }
 }
 

@@ -51,8 +51,8 @@ impl KeptContacts<'_, '_> {
     fn analysis(&mut self, point: &[f64]) -> Option<(State, Analysis)> {
         let state = self.at(point);
         let answer = self.pipeline.analyze_impact(&state, Some(&[])).ok()?;
-        let [own, given] = [&answer, self.answer];
-        let same_foot = match (&own.prepared.foot, &given.prepared.foot) {
+        let [found, given] = [&answer, self.answer];
+        let same_foot = match (&found.prepared.foot, &given.prepared.foot) {
             (Some(one), Some(other)) => {
                 // Naming a foot moves it by rounding.
                 let (far, rounding) = (one.center - other.center, 1e-12 * self.pipeline.feet.size());
@@ -61,10 +61,10 @@ impl KeptContacts<'_, '_> {
             (one, other) => one.is_none() == other.is_none(),
         };
         // Elsewhere on a profile, a named contact may have another normal.
-        let mut contacts = own.impact.contacts.iter().zip(&given.impact.contacts);
+        let mut contacts = found.impact.contacts.iter().zip(&given.impact.contacts);
         let same_axes = contacts.all(|(one, other)| one.ground == other.ground);
-        let same_rests = own.impact.stance == given.impact.stance && own.prepared.still == given.prepared.still;
-        let same = same_foot && same_axes && same_rests && own.rows == given.rows;
+        let same_rests = found.impact.stance == given.impact.stance && found.prepared.still == given.prepared.still;
+        let same = same_foot && same_axes && same_rests && found.rows == given.rows;
         let impact = self.pipeline.finished(answer);
         same.then_some((state, impact.analysis?))
     }
@@ -91,22 +91,22 @@ impl KeptContacts<'_, '_> {
     }
 
     /// Returns the contact problem on the whole box.
-    pub fn problem<const N: usize>(&self, whole: &StateBox) -> UncertainProblem<Affine<N>> {
+    pub fn problem<const N: usize>(&self, state_box: &StateBox) -> UncertainProblem<Affine<N>> {
         let Answer { impact, prepared, rows } = self.answer;
         let Prepared { foot, still, .. } = &**prepared;
         let (robot, scene) = (self.pipeline.robot, &self.state.scene);
         // No sole is taken as exactly level, because angles vary.
         let exact = ExactState::of(robot, self.state, (impact, foot.as_ref()), still, Constraints { kept: &[], rows });
-        let mut assembly = exact.assembly(whole.plan::<N>(robot, &scene.braked, &scene.rotor_inertia));
-        assembly.configuration = whole.configuration(&assembly.plan, &self.state.position);
-        let Contacts { delassus, before, free } = exact.contacts(assembly, whole.velocity(&self.state.velocity));
+        let mut assembly = exact.assembly(state_box.plan::<N>(robot, &scene.braked, &scene.rotor_inertia));
+        assembly.configuration = state_box.configuration(&assembly.plan, &self.state.position);
+        let Contacts { delassus, before, free } = exact.contacts(assembly, state_box.velocity(&self.state.velocity));
         let row = |(contact, link): (usize, &usize)| {
             let restitution = Affine::from_f64(scene.restitution.of(*link).unwrap_or(0.0));
             let bounce = restitution * before[contact][1].min_zero();
             [free[contact][0], free[contact][1] + bounce]
         };
         let law = |(friction, &link): (&Friction, &usize)| {
-            friction.map(|mu| whole.number::<N>(Quantity::Friction(link), mu)).into()
+            friction.map(|mu| state_box.number::<N>(Quantity::Friction(link), mu)).into()
         };
         UncertainProblem {
             delassus,

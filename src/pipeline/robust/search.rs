@@ -37,13 +37,13 @@ impl Pipeline<'_> {
         if links.len() > CONTACT_LIMIT {
             return Robustness::Unknown;
         }
-        let whole = StateBox::new(self.robot, state, uncertainty, &links);
-        let quantities = whole.quantities.len();
+        let state_box = StateBox::new(self.robot, state, uncertainty, &links);
+        let quantities = state_box.quantities.len();
         let mut kept = KeptContacts {
             friction: links.iter().filter_map(|&link| state.scene.friction.of(link)).collect(),
             links,
             named: with_named_contacts(self.robot, state, answer),
-            quantities: whole.quantities.clone(),
+            quantities: state_box.quantities.clone(),
             state,
             answer,
             pipeline: self,
@@ -51,21 +51,21 @@ impl Pipeline<'_> {
         // Sizes of the affine numbers. Quantities beyond the last size count as unrelated errors.
         match quantities {
             0 => Robustness::Everywhere,
-            1..=16 => search::<16>(&mut kept, whole, &expected),
-            17..=32 => search::<32>(&mut kept, whole, &expected),
-            _ => search::<64>(&mut kept, whole, &expected),
+            1..=16 => search::<16>(&mut kept, state_box, &expected),
+            17..=32 => search::<32>(&mut kept, state_box, &expected),
+            _ => search::<64>(&mut kept, state_box, &expected),
         }
     }
 }
 
 /// Looks for a state whose outcomes are not `expected` (lists of modes, sorted), until all boxes are decided.
-fn search<const N: usize>(kept: &mut KeptContacts<'_, '_>, whole: StateBox, expected: &[Vec<Mode>]) -> Robustness {
-    let mut boxes = vec![(whole, kept.combinations())];
+fn search<const N: usize>(kept: &mut KeptContacts<'_, '_>, state_box: StateBox, expected: &[Vec<Mode>]) -> Robustness {
+    let mut boxes = vec![(state_box, kept.combinations())];
     let mut search: BoxSearch<'_, '_, '_, N> =
         BoxSearch { kept, expected, tried: Vec::new(), combination: BoxCombination::default(), ways: Vec::new() };
     let mut effort = EFFORT * USUAL / N.max(USUAL);
     let mut first = true;
-    while let Some((own, open)) = boxes.pop() {
+    while let Some((state_box, open)) = boxes.pop() {
         if is_spent_after(open.len() as u32) {
             return Robustness::Unknown;
         }
@@ -74,15 +74,15 @@ fn search<const N: usize>(kept: &mut KeptContacts<'_, '_>, whole: StateBox, expe
             let Some(rest) = effort.checked_sub(open.len()) else { return Robustness::Unknown };
             effort = rest;
         }
-        let (open, split) = search.examine(&own, open);
+        let (open, split) = search.examine(&state_box, open);
         if open.is_empty() {
             continue;
         }
-        if let Some(found) = search.counterexample(&own, if first { RANDOM_CORNERS } else { 0 }) {
+        if let Some(found) = search.counterexample(&state_box, if first { RANDOM_CORNERS } else { 0 }) {
             return Robustness::Not(Box::new(found));
         }
         first = false;
-        let Some(halves) = split.and_then(|index| own.halves(index)) else { return Robustness::Unknown };
+        let Some(halves) = split.and_then(|index| state_box.halves(index)) else { return Robustness::Unknown };
         boxes.extend(halves.map(|half| (half, open.clone())));
     }
     Robustness::Everywhere
@@ -100,9 +100,9 @@ struct BoxSearch<'a, 'k, 'r, const N: usize> {
 
 impl<const N: usize> BoxSearch<'_, '_, '_, N> {
     /// Returns the undecided combinations of a box, and the quantity to halve, if one is known to matter.
-    fn examine(&mut self, own: &StateBox, mut open: Vec<Vec<Mode>>) -> (Vec<Vec<Mode>>, Option<usize>) {
-        let problem = self.kept.problem::<N>(own);
-        let mut influence = vec![0.0; own.ends.len()];
+    fn examine(&mut self, state_box: &StateBox, mut open: Vec<Vec<Mode>>) -> (Vec<Vec<Mode>>, Option<usize>) {
+        let problem = self.kept.problem::<N>(state_box);
+        let mut influence = vec![0.0; state_box.ends.len()];
         self.ways.clear();
         open.retain(|modes| {
             // Combinations for which no time is left stay open.
@@ -117,21 +117,21 @@ impl<const N: usize> BoxSearch<'_, '_, '_, N> {
             }
             is_open
         });
-        if influence.iter().all(|&own| own == 0.0) {
+        if influence.iter().all(|&entry| entry == 0.0) {
             // The box is too wide to show any influence.
-            influence = own.spreads();
+            influence = state_box.spreads();
         }
         let most = influence.iter().copied().fold(0.0, f64::max);
-        (open, influence.iter().position(|&own| own == most && most > 0.0))
+        (open, influence.iter().position(|&entry| entry == most && most > 0.0))
     }
 
     /// Returns a state of the box with other than the expected outcomes. Tries the center, the corners that the open
     /// combinations suggest, and `random` more corners.
-    fn counterexample(&mut self, own: &StateBox, random: usize) -> Option<Counterexample> {
-        let mut points = vec![own.center()];
-        points.extend(self.ways.iter().map(|way| own.corner(way)));
+    fn counterexample(&mut self, state_box: &StateBox, random: usize) -> Option<Counterexample> {
+        let mut points = vec![state_box.center()];
+        points.extend(self.ways.iter().map(|way| state_box.corner(way)));
         let mut seed = 0x9e37_79b9_7f4a_7c15;
-        points.extend((0..random).map(|_| own.corner(&signs(&mut seed, own.ends.len()))));
+        points.extend((0..random).map(|_| state_box.corner(&signs(&mut seed, state_box.ends.len()))));
         for point in points {
             if self.tried.contains(&point) {
                 continue;
@@ -163,8 +163,8 @@ fn weigh_open<const N: usize>(
     let moved = determinant.slopes().iter().map(|slope| slope.abs()).sum::<f64>().max(f64::MIN_POSITIVE);
     let mut weigh = |number: &Affine<N>| {
         let radius = number.error();
-        for ((own, slope), bent) in influence.iter_mut().zip(number.slopes()).zip(determinant.slopes()) {
-            *own += (slope.abs() + number.rest() * (bent.abs() / moved)) / radius;
+        for ((sum, slope), bent) in influence.iter_mut().zip(number.slopes()).zip(determinant.slopes()) {
+            *sum += (slope.abs() + number.rest() * (bent.abs() / moved)) / radius;
         }
     };
     let way = |number: &Affine<N>, sign: f64| number.slopes().iter().map(|slope| sign * slope).collect::<Vec<f64>>();

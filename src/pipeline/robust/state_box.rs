@@ -33,7 +33,7 @@ pub(crate) struct StateBox {
 impl StateBox {
     /// Creates the whole box of a state whose contacts are on `links`.
     pub fn new(robot: &Robot, state: &State, uncertainty: &Uncertainty, links: &[usize]) -> Self {
-        let mut whole = Self { quantities: Vec::new(), ends: Vec::new(), inner: Vec::new() };
+        let mut state_box = Self { quantities: Vec::new(), ends: Vec::new(), inner: Vec::new() };
         let base = robot.base_dofs();
         // The position of a floating base has no effect, and with a stance its velocity follows from the other numbers.
         let placed = robot.base == Base::Floating;
@@ -42,26 +42,26 @@ impl StateBox {
             let bound = coordinate < base.min(2);
             if !(placed && bound) {
                 let (value, width) = (state.position[coordinate], uncertainty.position[coordinate]);
-                whole.add(Quantity::Position(coordinate), value, width, f64::NEG_INFINITY);
+                state_box.add(Quantity::Position(coordinate), value, width, f64::NEG_INFINITY);
             }
             if !(follows && bound) {
                 let (value, width) = (state.velocity[coordinate], uncertainty.velocity[coordinate]);
-                whole.add(Quantity::Velocity(coordinate), value, width, f64::NEG_INFINITY);
+                state_box.add(Quantity::Velocity(coordinate), value, width, f64::NEG_INFINITY);
             }
         }
         for (at, &link) in links.iter().enumerate().filter(|&(at, link)| !links[..at].contains(link)) {
             if let Some(Friction::Finite(mu)) = state.scene.friction.of(links[at]) {
-                whole.add(Quantity::Friction(link), mu, uncertainty.friction.of(link).unwrap_or(0.0), 0.0);
+                state_box.add(Quantity::Friction(link), mu, uncertainty.friction.of(link).unwrap_or(0.0), 0.0);
             }
         }
         for (joint, &width) in uncertainty.rotor_inertia.iter().enumerate() {
             // A braked joint has no equation of its own that its rotor could enter.
             if !state.scene.braked.contains(&joint) {
                 let value = state.scene.rotor_inertia.get(joint).copied().unwrap_or(0.0);
-                whole.add(Quantity::RotorInertia(joint), value, width, 0.0);
+                state_box.add(Quantity::RotorInertia(joint), value, width, 0.0);
             }
         }
-        whole
+        state_box
     }
 
     fn add(&mut self, quantity: Quantity, value: f64, width: f64, least: f64) {
@@ -119,7 +119,7 @@ impl StateBox {
 
     /// Returns the index, the middle and the radius of a quantity's interval; `None` if it is certain.
     fn find(&self, quantity: Quantity) -> Option<(usize, f64, f64)> {
-        let index = self.quantities.iter().position(|own| *own == quantity)?;
+        let index = self.quantities.iter().position(|other| *other == quantity)?;
         let (middle, [low, high]) = (self.middle(index), self.ends[index]);
         // The factor covers the rounding of each difference.
         Some((index, middle, (high - middle).max(middle - low) * (1.0 + f64::EPSILON)))
@@ -171,8 +171,8 @@ impl StateBox {
     /// Returns the robot with all rotor inertias in the box.
     pub fn plan<const N: usize>(&self, robot: &Robot, braked: &[usize], rotor_inertia: &[f64]) -> Plan<Affine<N>> {
         let mut plan = Plan::new(robot, braked, rotor_inertia);
-        for (body, own) in plan.bodies.iter_mut().zip(&robot.bodies) {
-            let joint = match own.joint {
+        for (body, robot_body) in plan.bodies.iter_mut().zip(&robot.bodies) {
+            let joint = match robot_body.joint {
                 Some(ParentJoint::Joint(joint)) => joint,
                 Some(ParentJoint::Mimic(joint)) => robot.joints.len() + joint,
                 Some(ParentJoint::Fixed { .. }) | None => continue,
