@@ -30,24 +30,24 @@ pub fn articulated_inertias<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T
     pivots.clear();
     pivots.resize(plan.columns(), T::zero());
     for (index, body) in plan.bodies.iter().enumerate().rev() {
-        let own = articulated[index];
+        let inertia = articulated[index];
         let passed = match (body.motion, body.column) {
             (JointMotion::Root, Some(column)) => {
-                pivots[column] = own.moment;
-                let [xx, xz, zz] = own.without_turn(T::zero(), own.moment).linear;
+                pivots[column] = inertia.moment;
+                let [xx, xz, zz] = inertia.without_turn(T::zero(), inertia.moment).linear;
                 pivots[1] = zz;
                 pivots[0] = xx - xz * (xz / zz);
                 continue;
             }
-            (JointMotion::Fixed, _) | (_, None) => own,
+            (JointMotion::Fixed, _) | (_, None) => inertia,
             (JointMotion::Revolute { .. }, Some(column)) => {
-                pivots[column] = own.moment + body.rotor;
-                own.without_turn(body.rotor, pivots[column])
+                pivots[column] = inertia.moment + body.rotor;
+                inertia.without_turn(body.rotor, pivots[column])
             }
             (JointMotion::Prismatic { .. }, Some(column)) => {
                 let along = direction[index];
-                pivots[column] = along.dot(own.stretch(along)) + body.rotor;
-                own.without_slide(along, body.rotor, pivots[column])
+                pivots[column] = along.dot(inertia.stretch(along)) + body.rotor;
+                inertia.without_slide(along, body.rotor, pivots[column])
             }
         };
         if let Some(parent) = body.parent {
@@ -112,9 +112,9 @@ pub fn articulated_acceleration<T: Real>(
     for (index, body) in plan.bodies.iter().enumerate().rev() {
         let Wrench { moment, linear } = demand[index];
         let force = Wrench { moment: -moment, linear: -linear };
-        let tau = body.column.map(|own| column[own]);
+        let tau = body.column.map(|at| column[at]);
         let Wrench { moment, linear } =
-            through_joint(plan, workspace, index, force, tau, |own, _, by_d| column[own] = by_d);
+            through_joint(plan, workspace, index, force, tau, |at, _, by_d| column[at] = by_d);
         if let Some(parent) = body.parent {
             let passed = Wrench { moment: -moment, linear: -linear };
             demand[parent] = demand[parent].with(passed.seen_from(workspace.arm[index]));
@@ -133,7 +133,7 @@ pub(super) fn set_in_motion<T: Real>(
 ) {
     motions.clear();
     for (index, body) in plan.bodies.iter().enumerate() {
-        let own = &workspace.articulated[index];
+        let inertia = &workspace.articulated[index];
         let Some(parent) = body.parent else {
             motions.push(if plan.floating { root_motion(workspace, rates) } else { (T::zero(), Vector::zero()) });
             continue;
@@ -148,13 +148,13 @@ pub(super) fn set_in_motion<T: Real>(
         motions.push(match body.motion {
             JointMotion::Root | JointMotion::Fixed => (spin, carried),
             JointMotion::Revolute { sign, .. } => {
-                let moment = own.moment * spin + own.coupling.dot(carried);
+                let moment = inertia.moment * spin + inertia.coupling.dot(carried);
                 rates[column] = rates[column] - sign * (moment / pivot);
                 (spin + sign * rates[column], carried)
             }
             JointMotion::Prismatic { .. } => {
                 let along = workspace.direction[index];
-                let force = along.dot(own.coupling) * spin + own.stretch(along).dot(carried);
+                let force = along.dot(inertia.coupling) * spin + inertia.stretch(along).dot(carried);
                 rates[column] = rates[column] - force / pivot;
                 (spin, carried + along * rates[column])
             }
@@ -199,15 +199,15 @@ fn through_joint<T: Real>(
     mut visit: impl FnMut(usize, T, T),
 ) -> Wrench<T> {
     let PlanBody { motion, column, rotor, .. } = plan.bodies[at];
-    let own = &workspace.articulated[at];
+    let inertia = &workspace.articulated[at];
     let driven = |y: T| tau.map_or(y, |tau| tau + y);
     match (motion, column) {
         // No joint force acts on the base.
         (JointMotion::Root, Some(column)) => {
             let pitch = force.moment / workspace.pivots[column];
             visit(column, force.moment, pitch);
-            let Vector { x, z } = force.linear - own.coupling * pitch;
-            let [_, xz, _] = own.without_turn(T::zero(), own.moment).linear;
+            let Vector { x, z } = force.linear - inertia.coupling * pitch;
+            let [_, xz, _] = inertia.without_turn(T::zero(), inertia.moment).linear;
             let up = z / workspace.pivots[1];
             visit(1, z, up);
             let rest = x - xz * up;
@@ -221,15 +221,15 @@ fn through_joint<T: Real>(
             // Equals n - A_nn y / D without its cancellation: without a rotor, only the joint's torque is transmitted.
             let passed = rotor * rate;
             force.moment = sign * tau.map_or(passed, |tau| passed - tau);
-            force.linear = force.linear - own.coupling * (sign * rate);
+            force.linear = force.linear - inertia.coupling * (sign * rate);
         }
         (JointMotion::Prismatic { .. }, Some(column)) => {
             let along = workspace.direction[at];
             let push = driven(along.dot(force.linear));
             let rate = push / workspace.pivots[column];
             visit(column, push, rate);
-            force.moment = force.moment - along.dot(own.coupling) * rate;
-            force.linear = force.linear - own.stretch(along) * rate;
+            force.moment = force.moment - along.dot(inertia.coupling) * rate;
+            force.linear = force.linear - inertia.stretch(along) * rate;
         }
     }
     force

@@ -133,11 +133,11 @@ impl Balance {
             for (which, axis) in point.axes().into_iter().enumerate() {
                 let row = 2 * index + which;
                 self.rates.clear();
-                self.rates.extend(workspace.half_by_d[index * nv..][..nv].iter().map(|own| own[which]));
+                self.rates.extend(workspace.half_by_d[index * nv..][..nv].iter().map(|pair| pair[which]));
                 set_in_motion(plan, workspace, &mut self.rates, &mut self.motions);
-                let own = entry(row, row).sqrt();
-                let jumps = self.jumps(plan, stretched, workspace) / own;
-                let [off, left] = self.imbalance(plan, stretched, workspace, (point, arm, axis), own);
+                let norm = entry(row, row).sqrt();
+                let jumps = self.jumps(plan, stretched, workspace) / norm;
+                let [off, left] = self.imbalance(plan, stretched, workspace, (point, arm, axis), norm);
                 for (other, (point, arm)) in points.iter().zip(arms).take(index + 1).enumerate() {
                     if !can_move(point) {
                         continue;
@@ -149,7 +149,7 @@ impl Balance {
                     let rounding =
                         self.apart[point.body] + (SUM + GROUND) * (speed + turning) + (2.0 * turn + GROUND) * turning;
                     for (column, axis) in (2 * other..).zip(point.axes()) {
-                        let scale = own * entry(column, column).sqrt();
+                        let scale = norm * entry(column, column).sqrt();
                         // If a row of G vanishes although its contact can move, there is no relative error bound.
                         let apart = (axis.dot(velocity) - entry(row, column)).abs();
                         let error = (apart + rounding) / scale + jumps + off;
@@ -175,25 +175,25 @@ impl Balance {
                 self.apart.push(0.0);
                 continue;
             };
-            let (own, ((spin, _), (_, origin))) = (&self.bodies[index], (self.motions[parent], self.motions[index]));
-            let mut jump = SUM * length(origin) + (SUM + own.turn) * stretched[index].arm * spin.abs() + UNDERFLOW;
+            let (scale, ((spin, _), (_, origin))) = (&self.bodies[index], (self.motions[parent], self.motions[index]));
+            let mut jump = SUM * length(origin) + (SUM + scale.turn) * stretched[index].arm * spin.abs() + UNDERFLOW;
             if let (JointMotion::Prismatic { .. }, Some(column)) = (body.motion, body.column) {
-                jump += (SUM + own.turn) * length(workspace.direction[index]) * self.rates[column].abs();
+                jump += (SUM + scale.turn) * length(workspace.direction[index]) * self.rates[column].abs();
             }
-            sum += own.carried * jump;
+            sum += scale.carried * jump;
             self.apart.push(self.apart[parent] + jump);
         }
         sum
     }
 
-    /// Returns the distance of the motion from u divided by `own`, the length of u, with and without its own rounding.
+    /// Returns the distance of the motion from u divided by `norm`, the length of u, with and without its own rounding.
     fn imbalance(
         &mut self,
         plan: &Plan,
         stretched: &[Stretched],
         workspace: &Workspace,
         (point, arm, axis): (&ContactPoint, &Arm, Vector<f64>),
-        own: f64,
+        norm: f64,
     ) -> [f64; 2] {
         let nothing = Wrench { moment: 0.0, linear: Vector::zero() };
         self.passed.clear();
@@ -229,7 +229,7 @@ impl Balance {
             if let (Some(parent), Some(column)) = (body.parent, body.column) {
                 let rate = self.rates[column];
                 let sizes = rate.abs() + turning + self.motions[parent].0.abs();
-                let part = SUM * sizes * body.rotor.sqrt() / own;
+                let part = SUM * sizes * body.rotor.sqrt() / norm;
                 squares += part * part;
             }
             // The wrench that the joint transmits, the one that stays on the body, and the error of the joint's force.
@@ -256,8 +256,8 @@ impl Balance {
             };
             let [force, moment] = [length(left.linear), left.moment.abs()];
             let square = |force: f64, moment: f64| {
-                let by_force = force * scale.per_mass / own;
-                let by_moment = (moment + scale.com * force) * scale.per_moment / own;
+                let by_force = force * scale.per_mass / norm;
+                let by_moment = (moment + scale.com * force) * scale.per_moment / norm;
                 by_force * by_force + by_moment * by_moment
             };
             squares += square(force + force_error + SUM * length(sent.linear) + inexact, moment + moment_error);

@@ -64,18 +64,18 @@ pub fn bias<T: Real>(plan: &Plan<T>, velocity: &[T], gravity: T, steady: &[bool]
     bias.clear();
     bias.resize(plan.columns(), T::zero());
     for (index, body) in plan.bodies.iter().enumerate().rev() {
-        let own = demand[index];
+        let wrench = demand[index];
         if let Some(parent) = body.parent {
-            demand[parent] = demand[parent].with(own.seen_from(arm[index]));
+            demand[parent] = demand[parent].with(wrench.seen_from(arm[index]));
         }
         let Some(column) = body.column else { continue };
         let part = match body.motion {
             JointMotion::Root => {
-                (bias[0], bias[1]) = (own.linear.x, own.linear.z);
-                own.moment
+                (bias[0], bias[1]) = (wrench.linear.x, wrench.linear.z);
+                wrench.moment
             }
-            JointMotion::Revolute { rate, .. } => rate * own.moment,
-            JointMotion::Prismatic { .. } => direction[index].dot(own.linear),
+            JointMotion::Revolute { rate, .. } => rate * wrench.moment,
+            JointMotion::Prismatic { .. } => direction[index].dot(wrench.linear),
             JointMotion::Fixed => continue,
         };
         plan.bring(&mut bias[column], part);

@@ -304,10 +304,10 @@ impl RoundingBounds {
                 }
             });
             for row in [2 * index, 2 * index + 1] {
-                let own = workspace.delassus[row * rows + row];
+                let diagonal = workspace.delassus[row * rows + row];
                 if length > 0.0 {
                     // If a row of G vanishes although its contact can move, there is no relative error bound.
-                    jacobian = jacobian.max(eta * length / (short * own.sqrt()));
+                    jacobian = jacobian.max(eta * length / (short * diagonal.sqrt()));
                 }
             }
         }
@@ -356,9 +356,9 @@ fn squared_ease(plan: &Plan, factor: &LtlFactor, column: usize, y: &mut [f64]) -
     plan.for_ancestors(column, |j| y[j] = -row[j]);
     let mut sum = 1.0 / factor.pivot(column);
     plan.for_ancestors(column, |i| {
-        let (own, y, row) = (y[i], &mut y[..i], factor.row(i));
-        plan.for_ancestors(i, |j| y[j] -= row[j] * own);
-        sum += own * own / factor.pivot(i);
+        let (entry, y, row) = (y[i], &mut y[..i], factor.row(i));
+        plan.for_ancestors(i, |j| y[j] -= row[j] * entry);
+        sum += entry * entry / factor.pivot(i);
     });
     sum
 }

@@ -11,7 +11,7 @@
 use super::articulated_inertia::Wrench;
 use super::workspace::Workspace;
 use crate::dynamics::plan::{JointMotion, Plan};
-use crate::planar::Vector;
+use crate::planar::{Inertia, Vector};
 use crate::scalar::Real;
 
 /// Computes the composite inertia of every body, which includes all bodies that it carries, from the kinematics.
@@ -33,14 +33,14 @@ pub fn mass_diagonal<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
     diagonal.clear();
     diagonal.resize(plan.columns(), T::zero());
     for (index, body) in plan.bodies.iter().enumerate() {
-        let (own, Some(column)) = (composite[index], body.column) else { continue };
+        let (Inertia { mass, second, .. }, Some(column)) = (composite[index], body.column) else { continue };
         diagonal[column] = match body.motion {
             JointMotion::Root => {
-                diagonal[..2].fill(own.mass);
-                own.second
+                diagonal[..2].fill(mass);
+                second
             }
-            JointMotion::Revolute { .. } => own.second + body.rotor,
-            JointMotion::Prismatic { .. } => own.mass * direction[index].dot(direction[index]) + body.rotor,
+            JointMotion::Revolute { .. } => second + body.rotor,
+            JointMotion::Prismatic { .. } => mass * direction[index].dot(direction[index]) + body.rotor,
             JointMotion::Fixed => continue,
         };
     }
@@ -54,23 +54,23 @@ pub fn mass_matrix<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
     mass_matrix.clear();
     mass_matrix.resize(nv * nv, T::zero());
     for (index, body) in plan.bodies.iter().enumerate().rev() {
-        let (own, Some(column)) = (composite[index], body.column) else { continue };
+        let (Inertia { mass, first, second }, Some(column)) = (composite[index], body.column) else { continue };
         let momentum = match body.motion {
             JointMotion::Root => {
-                let linear = own.first.perpendicular();
-                mass_matrix[0] = own.mass;
-                mass_matrix[nv + 1] = own.mass;
+                let linear = first.perpendicular();
+                mass_matrix[0] = mass;
+                mass_matrix[nv + 1] = mass;
                 for (row, axis) in Vector::axes().into_iter().enumerate() {
                     mass_matrix[column * nv + row] = axis.dot(linear);
                 }
-                mass_matrix[column * nv + column] = own.second;
+                mass_matrix[column * nv + column] = second;
                 continue;
             }
             JointMotion::Revolute { rate, .. } => {
-                Wrench { linear: own.first.perpendicular() * rate, moment: rate * own.second }
+                Wrench { linear: first.perpendicular() * rate, moment: rate * second }
             }
             JointMotion::Prismatic { .. } => {
-                Wrench { linear: direction[index] * own.mass, moment: own.first.perpendicular().dot(direction[index]) }
+                Wrench { linear: direction[index] * mass, moment: first.perpendicular().dot(direction[index]) }
             }
             JointMotion::Fixed => continue,
         };
@@ -86,11 +86,11 @@ pub fn mass_matrix<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
             momentum = momentum.seen_from(arm[at]);
             at = parent;
             if let Some(other) = plan.bodies[at].column {
-                let part = along(at, momentum);
-                plan.bring(&mut mass_matrix[column.max(other) * nv + column.min(other)], part);
+                let product = along(at, momentum);
+                plan.bring(&mut mass_matrix[column.max(other) * nv + column.min(other)], product);
                 if other == column {
                     // Both joints share this column, so the product appears twice in the diagonal entry.
-                    plan.bring(&mut mass_matrix[column * nv + column], part);
+                    plan.bring(&mut mass_matrix[column * nv + column], product);
                 }
             }
         }

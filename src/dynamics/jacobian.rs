@@ -61,12 +61,12 @@ pub fn contact_jacobian<T: Real>(
     for (index, contact) in contacts.iter().enumerate() {
         let axes = contact.axes();
         let arm = contact.arm(workspace);
-        let own = &mut jacobian[index * nv..][..nv];
+        let entries = &mut jacobian[index * nv..][..nv];
         let mut branch = None;
         let speed = walk(plan, contact.body, arm, velocity, workspace, |column, unit| {
             branch = branch.max(Some(column));
-            plan.bring(&mut own[column][0], axes[0].dot(unit));
-            plan.bring(&mut own[column][1], axes[1].dot(unit));
+            plan.bring(&mut entries[column][0], axes[0].dot(unit));
+            plan.bring(&mut entries[column][1], axes[1].dot(unit));
         });
         branches.push(branch);
         speeds.push(axes.map(|axis| axis.dot(speed)));
@@ -135,9 +135,9 @@ pub(super) fn walk<T: Real>(
 /// Returns the angular velocity of a body about the plane's normal \[rad/s\].
 pub(super) fn spin<T: Real>(plan: &Plan<T>, body: usize, velocity: &[T]) -> T {
     let base = if plan.floating { velocity[2] } else { T::zero() };
-    plan.way_to_root(body).fold(base, |rate, (_, body)| match body.motion {
-        JointMotion::Revolute { rate: own, .. } => rate + own * velocity[body.coordinate],
-        _ => rate,
+    plan.way_to_root(body).fold(base, |spin, (_, body)| match body.motion {
+        JointMotion::Revolute { rate, .. } => spin + rate * velocity[body.coordinate],
+        _ => spin,
     })
 }
 
@@ -158,26 +158,26 @@ pub fn kinetic_energy<T: Real>(
     let mut twice = T::zero();
     motions.clear();
     for (index, body) in plan.bodies.iter().enumerate() {
-        let (mut rate, mut origin) = match body.parent {
+        let (mut spin, mut origin) = match body.parent {
             Some(parent) => motions[parent],
             None if plan.floating => (velocity[2], Vector { x: velocity[0], z: velocity[1] }),
             None => (T::zero(), Vector::zero()),
         };
         if body.parent.is_some() {
-            origin += workspace.arm[index].perpendicular() * rate;
+            origin += workspace.arm[index].perpendicular() * spin;
         }
         match body.motion {
             JointMotion::Root | JointMotion::Fixed => {}
-            JointMotion::Revolute { rate: own, .. } => rate = rate + own * velocity[body.coordinate],
+            JointMotion::Revolute { rate, .. } => spin = spin + rate * velocity[body.coordinate],
             JointMotion::Prismatic { .. } => origin += workspace.direction[index] * velocity[body.coordinate],
         }
-        motions.push((rate, origin));
+        motions.push((spin, origin));
         let first = workspace.rotation[index].apply(body.inertia.first);
-        let cross = rate * origin.dot(first.perpendicular());
-        twice = twice + body.inertia.mass * origin.dot(origin) + cross + cross + body.inertia.second * rate * rate;
+        let cross = spin * origin.dot(first.perpendicular());
+        twice = twice + body.inertia.mass * origin.dot(origin) + cross + cross + body.inertia.second * spin * spin;
         if !matches!(body.motion, JointMotion::Root | JointMotion::Fixed) {
-            let own = velocity[body.coordinate];
-            twice = twice + body.rotor * own * own;
+            let rate = velocity[body.coordinate];
+            twice = twice + body.rotor * rate * rate;
         }
     }
     T::from_f64(0.5) * twice

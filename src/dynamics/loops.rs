@@ -117,20 +117,20 @@ pub fn independent_rows(
     tolerance: f64,
     workspace: &Workspace,
 ) -> Vec<(usize, f64)> {
-    let reach = |own: &[Reach; 2], column: usize| own[0].columns[column].max(own[1].columns[column]);
+    let reach = |ends: &[Reach; 2], column: usize| ends[0].columns[column].max(ends[1].columns[column]);
     let greatest: Vec<f64> = (0..plan.columns())
         .map(|column| match kept.contains(&plan.coordinates[column]) {
             true => 0.0,
-            false => reaches.iter().fold(0.0, |most, own| f64::max(most, reach(own, column))),
+            false => reaches.iter().fold(0.0, |most, ends| f64::max(most, reach(ends, column))),
         })
         .collect();
     let scaled = |(column, entry): (usize, f64)| if greatest[column] > 0.0 { entry / greatest[column] } else { 0.0 };
     let square = |row: &[f64]| dot(row, row);
     let mut rest: Vec<(usize, f64, Vec<f64>)> = (0..2 * loops.len())
         .map(|row| {
-            let (own, reaches) = (loops[row / 2].row(plan, row % 2, workspace), &reaches[row / 2]);
-            let reach: Vec<f64> = (0..own.len()).map(|column| scaled((column, reach(reaches, column)))).collect();
-            (row, square(&reach), own.into_iter().enumerate().map(scaled).collect())
+            let (entries, reaches) = (loops[row / 2].row(plan, row % 2, workspace), &reaches[row / 2]);
+            let reach: Vec<f64> = (0..entries.len()).map(|column| scaled((column, reach(reaches, column)))).collect();
+            (row, square(&reach), entries.into_iter().enumerate().map(scaled).collect())
         })
         .collect();
     let mut chosen = Vec::new();
@@ -140,9 +140,9 @@ pub fn independent_rows(
         let shares = rest.iter().enumerate().map(|(place, (_, reach, left))| (share(*reach, left), place));
         let best = shares.reduce(|best, next| if next.0 > best.0 { next } else { best });
         let Some((share, place)) = best.filter(|(share, _)| *share > tolerance) else { return chosen };
-        let (row, _, own) = rest.remove(place);
+        let (row, _, entries) = rest.remove(place);
         for (_, _, left) in &mut rest {
-            subtract_along(left, &own);
+            subtract_along(left, &entries);
         }
         chosen.push((row, share));
     }
@@ -166,16 +166,16 @@ pub fn follow_exactly<T: Ordered>(
     };
     let mut basis: Vec<Vec<T>> = Vec::new();
     let rest = |basis: &[Vec<T>], mut left: Vec<T>| {
-        basis.iter().for_each(|own| subtract_along(&mut left, own));
+        basis.iter().for_each(|entries| subtract_along(&mut left, entries));
         left
     };
-    for &own in rows {
-        let left = rest(&basis, row(own));
+    for &index in rows {
+        let left = rest(&basis, row(index));
         basis.push(left);
     }
-    let mut others = (0..2 * loops.len()).filter(|own| !rows.contains(own));
-    loops.iter().all(|own| own.gap(plan, workspace).components().iter().all(is_zero))
-        && others.all(|own| rest(&basis, row(own)).iter().all(is_zero))
+    let mut others = (0..2 * loops.len()).filter(|index| !rows.contains(index));
+    loops.iter().all(|pair| pair.gap(plan, workspace).components().iter().all(is_zero))
+        && others.all(|index| rest(&basis, row(index)).iter().all(is_zero))
 }
 
 /// Orthogonalizes the rows of the constraints. The rows of a `foot` come last; [`close`] keeps it at rest in the
@@ -193,7 +193,7 @@ pub fn orthogonalize<T: Real>(
     let nv = plan.columns();
     kept.clone_into(coordinates);
     rows.clone_into(order);
-    let one_at = |coordinate| move |&own: &usize| if own == coordinate { T::one() } else { T::zero() };
+    let one_at = |coordinate| move |&other: &usize| if other == coordinate { T::one() } else { T::zero() };
     let unit_row = |&coordinate: &usize| plan.coordinates.iter().map(one_at(coordinate)).collect();
     let mut all: Vec<Vec<T>> = kept.iter().map(unit_row).collect();
     all.extend(rows.iter().map(|row| loops[row / 2].row(plan, row % 2, workspace)));
@@ -259,7 +259,7 @@ pub fn close<T: Real>(
     let LoopRows { kept, rows, basis_by_d, squares, coupling, .. } = &workspace.loops;
     let (nv, all) = (plan.columns(), squares.len());
     let is_velocity = matches!(closed, Closed::Velocity);
-    let mut openings: Vec<Vector<T>> = loops.iter().map(|own| own.opening(plan, velocity, workspace)).collect();
+    let mut openings: Vec<Vector<T>> = loops.iter().map(|pair| pair.opening(plan, velocity, workspace)).collect();
     if let Closed::Acceleration(drifts) = closed {
         openings.iter_mut().zip(drifts).for_each(|(opening, &drift)| *opening += drift);
     }
@@ -269,15 +269,14 @@ pub fn close<T: Real>(
         // Without constraints, M may have no factor.
         return Vec::new();
     }
-    let own = |i: usize| match (kept.get(i), i.checked_sub(kept.len()).and_then(|row| rows.get(row))) {
+    let rate = |i: usize| match (kept.get(i), i.checked_sub(kept.len()).and_then(|row| rows.get(row))) {
         (Some(&coordinate), _) if !is_velocity => velocity[coordinate],
         (None, Some(row)) => openings[row / 2].components()[row % 2],
         _ => T::zero(),
     };
     let mut along: Vec<T> = Vec::with_capacity(used);
     for i in 0..used {
-        let own = own(i);
-        along.push((0..i).fold(own, |left, k| left - coupling[i * all + k] * along[k]));
+        along.push((0..i).fold(rate(i), |left, k| left - coupling[i * all + k] * along[k]));
     }
     let amplitudes: Vec<T> = along.iter().zip(squares).map(|(&along, &square)| along / square).collect();
     let mut change = vec![T::zero(); nv];
@@ -303,12 +302,12 @@ pub fn loop_impulse<T: Real>(loops: usize, amplitudes: &[T], workspace: &Workspa
     let mut impulse = vec![[T::zero(); 2]; loops];
     // Solves K^T l = -Z a with K = C Z, from the last row to the first.
     let mut solved = vec![T::zero(); rows.len()];
-    for (own, row) in rows.iter().enumerate().rev() {
-        let at = kept.len() + own;
-        let later = (own + 1..rows.len())
+    for (index, row) in rows.iter().enumerate().rev() {
+        let at = kept.len() + index;
+        let later = (index + 1..rows.len())
             .fold(T::zero(), |sum, other| sum + coupling[(kept.len() + other) * squares.len() + at] * solved[other]);
-        solved[own] = -amplitudes[at] - later;
-        impulse[row / 2][row % 2] = solved[own];
+        solved[index] = -amplitudes[at] - later;
+        impulse[row / 2][row % 2] = solved[index];
     }
     impulse.into_iter().map(Vector::from).collect()
 }
@@ -324,7 +323,7 @@ fn still<T: Real>(plan: &Plan<T>) -> Vec<T> {
     vec![T::zero(); plan.places]
 }
 
-/// Removes from `left` its component along `own`.
-fn subtract_along<T: Real>(left: &mut [T], own: &[T]) {
-    subtract(left, own, dot(left, own) / dot(own, own));
+/// Removes from `left` its component along `direction`.
+fn subtract_along<T: Real>(left: &mut [T], direction: &[T]) {
+    subtract(left, direction, dot(left, direction) / dot(direction, direction));
 }

@@ -20,16 +20,16 @@ impl<T: Real> LtlFactor<T> {
         self.columns = nv;
         mass_matrix.clone_into(&mut self.entries);
         for k in (0..nv).rev() {
-            let (above, own) = self.entries.split_at_mut(k * nv);
-            let own = &mut own[..=k];
+            let (above, pivot_row) = self.entries.split_at_mut(k * nv);
+            let pivot_row = &mut pivot_row[..=k];
             plan.for_ancestors(k, |i| {
                 // Computed as u (u / D), because u u (1 / D) underflows for small masses.
-                let a = own[i] / own[k];
+                let a = pivot_row[i] / pivot_row[k];
                 let row = &mut above[i * nv..][..=i];
-                row[i] = row[i] - a * own[i];
-                let (row, others) = (&mut row[..i], &own[..i]);
+                row[i] = row[i] - a * pivot_row[i];
+                let (row, others) = (&mut row[..i], &pivot_row[..i]);
                 plan.for_ancestors(i, |j| row[j] = row[j] - a * others[j]);
-                own[i] = a;
+                pivot_row[i] = a;
             });
         }
     }
@@ -53,8 +53,8 @@ impl<T: Real> LtlFactor<T> {
     pub fn half_solve<const N: usize>(&self, plan: &Plan<T>, columns: impl Iterator<Item = usize>, y: &mut [[T; N]]) {
         for i in columns {
             let (above, rest) = y.split_at_mut(i);
-            let (own, row) = (rest[0], self.row(i));
-            plan.for_ancestors(i, |j| subtract(&mut above[j], &own, row[j]));
+            let (entries, row) = (rest[0], self.row(i));
+            plan.for_ancestors(i, |j| subtract(&mut above[j], &entries, row[j]));
         }
     }
 

@@ -193,8 +193,9 @@ mod tests {
         fn bounds(&self, plan: &Plan, points: &[ContactPoint]) -> RoundingBounds {
             let (mut bounds, mut configuration) = (RoundingBounds::default(), Configuration::default());
             configuration.set(plan, &self.position);
-            let length = |own: &ContactPoint| own.center.x.abs() + own.center.z.abs() + own.radius;
-            bounds.stretch(plan, &configuration, points.iter().map(|own| Arm { body: own.body, length: length(own) }));
+            let length = |point: &ContactPoint| point.center.x.abs() + point.center.z.abs() + point.radius;
+            let arms = points.iter().map(|point| Arm { body: point.body, length: length(point) });
+            bounds.stretch(plan, &configuration, arms);
             bounds.velocities(plan, &self.velocity, None, |_| false);
             bounds
         }
@@ -229,15 +230,15 @@ mod tests {
                 SpringPoint::Body(body.index(self.robot.bodies.len()), Vector::from(point).map(T::from_f64))
             };
             let spring = (ends.map(end), laws);
-            let asked = SpringLoad::of(spring, plan, &self.position, &velocity, &workspace).generalized;
+            let generalized = SpringLoad::of(spring, plan, &self.position, &velocity, &workspace).generalized;
             let loads = plan.coordinates.iter().zip(&workspace.bias).map(|(&coordinate, &bias)| {
-                if coordinate < self.robot.base_dofs() { -bias } else { asked[coordinate] - bias }
+                if coordinate < self.robot.base_dofs() { -bias } else { generalized[coordinate] - bias }
             });
             let loads: Vec<T> = loads.collect();
             let mut column = loads.clone();
             solve(&mut column, &workspace);
             let mut acceleration = vec![T::zero(); velocity.len()];
-            plan.coordinates.iter().zip(&column).for_each(|(&coordinate, &own)| acceleration[coordinate] = own);
+            plan.coordinates.iter().zip(&column).for_each(|(&coordinate, &entry)| acceleration[coordinate] = entry);
             let of_contact = |point: &ContactPoint<T>| {
                 let total = point_velocity(plan, point.body, point.arm(&workspace), &acceleration, &workspace);
                 point.axes().map(|axis| axis.dot(total + point.drift(&workspace)))
@@ -294,7 +295,7 @@ mod tests {
             let tolerance = 1e2 * f64::EPSILON * (values.max() / values.min()) * by_matrices.amax().max(1.0);
             prop_assert!((&found - &by_matrices).amax() <= tolerance, "{found} {by_matrices}");
             let speeds = &jacobian * by_column(&plan, &case.velocity);
-            for (row, own) in speeds.iter().enumerate() {
+            for (row, speed) in speeds.iter().enumerate() {
                 let contact = contacts[row / 2];
                 let (axis, arm) = (contact.axes()[row % 2], contact.arm(&workspace));
                 let mut change = vec![0.0; case.velocity.len()];
@@ -303,7 +304,7 @@ mod tests {
                 let at = point_velocity(&plan, contact.body, arm, &change, &workspace);
                 prop_assert!((axis.dot(at) - found[(row, row)]).abs() <= tolerance);
                 // A sum of at most eleven products of order ten.
-                prop_assert!((own - workspace.contact_velocity[row / 2][row % 2]).abs() < 1e4 * f64::EPSILON);
+                prop_assert!((speed - workspace.contact_velocity[row / 2][row % 2]).abs() < 1e4 * f64::EPSILON);
             }
         }
 
@@ -417,9 +418,9 @@ mod tests {
             let off = |found: f64, exact: Exact| ((exact - Exact::from_f64(found)).to_f64()).abs() - exact.error();
             for i in 0..rows {
                 for j in 0..rows {
-                    let [own, one, other] = [(i, j), (i, i), (j, j)].map(|(i, j)| workspace.delassus[i * rows + j]);
+                    let [found, one, other] = [(i, j), (i, i), (j, j)].map(|(i, j)| workspace.delassus[i * rows + j]);
                     let allowed = bounds.delassus * (one * other).sqrt();
-                    prop_assert!(off(own, exact.delassus[i * rows + j]) <= allowed, "G[{i}][{j}]: {allowed:e}");
+                    prop_assert!(off(found, exact.delassus[i * rows + j]) <= allowed, "G[{i}][{j}]: {allowed:e}");
                 }
                 let (found, exact) = (workspace.contact_velocity[i / 2][i % 2], exact.contact_velocity[i / 2][i % 2]);
                 prop_assert!(off(found, exact) <= bounds.velocity[i / 2][i % 2]);

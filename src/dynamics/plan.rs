@@ -208,7 +208,7 @@ impl<T: Real> Plan<T> {
                 None => greatest[parent],
             });
             let multiplier = mimic.map_or(1.0, |mimic| mimic.multiplier);
-            let rotor = moved.and_then(|(_, own)| rotor_inertia.get(own).copied());
+            let rotor = moved.and_then(|(_, place)| rotor_inertia.get(place).copied());
             let rotor = number(rotor.unwrap_or(0.0));
             plan.bodies.push(PlanBody {
                 parent: Some(parent),
@@ -226,7 +226,7 @@ impl<T: Real> Plan<T> {
                     }
                 },
                 coordinate: moved.map_or(0, |(index, _)| base + index),
-                place: moved.map_or(0, |(_, own)| base + own),
+                place: moved.map_or(0, |(_, place)| base + place),
                 mimic,
                 column,
                 inertia,

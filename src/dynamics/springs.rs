@@ -52,9 +52,9 @@ impl<T: Real> SpringLoad<T> {
         let mut generalized = vec![T::zero(); velocity.len()];
         for (end, [x, z, moment]) in ends.into_iter().zip([force, force.map(|entry| -entry)]) {
             let SpringPoint::Body(body, point) = end else { continue };
-            let own = Wrench::at(workspace.rotation[body].apply(point), Vector { x, z });
-            let own = own.with(Wrench { moment, linear: Vector::zero() });
-            inward(plan, body, own, workspace, |coordinate, part| {
+            let wrench = Wrench::at(workspace.rotation[body].apply(point), Vector { x, z });
+            let wrench = wrench.with(Wrench { moment, linear: Vector::zero() });
+            inward(plan, body, wrench, workspace, |coordinate, part| {
                 generalized[coordinate] = generalized[coordinate] + part;
             });
         }
@@ -78,9 +78,9 @@ impl<T: Real> SpringPoint<T> {
                     (place, pitch) = (place + Vector { x: at(0), z: at(1) }, pitch + at(2));
                 }
                 JointMotion::Revolute { sign, .. } => {
-                    let own = at(body.coordinate);
+                    let q = at(body.coordinate);
                     let turn =
-                        body.mimic.map_or(own, |mimic| T::from_f64(mimic.multiplier) * own + T::from_f64(mimic.offset));
+                        body.mimic.map_or(q, |mimic| T::from_f64(mimic.multiplier) * q + T::from_f64(mimic.offset));
                     pitch = pitch + sign * turn;
                 }
                 _ => {}

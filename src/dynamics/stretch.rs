@@ -60,12 +60,12 @@ pub(super) fn stretch(plan: &Plan, configuration: &Configuration, bodies: &mut V
         });
     }
     for index in (0..plan.bodies.len()).rev() {
-        let own = bodies[index];
+        let body = bodies[index];
         if let Some(parent) = plan.bodies[index].parent {
             let parent = &mut bodies[parent];
-            parent.mass += own.mass;
-            parent.first += own.first + own.mass * own.arm;
-            parent.second += own.second + (2.0 * own.first + own.mass * own.arm) * own.arm;
+            parent.mass += body.mass;
+            parent.first += body.first + body.mass * body.arm;
+            parent.second += body.second + (2.0 * body.first + body.mass * body.arm) * body.arm;
         }
     }
 }

@@ -79,7 +79,7 @@ impl<T: Copy> Workspace<T> {
     #[cfg(any(test, feature = "accuracy"))]
     pub(crate) fn jacobian_row(&self, row: usize) -> impl Iterator<Item = T> + '_ {
         let nv = self.contact_jacobian.len() / self.contact_velocity.len();
-        self.contact_jacobian[row / 2 * nv..][..nv].iter().map(move |own| own[row % 2])
+        self.contact_jacobian[row / 2 * nv..][..nv].iter().map(move |pair| pair[row % 2])
     }
 }
 
