@@ -169,7 +169,7 @@ fn beginning(input: &mut impl Read, form: Form) -> Result<Vec<u8>> {
     const LEAST: usize = 12;
     let mut bytes = Vec::new();
     input.take(READ).read_to_end(&mut bytes).map_err(unreadable)?;
-    let own: &[&[u8]] = match form {
+    let magics: &[&[u8]] = match form {
         Form::Parquet => &[PARQUET],
         Form::Arrow => &[FILE, STREAM],
         _ => &[STREAM],
@@ -178,7 +178,7 @@ fn beginning(input: &mut impl Read, form: Form) -> Result<Vec<u8>> {
         return Err(unreadable("it is empty").hint("was it written to its end?"));
     }
     let format = if form == Form::Parquet { "Parquet" } else { "Arrow" };
-    if !own.iter().any(|magic| bytes.starts_with(magic)) {
+    if !magics.iter().any(|magic| bytes.starts_with(magic)) {
         refuse_foreign(&bytes)?;
         if bytes.iter().all(|byte| matches!(byte, b'\t' | b'\n' | b'\r' | b' '..)) {
             let refused = unreadable(format_args!("it is text, and not {format}"));

@@ -181,8 +181,8 @@ impl Header {
     fn check_foreign(&self, record: Record, robot: &Robot) -> Result<()> {
         let mut without_columns = fields_of("State");
         without_columns.retain(|field| OTHERS.iter().all(|(other, _)| other != field));
-        let own = plain_coordinates(robot);
-        if let Some(at) = self.unread().find(|&at| is_of_states(&self.names[at], &without_columns, &own)) {
+        let coordinates = plain_coordinates(robot);
+        if let Some(at) = self.unread().find(|&at| is_of_states(&self.names[at], &without_columns, &coordinates)) {
             let name = &self.names[at];
             let reason = format!("\"{}\" is a field of states, and tables have no column for it", short(name));
             let hint = format!("give the states as lines of JSON, or `foreign: {}` to copy the column", quoted(name));
@@ -206,7 +206,8 @@ impl Header {
         let others = resembling[1..].iter().map(|(_, name, near)| format!("{} for {name}", near.join(" or ")));
         let others = few(others.collect());
         let also = if others.is_empty() { String::new() } else { format!(" also {others};") };
-        let unit = if has_other_unit(&self.names[*at], &own) { format!(" {OTHER_UNIT};") } else { String::new() };
+        let unit =
+            if has_other_unit(&self.names[*at], &coordinates) { format!(" {OTHER_UNIT};") } else { String::new() };
         let hint = format!("did you mean {}?{also}{unit} if not, give `foreign: {}`", near.join("? or "), quoted(name));
         let error = Error::new(Reason::Inconsistent(reason)).hint(hint);
         Err(self.in_column(error, record, *at))
@@ -219,8 +220,8 @@ impl Header {
 
     /// Returns the header, or an error without a line if a column is a joint's torque, on which forces depend.
     pub fn without_torques(self, robot: &Robot) -> Result<Self> {
-        let own = plain_coordinates(robot);
-        let is_torque = |&at: &usize| is_of_coordinate(&self.names[at], &["torque", "tau", "effort"], &own);
+        let coordinates = plain_coordinates(robot);
+        let is_torque = |&at: &usize| is_of_coordinate(&self.names[at], &["torque", "tau", "effort"], &coordinates);
         let torques: Vec<usize> = self.unread().filter(is_torque).collect();
         let Some(first) = torques.first() else { return Ok(self) };
         let name = |&at: &usize| quoted(&self.names[at]);
@@ -431,37 +432,37 @@ fn column(name: &str, robot: &Robot, names: &[String]) -> Result<TableColumn> {
 }
 
 /// Returns whether a column is named like one of these fields of a state, or like an entry of one.
-fn is_of_states(name: &str, fields: &[String], own: &HashSet<String>) -> bool {
+fn is_of_states(name: &str, fields: &[String], coordinates: &HashSet<String>) -> bool {
     let name = plain(name);
     let entry = |field: &str| name.strip_prefix(field)?.strip_prefix('_');
-    let of_joint = |field: &&str| entry(field).is_some_and(|joint| own.contains(joint));
+    let of_joint = |field: &&str| entry(field).is_some_and(|joint| coordinates.contains(joint));
     fields.contains(&name)
         || matches!(name.as_str(), "slope" | "ground_slope")
         || entry("gravity").is_some_and(|axis| matches!(axis, "x" | "y" | "z"))
         || ["held", "rotor_inertia"].iter().any(of_joint)
 }
 
-/// Returns whether a name consists of the name of one of the `own` coordinates and one of the `words`.
-fn is_of_coordinate(name: &str, words: &[&str], own: &HashSet<String>) -> bool {
-    without_one_of(&plain(name), words).iter().any(|rest| own.contains(rest))
+/// Returns whether a name consists of the name of one of the `coordinates` and one of the `words`.
+fn is_of_coordinate(name: &str, words: &[&str], coordinates: &HashSet<String>) -> bool {
+    without_one_of(&plain(name), words).iter().any(|rest| coordinates.contains(rest))
 }
 
 /// The remedy for a column in other units.
 const OTHER_UNIT: &str = "numbers are in m, radians and s: convert the column, and give it the name of its coordinate";
 
-/// Returns whether a name is that of one of the `own` coordinates, and of a unit of which it is not.
-fn has_other_unit(name: &str, own: &HashSet<String>) -> bool {
+/// Returns whether a name is that of one of the `coordinates`, and of a unit of which it is not.
+fn has_other_unit(name: &str, coordinates: &HashSet<String>) -> bool {
     const UNITS: [&str; 10] = ["deg_s", "deg_per_s", "dps", "rpm", "mm", "mm_s", "mm_per_s", "cm", "cm_s", "cm_per_s"];
     let flat = plain(&name.replace(['[', '('], "_"));
     let coordinate = |unit: &&str| Some(flat.strip_suffix(unit)?.strip_suffix('_')?.trim_end_matches('_').to_owned());
-    is_of_coordinate(name, &["deg", "degree", "degrees"], own)
+    is_of_coordinate(name, &["deg", "degree", "degrees"], coordinates)
         || ["[deg", "(deg"].iter().any(|unit| name.contains(unit))
-        || UNITS.iter().filter_map(coordinate).any(|coordinate| own.contains(&coordinate))
+        || UNITS.iter().filter_map(coordinate).any(|coordinate| coordinates.contains(&coordinate))
 }
 
 /// Returns the names of the coordinates in the form in which [`plain`] compares them.
 fn plain_coordinates(robot: &Robot) -> HashSet<String> {
-    in_columns(robot).map(|own| plain(&own)).collect()
+    in_columns(robot).map(|name| plain(&name)).collect()
 }
 
 /// Returns a name as it is written in an option.

@@ -105,10 +105,10 @@ impl Carried {
 
     /// Returns a cell as a JSON value.
     fn value(&self, which: usize) -> CarriedValue {
-        let own = |cell: &[u8]| String::from_utf8_lossy(cell).into_owned();
-        let text = |cell: &[u8]| to_raw_value(&own(cell)).unwrap_or_default();
+        let string = |cell: &[u8]| String::from_utf8_lossy(cell).into_owned();
+        let text = |cell: &[u8]| to_raw_value(&string(cell)).unwrap_or_default();
         // For some readers, carriage returns between values end lines.
-        let json = |cell: &[u8]| RawValue::from_string(own(cell).replace('\r', " ")).unwrap_or_default();
+        let json = |cell: &[u8]| RawValue::from_string(string(cell).replace('\r', " ")).unwrap_or_default();
         CarriedValue(match self {
             Self::Text(cells) => text(cells.get(which).unwrap_or_default()),
             Self::Json(cells) => json(cells.get(which).unwrap_or_default()),
@@ -194,10 +194,10 @@ fn reader(form: Form) -> csv::Reader<Cursor<Vec<u8>>> {
 
 /// Returns whether values of this type are numbers or truth values in JSON.
 #[cfg(feature = "columnar")]
-fn is_json(own: &DataType) -> bool {
-    match own {
+fn is_json(data_type: &DataType) -> bool {
+    match data_type {
         DataType::Dictionary(_, values) => is_json(values),
-        own => own.is_numeric() || *own == DataType::Boolean,
+        _ => data_type.is_numeric() || *data_type == DataType::Boolean,
     }
 }
 
@@ -225,7 +225,7 @@ impl Row<'_> {
         match (text, id.as_mut()) {
             (Some(""), _) => *id = None,
             (Some(text), _) if self.header.form == Form::Ndjson => *id = id_of(text),
-            (Some(text), Some(Value::String(own))) => text.clone_into(own),
+            (Some(text), Some(Value::String(previous))) => text.clone_into(previous),
             (Some(text), _) => *id = Some(text.into()),
             (None, _) => {
                 *id = None;

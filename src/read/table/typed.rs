@@ -51,12 +51,12 @@ impl Typed {
     pub fn new(batch: &RecordBatch, columns: &[TableColumn]) -> Result<Self> {
         let carried = batch.project(&carried(columns)).map_err(unreadable)?;
         let fields = columns.iter().zip(batch.columns()).zip(batch.schema_ref().fields());
-        let typed = fields.map(|((column, own), field)| {
+        let typed = fields.map(|((column, array), field)| {
             let to = |to: DataType| -> Result<ArrayRef> {
                 let exact = CastOptions { safe: false, ..CastOptions::default() };
-                cast_with_options(own, &to, &exact).map_err(|error| unreadable(error).at(field.name()))
+                cast_with_options(array, &to, &exact).map_err(|error| unreadable(error).at(field.name()))
             };
-            Ok(match (column, kind(own.data_type())) {
+            Ok(match (column, kind(array.data_type())) {
                 (TableColumn::Ignored, _) => Column::Unread,
                 (TableColumn::Carried, _) if field.name().trim() != "time" => Column::Unread,
                 (TableColumn::Id, DataType::Int64) => {
