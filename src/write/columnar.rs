@@ -58,11 +58,11 @@ fn put<B: ArrayBuilder>(builder: &mut B, rows: usize, nulls: fn(&mut B, usize), 
 /// Fills the column with nulls up to row `rows`, and returns whether that row's cell is not set yet.
 #[inline]
 fn has_room<B: ArrayBuilder>(builder: &mut B, rows: usize, nulls: fn(&mut B, usize)) -> bool {
-    let own = builder.len();
-    if own < rows {
-        nulls(builder, rows - own);
+    let filled = builder.len();
+    if filled < rows {
+        nulls(builder, rows - filled);
     }
-    own <= rows
+    filled <= rows
 }
 
 /// Finishes a column of `rows` rows; missing cells at its end are null.
@@ -229,7 +229,9 @@ impl ColumnWriter {
                             .set_column_dictionary_enabled(path.clone(), field.name() != "id")
                             .set_column_statistics_enabled(path, EnabledStatistics::None),
                         // Consecutive lines, ids and counts differ by little.
-                        own if own.is_integer() => properties.set_column_encoding(path, Encoding::DELTA_BINARY_PACKED),
+                        data_type if data_type.is_integer() => {
+                            properties.set_column_encoding(path, Encoding::DELTA_BINARY_PACKED)
+                        }
                         _ => properties,
                     };
                 }

@@ -153,7 +153,7 @@ impl Columns {
         let field = self.types.as_ref().and_then(|types| types.fields().get(which));
         let field = field.map_or_else(
             || arrow_schema::Field::new("", arrow_schema::DataType::Null, true),
-            |own| own.as_ref().clone(),
+            |field| field.as_ref().clone(),
         );
         let is_plain = self.form() == Form::Arrow || which == self.carried.len();
         if is_plain { plain(field) } else { field }
@@ -206,17 +206,17 @@ impl Columns {
         let velocities = start..count(&columns);
         if touchdowns {
             let kinds = [Integer, Number, Text, Number, Text, Text];
-            let own = TOUCHDOWN.into_iter().zip(kinds);
-            columns.extend(own.map(|(name, kind)| (format!("touchdown_{name}"), kind, true)));
+            let touchdown = TOUCHDOWN.into_iter().zip(kinds);
+            columns.extend(touchdown.map(|(name, kind)| (format!("touchdown_{name}"), kind, true)));
             columns.extend(coordinates("q", true).chain(coordinates("v", true)));
         }
-        let own: HashSet<String> =
+        let names: HashSet<String> =
             columns.iter().map(|(name, ..)| name.clone()).chain(LAST.map(str::to_owned)).collect();
         let taken: HashSet<&str> = through.iter().map(|(name, _)| *name).collect();
         let start = count(&columns);
         for &(column, kind) in through {
             let mut name = column.to_owned();
-            while own.contains(&name) || (name != column && taken.contains(name.as_str())) {
+            while names.contains(&name) || (name != column && taken.contains(name.as_str())) {
                 name.insert_str(0, "in_");
             }
             columns.push((name, kind, true));
@@ -320,8 +320,8 @@ impl Columns {
     /// Sets the id, the line and the carried cells.
     fn name_state(&self, (id, line, carried): (Option<&Value>, Option<usize>, Option<&Carried>), row: &mut impl Row) {
         #[cfg(feature = "columnar")]
-        if let (Kind::Carried(own), Some(carried)) = (self.kinds[0], carried) {
-            row.set(0, Cell::Carried(carried, own));
+        if let (Kind::Carried(which), Some(carried)) = (self.kinds[0], carried) {
+            row.set(0, Cell::Carried(carried, which));
         }
         if let (Kind::Text, Some(id)) = (self.kinds[0], id) {
             row.set(0, Cell::Text(&words::id(id)));
@@ -371,7 +371,7 @@ impl Columns {
         }
         if let Some(Next { verdict, modes, .. }) = outcome.next.as_ref().filter(|_| self.layout.next) {
             let name = |mode: &Option<Mode>| mode.map_or("open", Mode::name);
-            let modes = modes.iter().map(|own| own.iter().map(name).collect::<Vec<_>>().join("/"));
+            let modes = modes.iter().map(|combination| combination.iter().map(name).collect::<Vec<_>>().join("/"));
             row.set(self.named + FIRST.len(), Cell::Text(verdict.name()));
             row.set(self.named + FIRST.len() + 1, Cell::Text(&modes.collect::<Vec<_>>().join("; ")));
         }
@@ -402,13 +402,13 @@ impl Columns {
 #[cfg(feature = "columnar")]
 fn plain(field: arrow_schema::Field) -> arrow_schema::Field {
     use arrow_schema::{DataType, FieldRef};
-    let inner = |own: &FieldRef| FieldRef::new(plain(own.as_ref().clone()));
+    let inner = |item: &FieldRef| FieldRef::new(plain(item.as_ref().clone()));
     let values = match field.data_type() {
         DataType::Dictionary(_, values) => return plain(field.clone().with_data_type(values.as_ref().clone())),
-        DataType::List(own) => DataType::List(inner(own)),
-        DataType::LargeList(own) => DataType::LargeList(inner(own)),
-        DataType::FixedSizeList(own, size) => DataType::FixedSizeList(inner(own), *size),
-        DataType::Map(own, is_sorted) => DataType::Map(inner(own), *is_sorted),
+        DataType::List(item) => DataType::List(inner(item)),
+        DataType::LargeList(item) => DataType::LargeList(inner(item)),
+        DataType::FixedSizeList(item, size) => DataType::FixedSizeList(inner(item), *size),
+        DataType::Map(item, is_sorted) => DataType::Map(inner(item), *is_sorted),
         DataType::Struct(fields) => DataType::Struct(fields.iter().map(inner).collect()),
         _ => return field,
     };

@@ -23,7 +23,7 @@ impl Report<'_> {
             line: self.line,
             verdict: self.verdict,
             proven: self.proven,
-            contacts: contacts.map(|((own, &slip), &free)| SustainedContact::of(own, slip, free)).collect(),
+            contacts: contacts.map(|((contact, &slip), &free)| SustainedContact::of(contact, slip, free)).collect(),
             nearest: self.nearest.as_ref(),
             outcomes: self.outcomes.as_deref().map(outcomes),
             shock: (self.verdict == Some(Verdict::None)).then_some(sustained.shock.as_deref()),
@@ -224,24 +224,24 @@ pub struct ForceOutcome<'a> {
 }
 
 impl<'a> ForceOutcome<'a> {
-    fn of(own: &'a Outcome) -> Self {
+    fn of(outcome: &'a Outcome) -> Self {
         Self {
-            modes: &own.modes,
-            force: &own.impulse,
-            contact_acceleration: &own.velocity_after,
-            base_acceleration: own.base_velocity_after.as_ref(),
-            joint_acceleration: own.joint_velocity_after.as_ref(),
-            loop_force: own.loop_impulse.as_deref(),
-            power: 0.0 - own.energy_loss,
-            force_unique: own.impulse_unique,
-            force_range: own.impulse_range.as_deref(),
-            friction_needed: &own.friction_needed,
-            index: own.index,
-            margin: own.margin,
-            border: own.border.as_ref(),
-            family: own.family,
-            proven: own.proven,
-            decided: own.decided,
+            modes: &outcome.modes,
+            force: &outcome.impulse,
+            contact_acceleration: &outcome.velocity_after,
+            base_acceleration: outcome.base_velocity_after.as_ref(),
+            joint_acceleration: outcome.joint_velocity_after.as_ref(),
+            loop_force: outcome.loop_impulse.as_deref(),
+            power: 0.0 - outcome.energy_loss,
+            force_unique: outcome.impulse_unique,
+            force_range: outcome.impulse_range.as_deref(),
+            friction_needed: &outcome.friction_needed,
+            index: outcome.index,
+            margin: outcome.margin,
+            border: outcome.border.as_ref(),
+            family: outcome.family,
+            proven: outcome.proven,
+            decided: outcome.decided,
         }
     }
 }

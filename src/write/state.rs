@@ -134,7 +134,7 @@ impl Serialize for StateRecord<'_> {
             |contact| json!({"link": self.link(contact.link), "offset": contact.offset, "radius": contact.radius}),
         );
         entry(&mut map, "contacts", scene.contacts.is_some(), &contacts.collect::<Vec<_>>())?;
-        let loops = scene.loops.iter().map(|own| json!({"a": self.point(own.a), "b": self.point(own.b)}));
+        let loops = scene.loops.iter().map(|pair| json!({"a": self.point(pair.a), "b": self.point(pair.b)}));
         // Without the field, a reader would close its default loops.
         map.serialize_entry("loops", &loops.collect::<Vec<_>>())?;
         let uncertainty = uncertainty.as_ref().map(|uncertainty| self.uncertainty(uncertainty));
@@ -144,7 +144,7 @@ impl Serialize for StateRecord<'_> {
         );
         entry(&mut map, "gravity", scene.gravity.is_some(), &scene.gravity)?;
         entry(&mut map, "torque", !scene.torque.is_empty(), &self.by_joint(&scene.torque))?;
-        let springs: Vec<_> = scene.springs.iter().map(|own| self.spring(own)).collect();
+        let springs: Vec<_> = scene.springs.iter().map(|spring| self.spring(spring)).collect();
         entry(&mut map, "virtual", !springs.is_empty(), &springs)?;
         entry(&mut map, "impulse", !scene.impulses.is_empty(), &impulses.collect::<Vec<_>>())?;
         map.end()

@@ -13,7 +13,7 @@ use std::hash::Hash;
 
 /// Returns the name with the id, as in `ramone (k17)`.
 pub fn titled(name: &str, id: &Option<Value>) -> String {
-    let title = id.as_ref().map_or_else(|| name.to_owned(), |own| format!("{name} ({})", self::id(own)));
+    let title = id.as_ref().map_or_else(|| name.to_owned(), |id| format!("{name} ({})", self::id(id)));
     visible(&title).into_owned()
 }
 

@@ -251,9 +251,9 @@ impl<'a> Report<'a> {
     /// [`Reason::Inconsistent`](crate::Reason::Inconsistent) if `impact` has contacts or joints that `robot` does not
     /// have, because it is the answer of another robot.
     pub fn of_state(robot: &'a Robot, state: &'a State, impact: &'a Impact, detail: Detail) -> crate::Result<Self> {
-        impact.contacts.iter().try_for_each(|own| check_index(own.link, ("links", robot.links.len())))?;
-        for own in &impact.left_out {
-            if let LeftOut::Column(joint) = own {
+        impact.contacts.iter().try_for_each(|contact| check_index(contact.link, ("links", robot.links.len())))?;
+        for omitted in &impact.left_out {
+            if let LeftOut::Column(joint) = omitted {
                 check_index(*joint, ("joints", robot.joints.len()))?;
             }
         }
@@ -273,18 +273,18 @@ impl<'a> Report<'a> {
             Some(NearestRecord { name: Cow::Borrowed(&robot.links.get(link)?.name), height, velocity })
         });
         let matrices = impact.matrices.as_ref();
-        let whole = Self::of_analysis(contacts.collect(), impact.analysis.as_ref(), detail);
+        let analyzed = Self::of_analysis(contacts.collect(), impact.analysis.as_ref(), detail);
         // These fields rest on theorems about impacts; none is known for forces.
-        let whole = match impact.aspect() {
-            Aspect::Impact => whole,
-            Aspect::Forces => Self { no_slip_consistent: None, index_sum: None, explain: None, ..whole },
+        let analyzed = match impact.aspect() {
+            Aspect::Impact => analyzed,
+            Aspect::Forces => Self { no_slip_consistent: None, index_sum: None, explain: None, ..analyzed },
         };
         Ok(Self {
             id: state.id.as_ref().map(Cow::Borrowed),
             nearest,
             kinetic_energy: Some(impact.kinetic_energy),
             left_out: (!detail.brief).then(|| LeftOutRecord::of_impact(robot, impact)),
-            sustained: impact.sustained.as_ref().map(|own| (own, impact.problem.velocity_free())),
+            sustained: impact.sustained.as_ref().map(|sustained| (sustained, impact.problem.velocity_free())),
             holds: impact.holds.as_ref().map(HoldsRecord::from),
             counterexample: impact.holds.as_ref().and_then(|holds| CounterexampleRecord::of(robot, holds)),
             notes: Cow::Borrowed(&impact.notes),
@@ -293,7 +293,7 @@ impl<'a> Report<'a> {
             contact_jacobian: matrices.map(|matrices| Cow::Borrowed(&*matrices.contact_jacobian)),
             delassus: matrices.map(|matrices| Cow::Borrowed(&*matrices.delassus)),
             error: error.as_ref().map(ErrorObject::new),
-            ..whole
+            ..analyzed
         })
     }
 

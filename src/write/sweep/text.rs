@@ -129,8 +129,8 @@ impl Transition {
         let ends = |EndedOutcome { contact, inequality, modes, side }: &EndedOutcome| {
             let (letter, happening) = if *side == Side::Below { below } else { above };
             let names = happening.contacts.unwrap_or_default();
-            let own = names.iter().position(|name| name == contact).and_then(|at| modes.get(at));
-            let ended = own.map_or("an outcome", |&mode| words::verb(mode)[1]);
+            let mode = names.iter().position(|name| name == contact).and_then(|at| modes.get(at));
+            let ended = mode.map_or("an outcome", |&mode| words::verb(mode)[1]);
             let mut sentence = format!("{}, which ends {ended} in {letter}", inequality.reached_by(contact));
             if happening.outcomes.is_some_and(|outcomes| outcomes.len() > 1) {
                 let others = names.iter().zip(modes).filter(|(name, _)| *name != contact);

@@ -190,10 +190,10 @@ impl<'w> Writer<'w> {
     /// Returns the sentence for the verdict `none` of forces, with the outcomes of the impact by which velocities jump.
     fn no_forces(&self) -> String {
         let sentence = format!("{}, by an impact without approach", words::NO_FORCES);
-        match self.report.sustained.and_then(|(own, _)| own.shock.as_deref()) {
+        match self.report.sustained.and_then(|(sustained, _)| sustained.shock.as_deref()) {
             None => format!("{sentence} whose outcomes are not decided."),
             Some([]) => format!("{sentence}, for which there is none with an impulse, either."),
-            Some(shock) => format!("{sentence}: {}.", self.alternatives(shock.iter().map(|own| &own.modes))),
+            Some(shock) => format!("{sentence}: {}.", self.alternatives(shock.iter().map(|outcome| &outcome.modes))),
         }
     }
 
@@ -262,9 +262,9 @@ impl<'w> Writer<'w> {
                 (Some(rank), None) => format!("{rank} of {}, redundant", 2 * self.report.contacts.len()),
                 (None, _) => "not known".to_owned(),
             };
-            let hidden = match self.report.verdict {
-                Some(Verdict::Undecided) => "unknown",
-                _ if self.subject.analysis.is_some_and(|own| !own.families.is_empty()) => "not defined with families",
+            let hidden = match (self.report.verdict, self.subject.analysis) {
+                (Some(Verdict::Undecided), _) => "unknown",
+                (_, Some(analysis)) if !analysis.families.is_empty() => "not defined with families",
                 _ => "hidden by a border",
             };
             let sum = self.report.index_sum.map(|sum| sum.map_or(hidden.to_owned(), |sum| sum.to_string()));

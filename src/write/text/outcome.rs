@@ -118,16 +118,16 @@ impl Writer<'_> {
         if springs.is_empty() {
             return;
         }
-        let force = scale(springs.iter().flat_map(|own| own.force));
-        let moment = scale(springs.iter().map(|own| own.moment));
+        let force = scale(springs.iter().flat_map(|spring| spring.force));
+        let moment = scale(springs.iter().map(|spring| spring.moment));
         self.out.push('\n');
         Table::default()
             .text("virtual spring", (0..springs.len()).map(|index| format!("virtual[{index}]")))
-            .pairs(["force on a: x [N]", "z [N]"], force, springs.iter().map(|own| own.force))
-            .numbers("moment [N m]", moment, springs.iter().map(|own| own.moment))
+            .pairs(["force on a: x [N]", "z [N]"], force, springs.iter().map(|spring| spring.force))
+            .numbers("moment [N m]", moment, springs.iter().map(|spring| spring.moment))
             .write(&mut self.out);
         let all = scale(torque.values().iter().copied());
-        let of_springs = |joint: usize| springs.iter().map(|own| own.torque.values()[joint]).sum::<f64>();
+        let of_springs = |joint: usize| springs.iter().map(|spring| spring.torque.values()[joint]).sum::<f64>();
         Table::default()
             .text("torque [N m or N]", torque.iter().map(|(name, _)| name))
             .numbers("all", all, torque.values().iter().copied())
