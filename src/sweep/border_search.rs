@@ -167,11 +167,11 @@ impl<W: FnMut(f64) -> Seen> Search<'_, W> {
         let middle = 0.5 * (a + b);
         let places: [f64; NODES] = [a, 0.5 * (a + middle), middle, 0.5 * (middle + b), b];
         let seen = places.map(|at| (self.watch)(at));
-        if seen.iter().any(|own| !are_alike(own, &seen[0])) && divisions > 0 {
+        if seen.iter().any(|watched| !are_alike(watched, &seen[0])) && divisions > 0 {
             return self.divided(&places, &seen, halvings, divisions - 1);
         }
         let nodes: Option<Vec<Arc<Watched>>> = seen.iter().cloned().collect();
-        let Some(nodes) = nodes.filter(|_| seen.iter().all(|own| are_alike(own, &seen[0]))) else {
+        let Some(nodes) = nodes.filter(|_| seen.iter().all(|watched| are_alike(watched, &seen[0]))) else {
             self.found.extend(&places[1..NODES - 1]);
             return;
         };

@@ -135,8 +135,8 @@ impl<'s, 'm> Trace<'s, 'm> {
             }
             let found = bisect(&mut line, &below, &above, FOUND);
             // Only borders between these two regimes count: others may be near.
-            let own = found.iter().filter(|border| border.below.regime == *right && border.above.regime == *left);
-            let off = own.map(Bracket::at).min_by(|a, b| a.abs().total_cmp(&b.abs()));
+            let common = found.iter().filter(|border| border.below.regime == *right && border.above.regime == *left);
+            let off = common.map(Bracket::at).min_by(|a, b| a.abs().total_cmp(&b.abs()));
             if let Some(off) = off {
                 return (off.abs() > STRAIGHT).then(|| off_middle(off));
             }

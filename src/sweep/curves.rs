@@ -105,7 +105,7 @@ fn between(
     let at = 0.5 * (a.at + b.at);
     let halvings = halvings.checked_sub(1).filter(|_| a.at < at && at < b.at);
     let middle = halvings.and_then(|_| CurvePoint::of(solver, at, regime));
-    let (Some(halvings), Some(middle)) = (halvings, middle.filter(|own| !own.is_on_line(a, b, scales))) else {
+    let (Some(halvings), Some(middle)) = (halvings, middle.filter(|point| !point.is_on_line(a, b, scales))) else {
         return Vec::new();
     };
     let mut found = between(solver, (a, &middle), regime, scales, halvings);
@@ -144,17 +144,17 @@ impl CurvePoint {
     /// Returns whether the point is visibly on the straight line between its neighbors.
     fn is_on_line(&self, a: &Self, b: &Self, scales: &Scales) -> bool {
         let ends = a.numbers().zip(b.numbers());
-        let straight = self.numbers().zip(ends).zip(scales.iter().cycle()).all(|((own, (a, b)), scale)| {
-            (0..2).all(|axis| (own[axis] - 0.5 * (a[axis] + b[axis])).abs() <= STRAIGHT * scale)
+        let straight = self.numbers().zip(ends).zip(scales.iter().cycle()).all(|((pair, (a, b)), scale)| {
+            (0..2).all(|axis| (pair[axis] - 0.5 * (a[axis] + b[axis])).abs() <= STRAIGHT * scale)
         });
         let angles = |place: &Self| -> Vec<f64> {
             place.explanation.iter().flat_map(|angles| angles.beta.iter().chain(&angles.gamma).copied()).collect()
         };
         let turns = angles(self).into_iter().zip(angles(a).into_iter().zip(angles(b)));
         straight
-            && turns.into_iter().all(|(own, (a, b))| {
+            && turns.into_iter().all(|(angle, (a, b))| {
                 // Whole turns are removed, because an angle that leaves pi continues at -pi.
-                let off = libm::remainder(own - a, 2.0 * PI) + libm::remainder(own - b, 2.0 * PI);
+                let off = libm::remainder(angle - a, 2.0 * PI) + libm::remainder(angle - b, 2.0 * PI);
                 off.abs() <= STRAIGHT * 2.0 * PI
             })
     }

@@ -97,8 +97,9 @@ impl RobotStudy<'_> {
                 let mut odd = state.oddities(robot);
                 odd.extend(state.uncertainty.is_some().then(|| BOXES.to_owned()));
                 // Cautions about a varied robot.
-                let is_new =
-                    |own: &&String| self.robot.reading.cautions.iter().all(|known| subject(known) != subject(own));
+                let is_new = |caution: &&String| {
+                    self.robot.reading.cautions.iter().all(|known| subject(known) != subject(caution))
+                };
                 odd.extend(robot.reading.cautions.iter().filter(is_new).cloned());
                 Ok(odd)
             });

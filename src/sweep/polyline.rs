@@ -26,7 +26,7 @@ pub fn polylines(segments: &[Segment]) -> Vec<(&Segment, Vec<[f64; 2]>)> {
         if std::mem::replace(&mut used[first], true) {
             continue;
         }
-        let own = &segments[first];
+        let segment = &segments[first];
         // Extends the curve from the segment's end, then from its beginning. Other segments may have either direction.
         let mut grow = |mut point: [f64; 2], forward: bool| {
             let mut points = Vec::new();
@@ -34,7 +34,7 @@ pub fn polylines(segments: &[Segment]) -> Vec<(&Segment, Vec<[f64; 2]>)> {
                 let next = starts[&key(point)].iter().find(|&&(index, at_start)| {
                     let sides = &segments[index].sides;
                     let along = at_start == forward;
-                    !used[index] && own.sides.is_same_as(&if along { sides.clone() } else { sides.reversed() })
+                    !used[index] && segment.sides.is_same_as(&if along { sides.clone() } else { sides.reversed() })
                 });
                 let Some(&(index, at_start)) = next else { return points };
                 used[index] = true;
@@ -42,9 +42,9 @@ pub fn polylines(segments: &[Segment]) -> Vec<(&Segment, Vec<[f64; 2]>)> {
                 points.push(point);
             }
         };
-        let onward = grow(own.to, true);
-        let back = grow(own.from, false);
-        polylines.push((own, back.into_iter().rev().chain([own.from, own.to]).chain(onward).collect()));
+        let onward = grow(segment.to, true);
+        let back = grow(segment.from, false);
+        polylines.push((segment, back.into_iter().rev().chain([segment.from, segment.to]).chain(onward).collect()));
     }
     polylines
 }

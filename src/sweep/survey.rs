@@ -86,8 +86,8 @@ impl Survey {
             // The middle may lie in a thinner region that was not found; the regime of the beginning is known.
             let middle = 0.5 * (from + to);
             let at = if solver.regime(&[middle]) == regime { middle } else { begin };
-            let inside = samples.iter().filter(|own| own.regime == regime && from <= own.at && own.at <= to);
-            let inner = solver.inner(&[at], inside.map(|own| vec![own.at]));
+            let inside = samples.iter().filter(|sample| sample.regime == regime && (from..=to).contains(&sample.at));
+            let inner = solver.inner(&[at], inside.map(|sample| vec![sample.at]));
             dependent |= inner.dependent;
             Region { from, to, regime, kind, verdict: inner.verdict, refused: inner.refused }
         };
