@@ -201,7 +201,7 @@ fn outcomes(answer: &KeyframeAnswer, drawing: Option<&Drawing>, texts: &mut Inte
         energy_loss: significant(outcome.energy_loss, 5),
         impulse: pairs(&outcome.impulse),
         after: pairs(&outcome.velocity_after),
-        loops: in_loops(at).into_iter().flatten().map(|(link, own)| (texts.number(link), vector(own))).collect(),
+        loops: in_loops(at).into_iter().flatten().map(|(link, push)| (texts.number(link), vector(push))).collect(),
     };
     answer.outcomes.iter().enumerate().map(outcome).collect()
 }

@@ -83,8 +83,9 @@ impl Gait {
         let panel = |(quantity, value)| panel(quantity, x.clone(), &marks, size, value);
         let mut panels: Vec<Panel> = values.into_iter().filter_map(panel).collect();
         // In the last panel, that of needed friction, a line marks the friction of all contacts unless it is far above.
-        let is_near =
-            |mu: f64| marks.iter().filter_map(|mark| mark.friction).any(|own| own.is_finite() && mu < FAR * own);
+        let is_near = |mu: f64| {
+            marks.iter().filter_map(|mark| mark.friction).any(|needed| needed.is_finite() && mu < FAR * needed)
+        };
         let given_friction = self.friction().filter(|&mu| is_near(mu));
         if let (Some(mu), Some(needed)) = (given_friction, panels.last_mut()) {
             needed.y.range = None;
@@ -104,7 +105,7 @@ impl Gait {
             let more = panels[0].title.replace('\n', ", ");
             panels[0].title = format!("\ncontacts of one state stand side by side{more}");
         }
-        let looks = LOOKS.into_iter().filter(|own| self.states.iter().any(|state| look(state) == *own));
+        let looks = LOOKS.into_iter().filter(|candidate| self.states.iter().any(|state| look(state) == *candidate));
         let entry = |name: &str, key| LegendEntry::new(name, key);
         let feet = feet.iter().enumerate();
         let legend = feet.map(|(foot, name)| entry(name, LegendKey::Mark(Mark::Circle, FEET[foot % FEET.len()])));

@@ -239,12 +239,12 @@ mod tests {
         let Taken { marks, thin } = taken;
         assert_eq!(marks.len(), 7);
         // The additional distance of a name applies to later names, not to the mark.
-        let own = |at: usize, TextBox { middle, half }| match at {
+        let bare = |at: usize, TextBox { middle, half }| match at {
             0 => TextBox { middle, half },
             _ => TextBox { middle, half: (half.0 - NEXT, half.1) },
         };
         for (at, place) in marks.iter().enumerate() {
-            let (others, place) = (marks[..at].iter().chain(&thin), own(at, *place));
+            let (others, place) = (marks[..at].iter().chain(&thin), bare(at, *place));
             assert!(place.is_within(area.size()) && others.clone().all(|other| !other.meets(&place)), "{place:?}");
         }
     }

@@ -413,7 +413,7 @@ impl<'d> DrawnScene<'d> {
     fn legend(&self) -> Vec<LegendEntry> {
         let arrows: Vec<_> = self.all_arrows().collect();
         let is_drawn = |stroke: Stroke| {
-            arrows.iter().any(|(_, reach, own)| *own == stroke && (stroke == APPLIED || *reach != Vector::zero()))
+            arrows.iter().any(|(_, reach, drawn)| *drawn == stroke && (stroke == APPLIED || *reach != Vector::zero()))
         };
         let DrawnNames { given, taken, moving, .. } = Wording::of(self.drawing.aspect).drawn;
         let is_small = |reach: Vector<f64>| reach != Vector::zero() && reach.length() < SEEN * self.size;

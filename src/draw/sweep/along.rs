@@ -110,15 +110,15 @@ impl Curves<'_> {
 
     /// Returns whether a quantity of a contact is not zero in some outcome of a visible region, or of a `hidden` one.
     fn is_anywhere(&self, contact: &str, quantity: &PlottedQuantity, hidden: bool) -> bool {
-        let largest = |pairs: &[[f64; 2]]| pairs.as_flattened().iter().fold(0.0, |most: f64, own| most.max(own.abs()));
+        let largest = |pairs: &[[f64; 2]]| pairs.as_flattened().iter().map(|entry| entry.abs()).fold(0.0, f64::max);
         let regions = self.survey.regions.iter().zip(self.courses);
         let mut regions = regions.filter(|(region, _)| is_seen(region, self.survey) != hidden);
         regions.any(|(region, course)| {
-            let own = region.regime.contacts().iter().position(|name| name == contact);
+            let Some(index) = region.regime.contacts().iter().position(|name| name == contact) else { return false };
             let mut motions = course.places.iter().flat_map(|place| &place.outcomes);
             motions.any(|(_, motion)| {
                 let pairs = (quantity.of)(motion);
-                own.and_then(|own| pairs.get(own..=own)).is_some_and(|own| largest(own) > ZERO * largest(pairs))
+                pairs.get(index..=index).is_some_and(|pair| largest(pair) > ZERO * largest(pairs))
             })
         })
     }
@@ -210,8 +210,8 @@ impl<'a> OutcomeStyles<'a> {
     }
 
     fn dash(&self, contacts: &[String], modes: &[Mode]) -> Dash {
-        let own = self.0.iter().find(|style| (style.contacts, style.modes) == (contacts, modes));
-        own.and_then(|style| style.dash).unwrap_or(Dash::SOLID)
+        let style = self.0.iter().find(|style| (style.contacts, style.modes) == (contacts, modes));
+        style.and_then(|style| style.dash).unwrap_or(Dash::SOLID)
     }
 
     /// Returns the legend: components, angles, outcomes with the letters of their regions, regions without outcomes.

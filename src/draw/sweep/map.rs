@@ -28,7 +28,7 @@ pub fn picture([x, y]: [PlotAxis; 2], question: Aspect, map: &Map) -> Picture {
     let points = |points: &Vec<[f64; 2]>| points.iter().map(|&[x, y]| (x, y)).collect();
     let letters = letters(&x, &y, map);
     let is_lettered =
-        |own: &str| letters.iter().any(|shape| matches!(shape, PlotShape::Text { text, .. } if text == own));
+        |letter: &str| letters.iter().any(|shape| matches!(shape, PlotShape::Text { text, .. } if text == letter));
     let (mut shapes, mut legend) = (Vec::new(), Vec::new());
     for ((index, area), color) in map.areas.iter().enumerate().zip(fills_of_map(map)) {
         let happening = Happening::of(question, &area.regime, area.verdict, area.refused.as_ref());
@@ -82,11 +82,11 @@ fn letters(x: &PlotAxis, y: &PlotAxis, map: &Map) -> Vec<PlotShape> {
         // Several middles may lie in one part of the area, which has one letter.
         let first = lettered.len();
         for (text, room) in fitting {
-            let own = part(text.middle);
-            if lettered[first..].iter().any(|(part, _)| *part == own) {
+            let here = part(text.middle);
+            if lettered[first..].iter().any(|(part, _)| *part == here) {
                 continue;
             }
-            lettered.push((own, room));
+            lettered.push((here, room));
             shapes.push(label(index, &text));
             taken.push(outline(&text));
             texts.push(text);
@@ -106,8 +106,8 @@ fn letters(x: &PlotAxis, y: &PlotAxis, map: &Map) -> Vec<PlotShape> {
         let free: Vec<TextBox> = places.map(|at| text(index, at)).filter(is_free).collect();
         // The letter is on a part of another area that has its own letter, if possible on a wide one.
         let is_beside = |text: &&TextBox, least: f64| {
-            let own = part(text.middle);
-            lettered.iter().any(|(part, room)| *room >= least && *part == own)
+            let here = part(text.middle);
+            lettered.iter().any(|(part, room)| *room >= least && *part == here)
         };
         let place = [ENOUGH, CLEAR].into_iter().find_map(|least| free.iter().find(|text| is_beside(text, least)));
         if let Some(&text) = place {
