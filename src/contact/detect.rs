@@ -64,8 +64,8 @@ impl Footing<'_> {
         let lowest = feet().map(|foot| plane.clearance(foot, placement)).fold(f64::INFINITY, f64::min);
         let candidates: Vec<Point> = match self.named() {
             Some(named) => {
-                let own = named.iter().filter(|contact| contact.link == link);
-                own.map(|contact| Point::named(self.robot, contact)).collect()
+                let contacts = named.iter().filter(|contact| contact.link == link);
+                contacts.map(|contact| Point::named(self.robot, contact)).collect()
             }
             None => feet().flat_map(|foot| plane.sole(foot, placement, lowest + tolerance + rounding)).collect(),
         };

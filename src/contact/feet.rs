@@ -43,11 +43,11 @@ impl Feet {
     pub fn new(robot: &Robot, named: &[NamedContact]) -> Self {
         let mut feet = Vec::new();
         for (index, link) in robot.links.iter().enumerate() {
-            let own =
+            let points =
                 named.iter().filter(|contact| contact.link == index).map(|&NamedContact { offset, radius, .. }| {
                     (FootShape::disc(link.point(offset), radius), Some(offset))
                 });
-            let outlines = link.shapes.iter().map(|shape| (shape.clone(), None)).chain(own);
+            let outlines = link.shapes.iter().map(|shape| (shape.clone(), None)).chain(points);
             feet.extend(outlines.map(|(outline, offset)| {
                 let bounding_circle = outline.bounding_circle();
                 Foot { link: index, body: link.body, outline, offset, bounding_circle, bumps: 0.0 }

@@ -86,11 +86,11 @@ impl RigidParts<'_> {
         let (arm, way) = if contact.body == other.body {
             (self.workspace.rotation[contact.body].apply(contact.center - other.center), 0.0)
         } else {
-            let [own, others] = [contact, other].map(|own| self.place(own));
-            (own.0 - others.0, own.1 + others.1)
+            let [(place, length), (other_place, other_length)] = [contact, other].map(|contact| self.place(contact));
+            (place - other_place, length + other_length)
         };
         let rise = contact.normal().dot(arm) - (contact.radius - other.radius);
-        let length = |own: &Contact| size(own.center) + own.radius;
+        let length = |contact: &Contact| size(contact.center) + contact.radius;
         let is_level = rise.abs() <= ROUNDING * (length(contact) + length(other) + way);
         is_level.then(|| Level { with, along: Some(contact.tangent().dot(arm)), way })
     }
@@ -98,16 +98,16 @@ impl RigidParts<'_> {
     /// Returns a body and its ancestors in its rigid part, at most [`MOST_BODIES`].
     fn bodies(&self, body: usize) -> impl Iterator<Item = usize> {
         let parts = std::iter::successors(Some(body), |&body| {
-            let own = &self.plan.bodies[body];
-            let keeps = || own.column.is_none() || self.kept.contains(&own.coordinate);
-            let is_rigid = match own.motion {
+            let body = &self.plan.bodies[body];
+            let keeps = || body.column.is_none() || self.kept.contains(&body.coordinate);
+            let is_rigid = match body.motion {
                 JointMotion::Root => false,
                 JointMotion::Fixed => true,
                 JointMotion::Revolute { .. } | JointMotion::Prismatic { .. } => {
-                    self.velocity[own.coordinate] == 0.0 && keeps()
+                    self.velocity[body.coordinate] == 0.0 && keeps()
                 }
             };
-            own.parent.filter(|_| is_rigid)
+            body.parent.filter(|_| is_rigid)
         });
         parts.take(MOST_BODIES)
     }
@@ -118,9 +118,9 @@ impl RigidParts<'_> {
         let center = self.workspace.rotation[contact.body].apply(contact.center);
         let joints = self.bodies(contact.body).zip(self.bodies(contact.body).skip(1)).map(|(body, _)| body);
         joints.fold((center, 0.0), |(place, length), body| {
-            let (arm, own) = (self.workspace.arm[body], &self.plan.bodies[body]);
+            let (arm, body) = (self.workspace.arm[body], &self.plan.bodies[body]);
             // The arm of a prismatic joint is its origin plus its displacement, which is no longer than both together.
-            let slid = if let JointMotion::Prismatic { .. } = own.motion { 2.0 * size(own.origin) } else { 0.0 };
+            let slid = if let JointMotion::Prismatic { .. } = body.motion { 2.0 * size(body.origin) } else { 0.0 };
             (place + arm, length + size(arm) + slid)
         })
     }

@@ -86,8 +86,8 @@ pub(super) fn merge(
     if merged.is_empty() {
         return merged;
     }
-    for own in merged.iter_mut().flat_map(|merged| &mut merged.outer) {
-        *own = remains[..*own].iter().filter(|&&remains| remains).count();
+    for index in merged.iter_mut().flat_map(|merged| &mut merged.outer) {
+        *index = remains[..*index].iter().filter(|&&remains| remains).count();
     }
     let mut remains = remains.into_iter();
     contacts.retain(|_| remains.next().unwrap_or(true));

@@ -50,14 +50,14 @@ impl Footing<'_> {
         let mut near: Vec<Contact> = Vec::new();
         for foot in self.feet.iter().filter(|foot| is_open(foot) && is_near(foot)) {
             let touch = surface.first_touch(foot, placement);
-            let Some(own) = touch.filter(|touch| touch.gap <= height).map(|touch| self.contact(foot.link, touch))
+            let Some(contact) = touch.filter(|touch| touch.gap <= height).map(|touch| self.contact(foot.link, touch))
             else {
                 continue;
             };
-            match near.iter_mut().find(|other| body(other.body) == body(own.body)) {
-                Some(other) if own.gap < other.gap => *other = own,
+            match near.iter_mut().find(|other| body(other.body) == body(contact.body)) {
+                Some(other) if contact.gap < other.gap => *other = contact,
                 Some(_) => {}
-                None => near.push(own),
+                None => near.push(contact),
             }
         }
         near
@@ -78,7 +78,7 @@ impl Footing<'_> {
             }
             let touch = surface.first_touch(foot, placement);
             let below = touch.map(|touch| (foot.link, lowest - touch.gap));
-            farthest = below.filter(|(_, own)| *own > depth).or(farthest);
+            farthest = below.filter(|(_, below)| *below > depth).or(farthest);
         }
         farthest
     }

@@ -308,7 +308,9 @@ fn side_on_corner(terrain: &Terrain, corner: usize, outline: &Outline, close: Cl
             return None;
         }
         // A side that lies flat on a segment gets that segment's normal.
-        let is_flat = |own: &&Face| own.normal.dot(face.normal) < 0.0 && own.normal.dot(face.tangent).abs() <= PARALLEL;
+        let is_flat = |segment: &&Face| {
+            segment.normal.dot(face.normal) < 0.0 && segment.normal.dot(face.tangent).abs() <= PARALLEL
+        };
         let touch = outline.on_side(side, at);
         let ground = [before, after].into_iter().find(is_flat).map_or(touch.ground, Face::axes);
         Some(Touch { ground, ..touch })
