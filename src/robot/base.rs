@@ -86,8 +86,8 @@ pub(super) fn judge(description: &Description, outward: &[usize], roles: &mut [R
                     names(chain)
                 )
             });
-            let own = description.links[root].inertial.as_ref().is_some_and(|own| own.mass > 0.0);
-            let because = if own { "the root has mass" } else { "what is fixed to the root has mass" };
+            let has_mass = description.links[root].inertial.as_ref().is_some_and(|inertial| inertial.mass > 0.0);
+            let because = if has_mass { "the root has mass" } else { "what is fixed to the root has mass" };
             Judgment { caution, ..at_root(Base::Floating, because.into()) }
         }
     }

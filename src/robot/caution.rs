@@ -120,7 +120,7 @@ pub(super) fn about_file(
     // Shapes of the root itself belong to the ground or the rail.
     let touching = outside.iter().filter(|link| link.name != links[*root].name && !link.collisions.is_empty());
     let driven = joints.iter().enumerate().filter(|&(index, joint)| moves(index) && rotors.contains(&joint.name));
-    let closing = ignored.iter().filter(|own| closes_loops(own.parent, &own.tag));
+    let closing = ignored.iter().filter(|element| closes_loops(element.parent, &element.tag));
     let without_axis = joints.iter().filter(|joint| joint.kind.has_axis() && !joint.has_axis);
     let off = joints.iter().zip(&pose.axes).filter(|(joint, axis)| {
         let is_off = |angle| angle > pose.tolerance && angle <= OBLIQUE;
@@ -157,7 +157,7 @@ pub(super) fn about_file(
          state",
     ));
     cautions.extend(naming(
-        closing.map(|own| &own.tag),
+        closing.map(|element| &element.tag),
         "what closes loops in the file is left out ({}): close them by `loops` in each state",
     ));
     // Without a joint from the world to the root the tree is still complete, so no error reports these.
@@ -218,12 +218,12 @@ fn about_lengths(description: &Description) -> Vec<String> {
         )
     });
     let meshes = description.links.iter().flat_map(|link| {
-        let is_scaled = |own: &&Collision| match own.geometry {
+        let is_scaled = |collision: &&Collision| match collision.geometry {
             Geometry::Mesh { scale, .. } => scale.iter().all(|scale| scale.abs() < 0.1),
             _ => false,
         };
         let meshes = link.collisions.iter().filter(is_scaled);
-        meshes.map(|own| (&link.name, extent(&own.geometry))).filter(|&(_, extent)| extent > 0.0)
+        meshes.map(|collision| (&link.name, extent(&collision.geometry))).filter(|&(_, extent)| extent > 0.0)
     });
     let smallest = meshes.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|&(_, extent)| extent < SMALLEST);
     let small = smallest.map(|(name, extent)| {
@@ -358,8 +358,8 @@ pub(super) fn about_massless(robot: &Robot) -> Vec<String> {
             (Some(Axis::Prismatic { .. }), _) => body.mass > 0.0,
             (_, center) => body.moment > 0.0 || body.mass > 0.0 && body.com != center,
         };
-        if let Some((parent, origin, own)) = hinge(body) {
-            let yields = match (own, motion(parent)) {
+        if let Some((parent, origin, axis)) = hinge(body) {
+            let yields = match (axis, motion(parent)) {
                 (Some(Axis::Revolute { .. }), (Some(Axis::Revolute { .. }), center)) => origin == center,
                 (Some(Axis::Prismatic { direction }), (Some(Axis::Prismatic { direction: other }), _)) => {
                     direction.x * other.z == direction.z * other.x
@@ -369,7 +369,7 @@ pub(super) fn about_massless(robot: &Robot) -> Vec<String> {
             let yields = yields && matches!(body.joint, Some(ParentJoint::Joint(joint)) if is_alone(joint));
             resists[parent] |= carries[index] && !yields;
             carries[parent] |= carries[index];
-            has_length[rigid[parent]] |= own.is_some() && origin.length() > 0.0;
+            has_length[rigid[parent]] |= axis.is_some() && origin.length() > 0.0;
         }
     }
     robot.links.iter().for_each(|link| has_length[rigid[link.body]] |= !link.shapes.is_empty());
@@ -478,8 +478,8 @@ fn remedy(seen: &Seen, joint: usize, (stays, greatest): (&[bool], f64)) -> Remed
     let axis = pose.axes[joint];
     let turned = seen.before(joint).filter(|&before| {
         let kind = description.joints[before].kind;
-        let mimics = |(own, mimicked): (usize, &Option<Mimic>)| {
-            mimicked.as_ref().is_some_and(|mimicked| own == before || mimicked.joint == before)
+        let mimics = |(index, mimicked): (usize, &Option<Mimic>)| {
+            mimicked.as_ref().is_some_and(|mimicked| index == before || mimicked.joint == before)
         };
         // A hinge that is nearly in line should itself be kept.
         matches!(kind, JointKind::Revolute | JointKind::Continuous)
@@ -510,7 +510,7 @@ fn remedy(seen: &Seen, joint: usize, (stays, greatest): (&[bool], f64)) -> Remed
         beyond.into_iter().any(|other| stays[other] && pose.frozen[other].is_none() && is_in_line(seen, other))
     };
     let tilted = std::iter::once(joint).chain(seen.before(joint)).find(tilts);
-    let own = &description.joints[joint];
+    let described = &description.joints[joint];
     match tilted {
         Some(posed) if pose.frozen[posed].is_some_and(|value| value != 0.0) => {
             let name = &description.joints[posed].name;
@@ -521,20 +521,20 @@ fn remedy(seen: &Seen, joint: usize, (stays, greatest): (&[bool], f64)) -> Remed
                 format!("leave {name} and the like at zero, or take what they tilt as in the plane by {tolerance}"),
             )
         }
-        Some(tilted) if is_undone(&tilted) && own.kind != JointKind::Prismatic => {
+        Some(tilted) if is_undone(&tilted) && described.kind != JointKind::Prismatic => {
             let [_, normal, _] = plane.axes();
             let sign = f64::copysign(1.0, dot(axis, normal));
-            let rotation = pose.rotations[own.child];
+            let rotation = pose.rotations[described.child];
             let along =
                 [0, 1, 2].map(|at| shortest_within(sign * dot(rotation.map(|row| row[at]), normal), 5e-7) + 0.0);
             (
                 "axis",
                 joint,
-                format!("give {} the axis \"{}\"", own.name, along.map(|entry| entry.to_string()).join(" ")),
+                format!("give {} the axis \"{}\"", described.name, along.map(|entry| entry.to_string()).join(" ")),
             )
         }
         Some(tilted) => ("rpy", tilted, format!("straighten the rpy of {}", description.joints[tilted].name)),
-        None => ("axis", joint, format!("straighten the axis of {}", own.name)),
+        None => ("axis", joint, format!("straighten the axis of {}", described.name)),
     }
 }
 

@@ -135,7 +135,7 @@ fn in_order<T>(mut joints: Vec<(usize, T)>) -> Vec<T> {
 /// Returns whether a link adds nothing to the body it is welded into: it has neither inertia nor shapes.
 fn vanishes(link: &description::UrdfLink) -> bool {
     let inertia = |inertia: &Matrix| inertia.iter().flatten().all(|&entry| entry == 0.0);
-    let massless = |own: &Inertial| own.mass == 0.0 && own.inertia.as_ref().is_none_or(inertia);
+    let massless = |inertial: &Inertial| inertial.mass == 0.0 && inertial.inertia.as_ref().is_none_or(inertia);
     link.collisions.is_empty() && link.inertial.as_ref().is_none_or(massless)
 }
 
