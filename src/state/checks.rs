@@ -29,7 +29,7 @@ impl State {
                 return Err(Error::new(reason).at(coordinate_place(robot, what, at)));
             }
         }
-        uncertainty.as_ref().map_or(Ok(()), |own| own.check(robot))
+        uncertainty.as_ref().map_or(Ok(()), |uncertainty| uncertainty.check(robot))
     }
 }
 
@@ -59,8 +59,8 @@ impl Scene {
             return Err(placed_twice().at("place"));
         }
         let all = joints.1 + robot.mimic_joints.len();
-        check_joints(robot, "rotor_inertia", (&self.rotor_inertia, &[all]), |own| from_zero(own, "rotor inertia"))?;
-        check_joints(robot, "torque", (&self.torque, &[joints.1]), |own| finite(own, || "a torque".into()))?;
+        check_joints(robot, "rotor_inertia", (&self.rotor_inertia, &[all]), |value| from_zero(value, "rotor inertia"))?;
+        check_joints(robot, "torque", (&self.torque, &[joints.1]), |torque| finite(torque, || "a torque".into()))?;
         let rough = |friction| match friction {
             Friction::Finite(mu) => from_zero(mu, "friction"),
             Friction::Infinite => Ok(0.0),
@@ -74,21 +74,21 @@ impl Scene {
         if self.loops.len() > LOOP_LIMIT {
             return Err(Error::new(Reason::TooMany { what: "loops", limit: LOOP_LIMIT }).at("loops"));
         }
-        for (at, own) in self.loops.iter().enumerate() {
-            point("loops", at, ".a", own.a)?;
-            point("loops", at, ".b", own.b)?;
+        for (at, pair) in self.loops.iter().enumerate() {
+            point("loops", at, ".a", pair.a)?;
+            point("loops", at, ".b", pair.b)?;
         }
         for (at, &AppliedImpulse { link, offset, vector }) in self.impulses.iter().enumerate() {
             point("impulse", at, "", LinkPoint { link, offset })?;
             check_finite(&vector.components(), || format!("impulse[{at}].vector"))?;
         }
-        for (at, own) in self.springs.iter().enumerate() {
-            point("virtual", at, ".a", own.a)?;
-            match own.b {
+        for (at, spring) in self.springs.iter().enumerate() {
+            point("virtual", at, ".a", spring.a)?;
+            match spring.b {
                 SpringEnd::Link(b) => point("virtual", at, ".b", b)?,
                 SpringEnd::World(place) => check_finite(&place.components(), || format!("virtual[{at}].b.world"))?,
             }
-            for law in own.laws {
+            for law in spring.laws {
                 let numbers = [law.stiffness, law.damping, law.target, law.constant];
                 check_finite(&numbers, || format!("virtual[{at}].laws"))?;
             }

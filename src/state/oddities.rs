@@ -33,13 +33,13 @@ pub struct OutsideLimits<'r> {
 impl State {
     /// Finds the joints and mimic joints that are outside the limits of the robot's file.
     pub fn outside_limits<'r>(&self, robot: &'r Robot) -> impl Iterator<Item = OutsideLimits<'r>> {
-        let joints = self.position.get(robot.base_dofs()..).unwrap_or_default();
-        let own = robot.joints.iter().zip(joints.iter().copied());
+        let positions = self.position.get(robot.base_dofs()..).unwrap_or_default();
+        let joints = robot.joints.iter().zip(positions.iter().copied());
         let mimics = robot.mimic_joints.iter().filter_map(|mimic| {
-            let mimicked = joints.get(mimic.mimicked)?;
+            let mimicked = positions.get(mimic.mimicked)?;
             Some((&mimic.joint, mimic.multiplier * mimicked + mimic.offset))
         });
-        own.chain(mimics).filter_map(|(joint, position)| {
+        joints.chain(mimics).filter_map(|(joint, position)| {
             let limits = joint.limits?;
             let beyond = |slack: f64| position < limits[0] - slack || position > limits[1] + slack;
             if !beyond(0.0) {
@@ -124,7 +124,7 @@ impl State {
 
 /// Notes the first coefficient of friction that is probably in percent or degrees.
 pub(crate) fn rough_friction(mut friction: impl Iterator<Item = Friction>) -> Option<String> {
-    let rough = friction.find(|own| matches!(own, Friction::Finite(mu) if *mu > ROUGH[0] && *mu < ROUGH[1]));
+    let rough = friction.find(|friction| matches!(friction, Friction::Finite(mu) if *mu > ROUGH[0] && *mu < ROUGH[1]));
     rough.map(|mu| format!("the coefficient of friction is {mu}: was it meant in percent or degrees?"))
 }
 

@@ -64,7 +64,7 @@ impl Scene {
     /// Returns whether some link's friction is not the one that is `given` for all states.
     pub fn has_own_friction(&self, given: Option<Friction>) -> bool {
         let ByLink { default, links } = &self.friction;
-        given.is_some() && (*default != given || links.values().any(|own| Some(*own) != given))
+        given.is_some() && (*default != given || links.values().any(|friction| Some(*friction) != given))
     }
 }
 
