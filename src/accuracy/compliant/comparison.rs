@@ -245,10 +245,10 @@ fn by_stiffness_of_moving(
     for (before, change) in before.iter_mut().zip(state.change(&mut assembly)) {
         *before += change;
     }
-    let mut after = |impulse: &[Pair<f64>]| {
+    let mut after = |impulses: &[Pair<f64>]| {
         let mut velocity = before.clone();
-        for (contact, &own) in impulse.iter().enumerate() {
-            assembly.add_contact_impulse(Elimination::Ltl, contact, own, &mut velocity);
+        for (contact, &impulse) in impulses.iter().enumerate() {
+            assembly.add_contact_impulse(Elimination::Ltl, contact, impulse, &mut velocity);
         }
         velocity
     };

@@ -32,10 +32,10 @@ pub(super) trait StiffEquations {
 
     /// Returns the derivatives of the rates by the state, by forward differences unless the model overrides it.
     fn jacobian(&self, state: &[f64], rates: &[f64]) -> DMatrix<f64> {
-        let own = rates.len();
-        let mut jacobian = DMatrix::zeros(own, own);
+        let count = rates.len();
+        let mut jacobian = DMatrix::zeros(count, count);
         let mut moved = state.to_vec();
-        for (column, &entry) in state[..own].iter().enumerate() {
+        for (column, &entry) in state[..count].iter().enumerate() {
             let by = f64::EPSILON.sqrt() * entry.abs().max(1.0);
             moved[column] += by;
             for (row, rate) in self.rates(&moved).into_iter().enumerate() {
@@ -119,13 +119,13 @@ struct System<'m>(&'m dyn StiffEquations);
 impl<const N: usize> ODE<f64, [f64; N]> for System<'_> {
     fn diff(&self, _: f64, state: &[f64; N], rates: &mut [f64; N]) {
         rates.fill(0.0);
-        rates.iter_mut().zip(self.0.rates(state)).for_each(|(rate, own)| *rate = own);
+        rates.iter_mut().zip(self.0.rates(state)).for_each(|(rate, value)| *rate = value);
     }
 
     fn jacobian(&self, _: f64, state: &[f64; N], jacobian: &mut Matrix<f64>) {
-        let own = self.0.jacobian(state, &self.0.rates(state));
-        for (row, column) in (0..own.nrows()).flat_map(|row| (0..own.ncols()).map(move |column| (row, column))) {
-            jacobian[(row, column)] = own[(row, column)];
+        let dense = self.0.jacobian(state, &self.0.rates(state));
+        for (row, column) in (0..dense.nrows()).flat_map(|row| (0..dense.ncols()).map(move |column| (row, column))) {
+            jacobian[(row, column)] = dense[(row, column)];
         }
     }
 }
