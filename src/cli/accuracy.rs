@@ -73,7 +73,7 @@ pub(super) fn run(args: &Args) -> Completion {
     args.plot.claim(&[args.robot.as_ref(), args.state.as_ref()], args.output.path())?;
     let clock = Stopwatch::start();
     let accuracy = match (&args.robot, &args.state) {
-        (Some(robot), Some(state)) => own(args, robot, state, sampling)?,
+        (Some(robot), Some(state)) => one_state(args, robot, state, sampling)?,
         _ => suite(args.case.as_deref().unwrap_or_default(), args.no_proof, sampling)?,
     };
     drop(clock);
@@ -89,7 +89,7 @@ pub(super) fn run(args: &Args) -> Completion {
     }
 }
 
-fn own(args: &Args, robot: &Path, state: &Path, sampling: Sampling) -> Result<Accuracy, Failure> {
+fn one_state(args: &Args, robot: &Path, state: &Path, sampling: Sampling) -> Result<Accuracy, Failure> {
     let robot = RobotOptions { robot: robot.to_owned(), ..RobotOptions::default() }.load()?;
     let input = InputFile::read(state, InputFile::LARGE)?;
     let document = only_document(&input)?;

@@ -85,5 +85,5 @@ fn cannot_read(path: &Path, error: &io::Error) -> Error {
 
 /// Returns whether the ending of a file means one JSON object per line.
 pub(super) fn is_ndjson(path: &Path) -> bool {
-    path.extension().is_some_and(|ending| ["ndjson", "jsonl"].iter().any(|own| ending.eq_ignore_ascii_case(own)))
+    path.extension().is_some_and(|ending| ["ndjson", "jsonl"].iter().any(|known| ending.eq_ignore_ascii_case(known)))
 }

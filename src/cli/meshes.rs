@@ -140,8 +140,8 @@ fn is_package(folder: &Path, name: &str) -> bool {
         let manifest = Some(folder.join("package.xml")).filter(|manifest| manifest.is_file())?;
         let manifest = InputFile::read(&manifest, InputFile::SMALL).ok()?;
         let text = String::from_utf8_lossy(&manifest.bytes);
-        let (own, _) = text.split_once("<name>")?.1.split_once("</name>")?;
-        Some(own.trim() == name)
+        let (declared, _) = text.split_once("<name>")?.1.split_once("</name>")?;
+        Some(declared.trim() == name)
     };
-    folder.file_name().is_some_and(|own| own == name) || in_manifest() == Some(true)
+    folder.file_name().is_some_and(|file_name| file_name == name) || in_manifest() == Some(true)
 }

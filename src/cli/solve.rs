@@ -43,16 +43,16 @@ pub(super) fn run(args: &Args) -> Completion {
     let mut own_friction = 0;
     let answered = answer_all("problem", &args.problem, format, &args.output, Ok(()), |problem, palette, out| {
         let problem = Problem::from_json(problem, &defaults)?;
-        let unlike = |given| problem.contact.friction().any(|own| own != given);
+        let unlike = |given| problem.contact.friction().any(|friction| friction != given);
         own_friction += u64::from(defaults.friction.is_some_and(unlike));
         let summed_up = palette.is_some() && !detail.brief && problem.contact.contacts() <= SUMMED_UP;
-        let asked = AnalysisOptions {
+        let options = AnalysisOptions {
             rejections: (detail.explain || summed_up).into(),
             prove: !args.detail.no_proof,
             reductions: args.reductions.reductions(),
             ..AnalysisOptions::default()
         };
-        let analysis = within(args.budget.budget(), || scratch.analyze(&problem.contact, &problem, asked))?;
+        let analysis = within(args.budget.budget(), || scratch.analyze(&problem.contact, &problem, options))?;
         let report = Report::of_problem(&problem, &analysis, detail);
         append(&report, &Subject::of_problem(&problem, &analysis), detail, palette, out);
         Ok(None)
