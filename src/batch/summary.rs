@@ -208,7 +208,7 @@ impl Summary {
             let ends = ends.map(|(contact, &mode)| 4 * contact.link as u64 + mode as u64);
             let key = ends.fold(0, |key: u64, end| key.rotate_left(7) ^ end);
             // Most equal names share one allocation.
-            let is_named = |(own, name): (&Arc<str>, &Arc<str>)| Arc::ptr_eq(own, name) || own == name;
+            let is_named = |(known, name): (&Arc<str>, &Arc<str>)| Arc::ptr_eq(known, name) || known == name;
             let known = |list: &&mut ModeCount| {
                 let is_alike = list.key == key && list.modes == outcome.modes;
                 is_alike && list.contacts.iter().zip(names.clone()).all(is_named)
