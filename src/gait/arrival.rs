@@ -44,8 +44,8 @@ impl<S: Clone> Arrival<'_, '_, S> {
         let onward = if smooth > row { None } else { self.onward(point, first, row, height) };
         if let Some((onward, later)) = onward {
             sample.time += later;
-            for (entry, own) in sample.state.position.iter_mut().enumerate() {
-                *own = onward.value(|back| self.window.frames[row - back].sample.state.position[entry]);
+            for (entry, value) in sample.state.position.iter_mut().enumerate() {
+                *value = onward.value(|back| self.window.frames[row - back].sample.state.position[entry]);
             }
         } else {
             self.between(point, row, height, &mut sample);
@@ -95,8 +95,8 @@ impl<S: Clone> Arrival<'_, '_, S> {
         let part = if to < from { (from / (from - to)).clamp(0.0, 1.0) } else { 0.0 };
         let next = &self.window.frames[row + 1].sample;
         sample.time += part * (next.time - sample.time);
-        for (own, next) in sample.state.position.iter_mut().zip(&next.state.position) {
-            *own += part * (next - *own);
+        for (value, next) in sample.state.position.iter_mut().zip(&next.state.position) {
+            *value += part * (next - *value);
         }
     }
 
@@ -107,8 +107,8 @@ impl<S: Clone> Arrival<'_, '_, S> {
         if self.at == At::Crossing {
             sample.time = time;
             let line = Interpolation::along(time, &times);
-            for (entry, own) in sample.state.position.iter_mut().enumerate() {
-                *own = line.value(|at| self.window.frames[rows[at]].sample.state.position[entry]);
+            for (entry, value) in sample.state.position.iter_mut().enumerate() {
+                *value = line.value(|at| self.window.frames[rows[at]].sample.state.position[entry]);
             }
         }
         let line = Interpolation::along(sample.time, &times);
@@ -127,8 +127,8 @@ impl<S: Clone> Arrival<'_, '_, S> {
     ) {
         let velocity = |at: usize| &self.window.frames[rows[at]].sample.state.velocity;
         let differences = is_difference(sample);
-        for (entry, own) in sample.state.velocity.iter_mut().enumerate() {
-            *own = match differences {
+        for (entry, rate) in sample.state.velocity.iter_mut().enumerate() {
+            *rate = match differences {
                 true => onward(entry).rate(|at| position(at)[entry]),
                 false => onward(entry).value(|at| velocity(at)[entry]),
             };
@@ -156,9 +156,9 @@ impl<S: Clone> Arrival<'_, '_, S> {
         }
         let [before, Some(last)] = around else { return };
         let before = before.unwrap_or(last);
-        for (entry, own) in velocity.iter_mut().enumerate() {
+        for (entry, rate) in velocity.iter_mut().enumerate() {
             let value = |sample: &Sample<S>| (middle(sample), sample.state.velocity[entry]);
-            *own = on_line([value(before), value(last)], time);
+            *rate = on_line([value(before), value(last)], time);
         }
     }
 }

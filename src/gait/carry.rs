@@ -45,9 +45,9 @@ impl Interpolation {
         #[allow(clippy::cast_precision_loss)]
         let share = 1.0 / times.len() as f64;
         let middle = share * times.iter().sum::<f64>();
-        let spread: f64 = times.iter().map(|own| (own - middle) * (own - middle)).sum();
-        let rate = |own: &f64| (own - middle) / spread;
-        Self { weights: times.iter().map(|own| (share + (time - middle) * rate(own), rate(own))).collect() }
+        let spread: f64 = times.iter().map(|moment| (moment - middle) * (moment - middle)).sum();
+        let rate = |moment: &f64| (moment - middle) / spread;
+        Self { weights: times.iter().map(|moment| (share + (time - middle) * rate(moment), rate(moment))).collect() }
     }
 
     /// Returns the standard deviation of the difference from a recorded value if all values have a noise of one.

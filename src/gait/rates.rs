@@ -28,9 +28,9 @@ pub fn rates<S>(samples: impl Iterator<Item = Sampled<S>>, difference: Differenc
             other => (None, other),
         };
         let after = next.as_ref().filter(|next| matches!(clock.step(next.time), ClockStep::Later(_)));
-        let settled = waiting.take().map(|own| {
-            let place = after.map(|_| (own.time, own.state.position.clone()));
-            settled(own, std::mem::replace(&mut before, place), after, difference)
+        let settled = waiting.take().map(|sample| {
+            let place = after.map(|_| (sample.time, sample.state.position.clone()));
+            settled(sample, std::mem::replace(&mut before, place), after, difference)
         });
         waiting = next;
         settled.into_iter().chain(refused)
@@ -44,12 +44,12 @@ fn settled<S>(
     after: Option<&Sample<S>>,
     difference: Difference,
 ) -> Sampled<S> {
-    let own = (sample.time, &sample.state.position);
+    let here = (sample.time, &sample.state.position);
     let before = before.as_ref().map(|(time, position)| (*time, position));
     let ends = match (difference, before, after.map(|after| (after.time, &after.state.position))) {
         (Difference::Central, Some(before), Some(after)) => Some((before, after)),
-        (_, Some(before), _) => Some((before, own)),
-        (_, None, after) => after.map(|after| (own, after)),
+        (_, Some(before), _) => Some((before, here)),
+        (_, None, after) => after.map(|after| (here, after)),
     };
     let reason = if let Some(((from, start), (to, end))) = ends {
         let rates: Vec<f64> = start.iter().zip(end).map(|(start, end)| (end - start) / (to - from)).collect();

@@ -74,8 +74,8 @@ impl Motion {
             (self.moved, self.stands_since) = (false, None);
             self.rates.clear();
         }
-        for (last, own) in self.last.iter_mut().zip([&state.position, &state.velocity]) {
-            own.clone_into(last);
+        for (last, current) in self.last.iter_mut().zip([&state.position, &state.velocity]) {
+            current.clone_into(last);
         }
     }
 
@@ -112,14 +112,14 @@ impl Motion {
         self.steps += 1;
         let before = self.rates.iter_mut().zip(rates).map(|(before, &rate)| std::mem::replace(before, rate) - rate);
         for ((sums, change), (&rate, &velocity)) in self.sums.iter_mut().zip(before).zip(rates.iter().zip(velocities)) {
-            let own = [velocity * velocity, rate * rate, velocity * rate, change * change];
-            sums.iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
+            let products = [velocity * velocity, rate * rate, velocity * rate, change * change];
+            sums.iter_mut().zip(products).for_each(|(sum, product)| *sum += product);
         }
         if let (Base::Floating, &[x, z, turning, ..]) = (robot.base, rates) {
             let (sin, cos) = libm::sincos(state.position[2] - half * turning);
             let turned = [cos * velocities[0] + sin * velocities[1], cos * velocities[1] - sin * velocities[0]];
-            for (error, [own_x, own_z]) in self.errors.iter_mut().zip([[velocities[0], velocities[1]], turned]) {
-                *error += (own_x - x) * (own_x - x) + (own_z - z) * (own_z - z);
+            for (error, [vx, vz]) in self.errors.iter_mut().zip([[velocities[0], velocities[1]], turned]) {
+                *error += (vx - x) * (vx - x) + (vz - z) * (vz - z);
             }
         }
     }
@@ -151,8 +151,8 @@ impl Motion {
 
     /// Notes that the base's velocity is in its own axes.
     pub fn turned(&self) -> Option<String> {
-        let [own, turned] = self.errors;
-        let is_turned = self.steps >= ENOUGH && own > APART * APART * self.steps as f64 && turned < BETTER * own;
+        let [given, turned] = self.errors;
+        let is_turned = self.steps >= ENOUGH && given > APART * APART * self.steps as f64 && turned < BETTER * given;
         is_turned.then(|| {
             "the base's velocity fits its positions over time if it is turned by the pitch: give it in the world's axes, \
              not the body's"
