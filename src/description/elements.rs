@@ -159,7 +159,7 @@ pub(super) fn rotors(robot: Node<'_, '_>) -> Vec<String> {
             .any(|inertia| inertia.is_finite() && inertia > 0.0)
     };
     let transmissions = xml::children(robot).filter(tagged("transmission")).filter(has_rotor);
-    let joints = transmissions.flat_map(|own| xml::children(own).filter(tagged("joint")));
+    let joints = transmissions.flat_map(|transmission| xml::children(transmission).filter(tagged("joint")));
     joints.filter_map(|joint| joint.attribute("name").map(str::to_owned)).collect()
 }
 
@@ -189,7 +189,7 @@ pub(super) fn misspelt(robot: Node<'_, '_>) -> Vec<String> {
         };
         let elements = || element.children().filter(Node::is_element).map(|child| (child, child.tag_name().name()));
         let tags = || elements().map(|(_, name)| name);
-        let given = || element.attributes().filter(|own| own.namespace().is_none()).map(|own| own.name());
+        let given = || element.attributes().filter(|given| given.namespace().is_none()).map(|given| given.name());
         // The element has numbers between its tags, but they belong in an attribute.
         let text = element.text().filter(|text| children.is_empty() && !text.trim().is_empty());
         let text = text.map(|_| format!("text in <{tag}> on line {} ({}?)", line(element), attributes.join(" or ")));

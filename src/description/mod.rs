@@ -239,7 +239,7 @@ impl Description {
 
     /// Returns whether the file has joints that are not read because their namespace is not that of `<robot>`.
     pub(crate) fn has_foreign_joints(&self) -> bool {
-        self.ignored.iter().any(|own| (own.parent, &*own.tag) == ("robot", "joint"))
+        self.ignored.iter().any(|element| (element.parent, &*element.tag) == ("robot", "joint"))
     }
 
     /// Returns the index in [`Description::joints`] of the joint with this name; `None` if there is none.

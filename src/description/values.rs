@@ -29,8 +29,8 @@ pub(super) fn origin(origin: Option<Node<'_, '_>>) -> Result<Pose> {
 
 /// Reads an `<inertial>`.
 pub(super) fn inertial(element: Node<'_, '_>) -> Result<Inertial> {
-    let [own, mass, moments] = xml::named(element, ["origin", "mass", "inertia"]);
-    let origin = origin(own?)?;
+    let [frame, mass, moments] = xml::named(element, ["origin", "mass", "inertia"]);
+    let origin = origin(frame?)?;
     let [mass] = required(xml::required_child(element, mass, "mass")?, "value", NOT_NEGATIVE)?;
     let inertia = moments?.map(inertia).transpose()?;
     let matrix =
@@ -47,8 +47,8 @@ fn inertia(element: Node<'_, '_>) -> Result<urdf_rs::Inertia> {
 }
 
 pub(super) fn collision(element: Node<'_, '_>) -> Result<Collision> {
-    let [own, shape] = xml::named(element, ["origin", "geometry"]);
-    Ok(Collision { origin: origin(own?)?, geometry: geometry(xml::required_child(element, shape, "geometry")?)? })
+    let [frame, shape] = xml::named(element, ["origin", "geometry"]);
+    Ok(Collision { origin: origin(frame?)?, geometry: geometry(xml::required_child(element, shape, "geometry")?)? })
 }
 
 fn geometry(geometry: Node<'_, '_>) -> Result<Geometry> {

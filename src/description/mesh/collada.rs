@@ -156,11 +156,11 @@ impl<'a, 'input: 'a> Shown<'a, 'input> {
             let (offset, stride): (usize, usize) = (count("offset", 0)?, count("stride", 3)?);
             let points = values.get(offset..).unwrap_or_default().chunks(stride.max(3));
             // Other data, such as normals, may follow in the same array.
-            let own = points.take(count("count", usize::MAX)?).filter_map(|point| point.first_chunk::<3>());
-            let mut used = vec![false; own.clone().count()];
+            let points = points.take(count("count", usize::MAX)?).filter_map(|point| point.first_chunk::<3>());
+            let mut used = vec![false; points.clone().count()];
             let corners = corners.remove(vertices.attribute("id").unwrap_or_default());
             corners.into_iter().flatten().try_for_each(|(primitive, input)| mark(primitive, input, &mut used))?;
-            positions.extend(own.zip(used).filter_map(|(point, used)| used.then_some(point)));
+            positions.extend(points.zip(used).filter_map(|(point, used)| used.then_some(point)));
             if positions.len() > MOST_VERTICES {
                 return Err(format!("more than {MOST_VERTICES} vertices"));
             }
