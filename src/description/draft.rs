@@ -10,6 +10,8 @@ use roxmltree::{Document, Node};
 
 /// Largest number of moving joints: the factorization of M takes n^3 / 3 steps for a chain of n joints.
 const MOST_MOVING: usize = 2000;
+/// Largest number of mimics of unknown joints for which a similar name is searched.
+const MOST_LIKENED: usize = 3;
 /// Drake's name for a spherical joint.
 const DRAKES_SPHERICAL: &str = "ball";
 
@@ -89,16 +91,20 @@ fn read_document(document: &Document<'_>) -> Result<Description> {
         let joint = read_joint(name, element, location, &links, &joints, &mut ignored);
         let (joint, unread) = joint.map_err(|error| error.at(joint_place(name)))?;
         description.joints.push(joint);
-        // The search for a similar name takes time.
-        let unread = unread.filter(|_| description.misspelt.len() < MOST_MISSPELT);
-        description.misspelt.extend(unread.and_then(|mimic| {
-            let error = joints.find(mimic, "joint").err()?;
+        let known = description.misspelt.len();
+        description.misspelt.extend(unread.filter(|_| known < MOST_MISSPELT).and_then(|mimic| {
+            let error = match mimic.attribute("joint") {
+                // The search for a similar name takes time.
+                Some(other) if known >= MOST_LIKENED => joints.unknown(mimic, other),
+                _ => joints.find(mimic, "joint").err()?,
+            };
             let remedy = error.remedy().map_or(String::new(), |remedy| format!("; {remedy}"));
             let (line, reason) = (error.location()?.line, format!("{}{remedy}", error.reason()));
-            Some(format!("<mimic> of {name} on line {line} ({reason}), so that this joint moves by itself"))
+            Some(format!("<mimic> of {name} on line {line} ({reason}), so that this joint follows no other one"))
         }));
     }
-    description.misspelt.extend(misspelt(robot));
+    let most = MOST_MISSPELT - description.misspelt.len();
+    description.misspelt.extend(misspelt(robot).into_iter().take(most));
     Ok(Description { ignored: ignored.kinds, ..description })
 }
 
@@ -221,7 +227,8 @@ fn read_joint<'a, 'input>(
     let origin = values::origin(origin?)?;
     let axis = values::axis(axis?, kind)?;
     let mimic = mimic?;
-    let is_unread = |mimic: &Node| mimic.attribute("joint").is_some_and(|name| !joints.by_name.contains_key(name));
+    let is_unknown = |name: &str| !name.is_empty() && !joints.by_name.contains_key(name);
+    let is_unread = |mimic: &Node| mimic.attribute("joint").is_some_and(is_unknown);
     let unread = mimic.filter(is_unread);
     let of_joint = |mimic: Node| values::mimic(mimic, if is_unread(&mimic) { 0 } else { joints.find(mimic, "joint")? });
     let mimic = mimic.map(of_joint).transpose()?.filter(|_| unread.is_none());

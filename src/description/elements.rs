@@ -1,7 +1,7 @@
 //! Elements of a file by name, and counts of the elements that are not read.
 
 use super::{Ignored, xml};
-use crate::error::{Location, Reason, Result};
+use crate::error::{Error, Location, Reason, Result};
 use roxmltree::Node;
 use std::collections::HashMap;
 
@@ -35,7 +35,7 @@ impl<'a, 'input> ByName<'a, 'input> {
     pub(super) fn find(&self, element: Node<'_, '_>, attribute: &str) -> Result<usize> {
         let name = xml::required_attribute(element, attribute)?;
         self.by_name.get(name).copied().ok_or_else(|| {
-            let error = xml::refuse(element, Reason::UnknownName { what: self.what, name: name.into() });
+            let error = self.unknown(element, name);
             let known = || self.elements.iter().map(|(name, ..)| *name).filter(|known| known.len() <= 100);
             // A part copied from another file may lack a prefix.
             let is_longer = |known: &&str| known.strip_suffix(name).is_some_and(|prefix| prefix.ends_with(['_', '/']));
@@ -45,6 +45,11 @@ impl<'a, 'input> ByName<'a, 'input> {
                 _ => error.hint(format!("did you mean {}?", longer.join(" or "))),
             }
         })
+    }
+
+    /// Returns the error for a `name` in `element` that no element has, without a similar name.
+    pub(super) fn unknown(&self, element: Node<'_, '_>, name: &str) -> Error {
+        xml::refuse(element, Reason::UnknownName { what: self.what, name: name.into() })
     }
 }
 

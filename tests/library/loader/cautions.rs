@@ -306,3 +306,25 @@ fn elements_that_are_not_read_are_named_with_their_lines() {
     let remedy = "make one of them the child of a joint; not read, and perhaps misspelt: <Joint> in <robot> on line 4 (<joint>?)";
     assert_eq!(refused.expect_err("two roots").remedy(), Some(remedy));
 }
+
+/// A similar name is searched for a few mimics only: a file may have thousands of them.
+#[test]
+fn unknown_mimicked_joints_are_kept_up_to_a_limit() {
+    let link = |at: usize| format!("<link name=\"l{at}\"/>");
+    let joint = |at: usize| {
+        let ends = format!("<parent link=\"l0\"/><child link=\"l{at}\"/>");
+        format!("<joint name=\"joint_{at}\" type=\"fixed\">{ends}<mimic joint=\"join_{at}\"/><limt/></joint>")
+    };
+    let read = |most: usize| {
+        let (links, joints): (String, String) = ((0..=most).map(link).collect(), (1..=most).map(joint).collect());
+        Description::from_urdf(&format!("<robot>{links}{joints}</robot>")).expect("a description").misspelt
+    };
+    let found = read(60);
+    let likened: Vec<bool> = found.iter().map(|own| own.contains("did you mean joint_")).collect();
+    assert_eq!(likened[..5], [true, true, true, false, false]);
+    assert!(found[59].starts_with("<mimic> of joint_60 ") && found[60].starts_with("<limt> in <joint> "));
+    assert_eq!((found.len(), read(110).len()), (100, 100));
+    let empty = with_mimic(&massive(&[PITCH]), "j", "joint=\"\"");
+    let refused = Robot::from_urdf(&empty).expect_err("no name");
+    assert!(refused.to_string().contains("the attribute joint of <mimic> is missing"), "{refused}");
+}
