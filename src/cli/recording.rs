@@ -121,13 +121,15 @@ impl RecordingOptions {
             samples = Box::new(gait::sagittal(samples, dropped));
         }
         if let Some(difference) = self.velocity {
+            if !self.touchdowns {
+                // Of three rows of one time, the one in the middle gets no velocity.
+                samples = Box::new(Seen::watching(samples, (robot, seen)));
+            }
             samples = Box::new(gait::rates(samples, difference));
         }
         if self.touchdowns {
             let found = gait::find(samples, robot, feet, self.at, self.touching)?;
             samples = Box::new(found.with(thresholds).meaning(self.heights()).noting(seen));
-        } else if self.velocity.is_some() {
-            samples = Box::new(Seen::watching(samples, (robot, seen)));
         }
         Ok(samples)
     }

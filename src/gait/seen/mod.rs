@@ -43,7 +43,7 @@ impl Seen {
         [motion.turned(), motion.misfit(robot)]
     }
 
-    /// Passes `samples` on and adds their order and motion to `seen`.
+    /// Passes `samples` on and adds their order and positions to `seen`. Velocities are not looked at.
     pub fn watching<'r, S>(
         samples: impl Iterator<Item = Sampled<S>> + 'r,
         (robot, seen): (&'r Robot, &'r Mutex<Self>),
@@ -51,7 +51,7 @@ impl Seen {
         let mut clock = Clock::default();
         samples.inspect(move |sampled| {
             if let (Ok(sample), Ok(mut seen)) = (sampled, seen.lock()) {
-                seen.follow(sample, clock.step(sample.time), robot);
+                seen.follow(sample, clock.step(sample.time), false, robot);
             }
         })
     }
@@ -62,14 +62,14 @@ impl Seen {
         if self.oddity.is_none() {
             self.oddity = sample.state.oddities_of_motion(robot).into_iter().next();
         }
-        self.follow(sample, step, robot);
+        // Velocities that were computed from positions are consistent with them.
+        let is_recorded = sample.rate_over == [sample.time; 2];
+        self.follow(sample, step, is_recorded, robot);
     }
 
-    fn follow<S>(&mut self, Sample { state, time, rate_over, .. }: &Sample<S>, step: ClockStep, robot: &Robot) {
-        self.order.add(*time, step);
-        // Velocities that were computed from positions are consistent with them.
-        let is_recorded = *rate_over == [*time; 2];
-        self.motion.add(state, *time, step, is_recorded, robot);
+    fn follow<S>(&mut self, sample: &Sample<S>, step: ClockStep, is_recorded: bool, robot: &Robot) {
+        self.order.add(sample.time, step);
+        self.motion.add(&sample.state, sample.time, step, is_recorded, robot);
     }
 
     /// Adds a touchdown, with its depth below z = 0 if that shows the ground \[m\].

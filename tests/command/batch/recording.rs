@@ -141,7 +141,7 @@ fn rows_that_are_missing_or_out_of_order_are_noted() {
 #[test]
 fn differences_of_doubtful_rows_are_noted() {
     let notes = |change: Change| {
-        notes_with(&["--velocity", "central"], |names, rows| {
+        notes_with(&["--velocity", "central", "--refused", "ok"], |names, rows| {
             change(rows);
             let positions = names.iter().take_while(|name| !name.starts_with("v_")).count();
             rows.iter_mut().chain([names]).for_each(|row| row.truncate(positions));
@@ -150,8 +150,11 @@ fn differences_of_doubtful_rows_are_noted() {
     let later = |row: &mut Vec<String>| row[1] = (1e3 * row[1].parse::<f64>().expect("a time")).to_string();
     let whole = notes(&|_| {});
     assert!(!whole.contains("note"), "{whole}");
-    let cases: [(&str, Change); 3] = [
+    let cases: [(&str, Change); 4] = [
         ("rows are not in the order of time, which goes back once, first from ", &|rows| rows.swap(48, 49)),
+        ("more than two rows have the same time once, first at 0.", &|rows| {
+            (29..31).for_each(|at| rows[at][1] = rows[28][1].clone());
+        }),
         ("rows are 7.624 s apart: is the time in seconds?", &|rows| rows.iter_mut().for_each(later)),
         ("positions jump 2 times, first from 0.", &|rows| rows[30][3] = "0.7".to_owned()),
     ];
