@@ -86,7 +86,7 @@ impl BodyScale {
 }
 
 /// Lower bound on the moment of inertia about the center of mass; not positive, or NaN, if it may be zero.
-fn central_moment(body: &PlanBody<f64>) -> f64 {
+pub(super) fn central_moment(body: &PlanBody<f64>) -> f64 {
     let (mass, first, second) = (body.inertia.mass, body.inertia.first, body.inertia.second);
     second * (1.0 - SUM) - first.dot(first * (1.0 / mass)) * (1.0 + SUM) - UNDERFLOW
 }

@@ -34,7 +34,7 @@
 //! All bounds are doubled to cover the terms of second order. These are small, because a bound above one tenth counts
 //! as unknown. The constants are generous. If a bound does not decide a sign, balls do.
 
-use super::balance::Balance;
+use super::balance::{Balance, central_moment};
 use super::jacobian::ContactPoint;
 use super::ltl::LtlFactor;
 use super::stretch::{Arm, LIKELY, SMALL, Stretched, UNIT_ROUNDOFF, stretch};
@@ -236,22 +236,18 @@ impl RoundingBounds {
         }
     }
 
-    /// Computes the upper bound on sqrt((M^-1)_ii) that holds in every pose; infinite for a prismatic joint.
+    /// Computes the upper bound on sqrt((M^-1)_ii) that holds in every pose; infinite for a prismatic joint without a
+    /// rotor.
     fn measure_greatest_ease(&mut self, plan: &Plan) {
         // The least kinetic energy for a unit rate of each column, times two.
         let mut least = vec![0.0; plan.columns()];
-        // A lower bound on the moment of inertia about the center of mass.
-        let central = |body: &PlanBody<f64>| {
-            let Inertia { mass, first, second } = body.inertia;
-            let offset = if mass > 0.0 { first.dot(first) / mass } else { 0.0 };
-            (second * (1.0 - 16.0 * UNIT_ROUNDOFF) - offset).max(0.0)
-        };
+        let central = |body: &PlanBody<f64>| central_moment(body).max(0.0);
         for body in &plan.bodies {
             let (own, Some(column)) = (central(body), body.column) else { continue };
             let twice = match body.motion {
                 JointMotion::Root => {
                     let Inertia { mass, first, .. } = body.inertia;
-                    let linear = mass * (own / (own + first.dot(first) / mass));
+                    let linear = mass * (own / (own + first.dot(first * (1.0 / mass))));
                     least[..2].fill(if linear > 0.0 { linear } else { 0.0 });
                     own
                 }

@@ -428,8 +428,15 @@ mod tests {
         }
 
         #[test]
-        fn no_pose_exceeds_the_greatest_ease(case in case(true), rotor in 0.0..0.1f64) {
-            let plan = Plan::new(&case.robot, &[], &vec![rotor; case.robot.joints.len()]);
+        fn no_pose_exceeds_the_greatest_ease(
+            mut case in case(true),
+            rotor in 0.0..0.1f64,
+            unit in prop_oneof![Just(1.0), Just(1e-200)],
+        ) {
+            for body in &mut case.robot.bodies {
+                (body.mass, body.moment) = (unit * body.mass, unit * body.moment);
+            }
+            let plan = Plan::new(&case.robot, &[], &vec![unit * rotor; case.robot.joints.len()]);
             let (workspace, bounds) = (case.computed(&plan, &[]), case.bounds(&plan, &[]));
             let nv = plan.columns();
             let left = |i: usize| workspace.factor.pivot(i) / workspace.mass_matrix[i * nv + i];
