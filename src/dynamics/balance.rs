@@ -26,15 +26,13 @@
 use super::articulated::set_in_motion;
 use super::articulated_inertia::Wrench;
 use super::jacobian::{ContactPoint, Motion};
-use super::stretch::{Arm, LIKELY, SMALL, Stretched, UNIT_ROUNDOFF, length};
+use super::stretch::{Arm, LIKELY, SMALL, SUM, Stretched, UNIT_ROUNDOFF, length};
 use super::workspace::Workspace;
 use crate::dynamics::plan::{JointMotion, Plan, PlanBody};
 use crate::planar::Vector;
 
 /// Roundings of a rotation per joint: 4 in its cosine and sine and 3 in the product, for the sum of both components.
 const TURN: f64 = 16.0;
-/// Roundings of a few products and sums, including those in the entries of an inertia.
-const SUM: f64 = 16.0 * UNIT_ROUNDOFF;
 /// Roundings of the ground's axes, and of the position of a point along them.
 const GROUND: f64 = 64.0 * UNIT_ROUNDOFF;
 /// Covers the underflow of a few products.

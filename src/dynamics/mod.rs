@@ -211,6 +211,42 @@ mod tests {
         (0..found.len()).map(error).fold(0.0, f64::max)
     }
 
+    #[test]
+    fn negative_moments_on_fixed_joints_have_no_bound() {
+        type Exact = Ball<DoubleDouble>;
+        let body = |mass: f64, moment: f64, joint: Option<ParentJoint>| Body {
+            name: String::new(),
+            joint,
+            mass,
+            com: Vector::zero(),
+            moment,
+        };
+        let fixed = ParentJoint::Fixed { parent: 0, origin: Vector::zero() };
+        let parts = [-0.9999999, 0.2, 0.1].map(|moment| body(1e-3, moment, Some(fixed)));
+        let robot = Robot {
+            name: "fixed".into(),
+            base: Base::Floating,
+            bodies: [body(1.0, 0.7, None)].into_iter().chain(parts).collect(),
+            joints: Vec::new(),
+            links: Vec::new(),
+            mimic_joints: Vec::new(),
+            left_out: Vec::new(),
+            reading: Default::default(),
+        };
+        fn contact<T: Real>() -> [ContactPoint<T>; 1] {
+            let center = Vector::new(0.3, -1.0).map(T::from_f64);
+            [ContactPoint { body: 0, center, radius: T::zero(), ground: Rotation::identity() }]
+        }
+        let case = Case { robot, position: vec![0.0; 3], velocity: vec![0.0; 3], places: Vec::new() };
+        let plan = Plan::new(&case.robot, &[], &[]);
+        let (workspace, mut bounds) = (case.computed(&plan, &contact()), case.bounds(&plan, &contact()));
+        let exact = case.computed::<Exact>(&Plan::new(&case.robot, &[], &[]), &contact());
+        bounds.delassus(&plan, &workspace);
+        // The moments nearly cancel each other, and with them the digits of their sum.
+        let off = exact.delassus[0] - Exact::from_f64(workspace.delassus[0]);
+        assert!(off.to_f64().abs() > 1e-11 * workspace.delassus[0] && bounds.delassus == f64::INFINITY, "{off:?}");
+    }
+
     type SpringCase = ([(Index, [f64; 2]); 2], [SpringLaw; 3], bool);
 
     impl Case {
