@@ -110,6 +110,7 @@ fixed <origin/>\n<origin xyz="1 0 0"/>
 fixed <parent link="b"/>
 fixed </joint>\n<joint name="j" type="fixed"><parent link="a"/><child link="b"/>
 continuous <mimic multiplier="2"/>
+continuous <mimic joint=""/>
 continuous <mimic joint="k" multiplier="x"/>
 revolut <axis xyz="0 1 0"/>
  <axis xyz="0 1 0"/>
