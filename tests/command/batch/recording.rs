@@ -197,7 +197,7 @@ fn rows_that_no_robot_moves_through_are_noted() {
             rows[30..].iter_mut().for_each(|row| row[x] = (number(&row[x]) + 3.0).to_string());
         }),
         (
-            "two rows of the same time have different positions 32 times, first at 0.02 s: is the time rounded? ",
+            "two rows of the same time have different positions 24 times, first at 0.02 s: is the time rounded? ",
             &|rows| {
                 rows.iter_mut().for_each(|row| row[time] = format!("{:.2}", number(&row[time])));
             },
