@@ -14,6 +14,9 @@ const CORRELATED: f64 = 0.8;
 /// From this correlation on, there is so little noise that they must be between these multiples.
 const CLEAN: f64 = 0.999;
 const FIT_IF_CLEAN: [f64; 2] = [0.95, 1.05];
+/// Steps are fine if the squared changes of dq/dt are below this fraction of its squares. In longer ones the mean
+/// velocity of two rows is less than dq/dt, by (omega h)^2 / 12 of an oscillation.
+const FINE: f64 = 0.1;
 /// A coordinate whose mean speed is less may be noise about one that stands \[m/s, rad/s\].
 const MOVING: f64 = 0.1;
 /// The fewest steps that are compared.
@@ -164,7 +167,7 @@ impl Motion {
     pub fn misfit(&self, robot: &Robot) -> Option<String> {
         let misfit = |(name, &[squared, rates, product, changes]): (&str, &[f64; 4])| {
             let (correlation, factor) = (product / (squared * rates).sqrt(), product / rates);
-            let [least, most] = if correlation > CLEAN { FIT_IF_CLEAN } else { FIT };
+            let [least, most] = if correlation > CLEAN && changes < FINE * rates { FIT_IF_CLEAN } else { FIT };
             if changes > rates {
                 // The poses have no order, or are too far apart for their difference to be a rate.
                 None

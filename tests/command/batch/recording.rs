@@ -96,6 +96,11 @@ fn recordings_in_other_units_or_axes_are_noted() {
     assert!(!is_noted(|at| 37 * at, 0.0, 100), "they stand still");
     // In clips of two rows, the change from one clip to the next is not a motion.
     assert!(!is_noted(|at| 37 * (at / 2) + at % 2, 1.0, 2) && is_noted(|at| 37 * (at / 2) + at % 2, 57.3, 2));
+    // Few rows per period: the mean of two velocities is 0.92 times the difference of their positions over time.
+    let row = |at: usize| format!("{at},{},{}\n", (0.95 * at as f64).sin(), 0.95 * (0.95 * at as f64).cos());
+    let coarse = format!("time,q_left_hip,v_left_hip\n{}", (0..60).map(row).collect::<String>());
+    let coarse = heelstrike(&["batch", RAMONE, &file("coarse.csv", coarse), "--friction", "0.6", "--place", "lowest"]);
+    assert!(coarse.stderr.contains("60 states: ") && !coarse.stderr.contains(misfit), "{}", coarse.stderr);
     let deep = stderr(|name, cell| if name == "q_base_z" { cell - 0.5 } else { cell });
     assert!(deep.contains("touchdowns of feet far under z = 0, which were lifted to it: "), "{deep}");
     let degrees =
